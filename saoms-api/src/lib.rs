@@ -1,0 +1,1 @@
+//! The contract that authors of SAOMS components compile against.

@@ -1,0 +1,1 @@
+//! The machine of SAOMS: model, load, check, assemble, bus and schedule.

@@ -1,0 +1,1 @@
+//! What tests of composites and components use.
