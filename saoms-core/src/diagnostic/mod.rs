@@ -1,0 +1,155 @@
+//! What is wrong, where, and what to do: diagnostics as data.
+//!
+//! A [`Diagnostic`] has a stable [`Code`], a severity, a place, a message, and whatever helps: labels on other places,
+//! help, the rule of the SCA specification it stems from, and suggestions that a tool can apply as edits.
+//! [`Diagnostics`] collects them.
+
+pub mod codes;
+mod collector;
+
+pub use codes::Code;
+pub use collector::Diagnostics;
+
+use crate::source::Location;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// Probably not meant; nothing is stopped by it.
+    Warning,
+    /// Nothing starts.
+    Error,
+}
+
+impl Severity {
+    /// Its name in lower case, as in the output for machines.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// A further place that explains the diagnostic, with what is to be seen there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// The place, possibly in another file.
+    pub location: Location,
+    /// What is to be seen there.
+    pub text: String,
+}
+
+/// One replacement of text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Edit {
+    /// The text that is replaced; of length 0 for an insertion.
+    pub location: Location,
+    /// What takes its place.
+    pub replacement: String,
+}
+
+/// A way to mend the fault; its edits belong together and do not overlap.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Suggestion {
+    /// What applying it does, in the imperative.
+    pub description: String,
+    /// The edits.
+    pub edits: Vec<Edit>,
+}
+
+/// One fault, or one thing worth knowing, at one place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What kind it is.
+    pub code: &'static Code,
+    /// How bad it is; the code's own severity unless set.
+    pub severity: Severity,
+    /// The very place.
+    pub location: Location,
+    /// What was found and what was expected.
+    pub message: String,
+    /// What is at the place, short, for the picture; the message alone when there is nothing to add.
+    pub at: Option<String>,
+    /// Further places.
+    pub labels: Vec<Label>,
+    /// What to do; each a sentence or two.
+    pub help: Vec<String>,
+    /// The rule of the SCA specification, as `ASM50037`.
+    pub rule: Option<&'static str>,
+    /// Ways to mend it, the likeliest first.
+    pub suggestions: Vec<Suggestion>,
+}
+
+impl Diagnostic {
+    /// A diagnostic of the code's own severity.
+    pub fn new(code: &'static Code, location: Location, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            severity: code.severity,
+            location,
+            message: message.into(),
+            at: None,
+            labels: Vec::new(),
+            help: Vec::new(),
+            rule: code.rule,
+            suggestions: Vec::new(),
+        }
+    }
+
+    /// Sets what the picture says at the place.
+    #[must_use]
+    pub fn at(mut self, text: impl Into<String>) -> Self {
+        self.at = Some(text.into());
+        self
+    }
+
+    /// Sets the severity.
+    #[must_use]
+    pub fn severity(mut self, severity: Severity) -> Self {
+        self.severity = severity;
+        self
+    }
+
+    /// Adds a further place.
+    #[must_use]
+    pub fn label(mut self, location: Location, text: impl Into<String>) -> Self {
+        self.labels.push(Label { location, text: text.into() });
+        self
+    }
+
+    /// Adds a line of help.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help.push(text.into());
+        self
+    }
+
+    /// Sets the rule of the SCA specification.
+    #[must_use]
+    pub fn rule(mut self, rule: &'static str) -> Self {
+        self.rule = Some(rule);
+        self
+    }
+
+    /// Adds a suggestion of one edit.
+    #[must_use]
+    pub fn suggest(
+        self,
+        description: impl Into<String>,
+        location: Location,
+        replacement: impl Into<String>,
+    ) -> Self {
+        self.suggest_edits(description, vec![Edit { location, replacement: replacement.into() }])
+    }
+
+    /// Adds a suggestion of several edits that belong together.
+    #[must_use]
+    pub fn suggest_edits(mut self, description: impl Into<String>, edits: Vec<Edit>) -> Self {
+        self.suggestions.push(Suggestion { description: description.into(), edits });
+        self
+    }
+}

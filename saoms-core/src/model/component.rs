@@ -1,0 +1,95 @@
+//! Components and their implementations.
+
+use super::origin::parts;
+use super::{Origin, Policy, Property, Reference, Service};
+use crate::source::{Located, Text};
+
+/// A component: a configured use of an implementation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// `name`; empty, at the tag, when the file has none.
+    pub name: Text,
+    /// `autowire`.
+    pub autowire: Option<Located<bool>>,
+    /// `constrainingType` (1.0).
+    pub constraining_type: Option<Text>,
+    /// Its implementation.
+    pub implementation: Option<Implementation>,
+    /// Its properties in order.
+    pub properties: Vec<Property>,
+    /// Its services in order.
+    pub services: Vec<Service>,
+    /// Its references in order.
+    pub references: Vec<Reference>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+impl Component {
+    /// The first property of this name.
+    pub fn property(&self, name: &str) -> Option<&Property> {
+        self.properties.iter().find(|property| property.name == name)
+    }
+
+    /// The first service of this name.
+    pub fn service(&self, name: &str) -> Option<&Service> {
+        self.services.iter().find(|service| service.name == name)
+    }
+
+    /// The first reference of this name.
+    pub fn reference(&self, name: &str) -> Option<&Reference> {
+        self.references.iter().find(|reference| reference.name == name)
+    }
+
+    /// The class that the registry is asked for: that of `implementation.java` or `implementation.rust`.
+    pub fn class(&self) -> Option<&Text> {
+        match &self.implementation.as_ref()?.kind {
+            ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
+            _ => None,
+        }
+    }
+}
+
+/// The implementation of a component.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Implementation {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// Which kind, with what it names.
+    pub kind: ImplementationKind,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+/// A kind of implementation with what it names. `None` where the file leaves out a required attribute.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ImplementationKind {
+    /// `implementation.java`
+    Java {
+        /// `class`
+        class: Option<Text>,
+    },
+    /// `implementation.composite`
+    Composite {
+        /// `name`: the QName of a composite.
+        name: Option<Text>,
+    },
+    /// `implementation.rust`, in the SCA namespace or in that of SAOMS.
+    Rust {
+        /// `class`: a name in the registry.
+        class: Option<Text>,
+        /// `library`: the plugin that has the class.
+        library: Option<Text>,
+    },
+    /// Any other, of SCA or foreign; its element has the attributes.
+    Other {
+        /// What follows `implementation.` in its name, as `script`.
+        kind: Text,
+        /// Whether its element is of an SCA namespace.
+        is_sca: bool,
+    },
+}
+
+parts!(Component, Implementation);

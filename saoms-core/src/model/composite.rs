@@ -1,0 +1,81 @@
+//! Composites, includes and wires.
+
+use std::sync::Arc;
+
+use super::origin::parts;
+use super::{Component, Origin, Policy, Property, Reference, Service, Version};
+use crate::source::{FileId, Located, Text};
+use crate::xml::Document;
+
+/// A composite: components, what they are wired to, and what of them is promoted.
+#[derive(Clone, Debug)]
+pub struct Composite {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The whole document: foreign elements and attributes, complex values, prefixes.
+    pub document: Arc<Document>,
+    /// The version of SCA that its namespace stands for.
+    pub version: Version,
+    /// `name`; empty, at the tag, when the file has none.
+    pub name: Text,
+    /// `targetNamespace`
+    pub target_namespace: Option<Text>,
+    /// `local`
+    pub local: Option<Located<bool>>,
+    /// `autowire`
+    pub autowire: Option<Located<bool>>,
+    /// `constrainingType` (1.0)
+    pub constraining_type: Option<Text>,
+    /// Its includes in order.
+    pub includes: Vec<Include>,
+    /// Its properties in order.
+    pub properties: Vec<Property>,
+    /// Its services in order.
+    pub services: Vec<Service>,
+    /// Its references in order.
+    pub references: Vec<Reference>,
+    /// Its components in order.
+    pub components: Vec<Component>,
+    /// Its wires in order.
+    pub wires: Vec<Wire>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+/// An inclusion of all that another composite holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Include {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// `name`: the QName of a composite; empty, at the tag, when the file has none.
+    pub name: Text,
+    /// `uri`: the file of the composite, as Tuscany understands it.
+    pub uri: Option<Text>,
+}
+
+/// A wire from a reference to a service.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wire {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// `source`: `component` or `component/reference`; `None` when the file has none.
+    pub source: Option<Text>,
+    /// `target`: `component`, `component/service` or `component/service/binding`; `None` when the file has none.
+    pub target: Option<Text>,
+    /// `replace` (1.1)
+    pub replace: Option<Located<bool>>,
+}
+
+parts!(Composite, Include, Wire);
+
+impl Composite {
+    /// The file it was read from.
+    pub fn file(&self) -> FileId {
+        self.origin.tag.file
+    }
+
+    /// The first component of this name.
+    pub fn component(&self, name: &str) -> Option<&Component> {
+        self.components.iter().find(|component| component.name == name)
+    }
+}

@@ -1,0 +1,167 @@
+//! Services and references, with their interfaces, callbacks and bindings.
+
+use super::origin::parts;
+use super::{Origin, Policy};
+use crate::source::{Located, Text};
+
+/// A service: of a component, or of a composite, which promotes one of a component.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Service {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// `name`; empty, at the tag, when the file has none.
+    pub name: Text,
+    /// `promote`, of a composite's service: `component` or `component/service`.
+    pub promote: Option<Text>,
+    /// Its interface.
+    pub interface: Option<Interface>,
+    /// Its bindings in order.
+    pub bindings: Vec<Binding>,
+    /// Its callback.
+    pub callback: Option<Callback>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+/// A reference: of a component, or of a composite, which promotes those of components.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// `name`; empty, at the tag, when the file has none.
+    pub name: Text,
+    /// `target`: each URI, `component`, `component/service` or `component/service/binding`, with its own place.
+    pub targets: Vec<Text>,
+    /// `promote`, of a composite's reference: each URI with its own place.
+    pub promote: Vec<Text>,
+    /// `multiplicity`.
+    pub multiplicity: Option<Located<Multiplicity>>,
+    /// `autowire`.
+    pub autowire: Option<Located<bool>>,
+    /// `wiredByImpl`.
+    pub wired_by_impl: Option<Located<bool>>,
+    /// `nonOverridable` (1.1).
+    pub non_overridable: Option<Located<bool>>,
+    /// Its interface.
+    pub interface: Option<Interface>,
+    /// Its bindings in order.
+    pub bindings: Vec<Binding>,
+    /// Its callback.
+    pub callback: Option<Callback>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+/// How many targets a reference can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Multiplicity {
+    /// `0..1`
+    ZeroOrOne,
+    /// `1..1`, the default.
+    One,
+    /// `0..n`
+    Any,
+    /// `1..n`
+    OneOrMore,
+}
+
+impl Multiplicity {
+    /// All, as the specification lists them.
+    pub const ALL: [Self; 4] = [Self::ZeroOrOne, Self::One, Self::Any, Self::OneOrMore];
+
+    /// As it is written in a composite.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ZeroOrOne => "0..1",
+            Self::One => "1..1",
+            Self::Any => "0..n",
+            Self::OneOrMore => "1..n",
+        }
+    }
+
+    /// The multiplicity that is written so.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|one| one.name() == name)
+    }
+
+    /// Whether at least one target is required.
+    pub const fn is_required(self) -> bool {
+        matches!(self, Self::One | Self::OneOrMore)
+    }
+
+    /// Whether more than one target is allowed.
+    pub const fn is_many(self) -> bool {
+        matches!(self, Self::Any | Self::OneOrMore)
+    }
+
+    /// Whether it is `other`, or allows fewer numbers of targets than it.
+    pub const fn narrows(self, other: Self) -> bool {
+        (self.is_required() || !other.is_required()) && (!self.is_many() || other.is_many())
+    }
+}
+
+/// An interface of a service or a reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interface {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// Which kind of interface.
+    pub kind: InterfaceKind,
+    /// `interface` (`header` of C and C++): the name of the interface in its language.
+    pub interface: Option<Text>,
+    /// `callbackInterface` (`callbackHeader` of C and C++).
+    pub callback_interface: Option<Text>,
+    /// `remotable` (1.1).
+    pub remotable: Option<Located<bool>>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+/// A kind of interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum InterfaceKind {
+    /// `interface.java`
+    Java,
+    /// `interface.wsdl`
+    Wsdl,
+    /// `interface.c`
+    C,
+    /// `interface.cpp`
+    Cpp,
+    /// `interface.partnerLinkType`
+    PartnerLinkType,
+    /// Another, whose element says which.
+    Other,
+}
+
+/// A binding of a service, a reference or a callback.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Binding {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// What follows `binding.` in its name, as `ws`.
+    pub kind: Text,
+    /// Whether its element is of an SCA namespace.
+    pub is_sca: bool,
+    /// `name`.
+    pub name: Option<Text>,
+    /// `uri`.
+    pub uri: Option<Text>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+/// The callback of a service or a reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Callback {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// `name`.
+    pub name: Option<Text>,
+    /// Its bindings in order.
+    pub bindings: Vec<Binding>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+parts!(Service, Reference, Interface, Binding, Callback);

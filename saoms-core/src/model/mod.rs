@@ -1,0 +1,22 @@
+//! The SCA assembly model as one file states it: every name and value with its place.
+//!
+//! A [`Composite`] is what [`load`](crate::load) makes of one file. Nothing is resolved: includes, promotions, targets
+//! and sources of properties are texts with places. Values that the file leaves out are `None` or empty, defaults are
+//! for the checker to apply. Foreign elements and attributes are not copied: they are in the composite's
+//! [`Document`](crate::xml::Document), reached through each part's [`Origin`].
+
+mod component;
+mod composite;
+mod contract;
+mod origin;
+mod policy;
+mod property;
+mod version;
+
+pub use component::{Component, Implementation, ImplementationKind};
+pub use composite::{Composite, Include, Wire};
+pub use contract::{Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, Service};
+pub use origin::{Origin, Part};
+pub use policy::Policy;
+pub use property::{Property, PropertyValue};
+pub use version::{SAOMS_NAMESPACE, Version};

@@ -1,0 +1,68 @@
+//! Values that know where they were written.
+
+use std::fmt;
+use std::ops::Deref;
+
+use super::{FileId, Location, Span};
+
+/// A value and the place where it is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Located<T> {
+    /// The value.
+    pub value: T,
+    /// Where it is written: for an attribute the characters between the quotes.
+    pub location: Location,
+}
+
+/// A text as the user means it (entities resolved, white space normalised) and the place where it is written.
+pub type Text = Located<Box<str>>;
+
+impl<T> Located<T> {
+    /// A value at a place.
+    pub const fn new(value: T, location: Location) -> Self {
+        Self { value, location }
+    }
+
+    /// The file it is written in.
+    pub const fn file(&self) -> FileId {
+        self.location.file
+    }
+
+    /// The bytes of the file it is written at.
+    pub const fn span(&self) -> Span {
+        self.location.span
+    }
+}
+
+impl Text {
+    /// The text itself.
+    pub fn as_str(&self) -> &str {
+        &self.value
+    }
+}
+
+impl<T> Deref for Located<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.value
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for Located<T> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.value.fmt(out)
+    }
+}
+
+impl PartialEq<str> for Text {
+    fn eq(&self, other: &str) -> bool {
+        &*self.value == other
+    }
+}
+
+impl PartialEq<&str> for Text {
+    fn eq(&self, other: &&str) -> bool {
+        &*self.value == *other
+    }
+}

@@ -1,0 +1,167 @@
+//! Source texts and places in them.
+//!
+//! [`Sources`] holds every text that was read, each under a [`FileId`]. A [`Span`] is a range of bytes of one text, a
+//! [`Location`] a span together with its file. Users see lines and columns ([`LineColumn`]): both from 1, columns
+//! in Unicode scalars, ends exclusive.
+
+mod lines;
+mod located;
+#[cfg(test)]
+mod tests;
+
+use std::sync::{Arc, OnceLock};
+
+use lines::LineIndex;
+pub use lines::{LineColumn, LineRange};
+pub use located::{Located, Text};
+
+/// A file of a [`Sources`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FileId(pub u32);
+
+/// A range of bytes of one text; `end` is exclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Span {
+    /// The first byte.
+    pub start: u32,
+    /// The byte after the last.
+    pub end: u32,
+}
+
+impl Span {
+    /// The bytes from `start` up to, and without, `end`.
+    pub const fn new(start: u32, end: u32) -> Self {
+        Self { start, end }
+    }
+
+    /// The place before byte `at`, nothing long.
+    pub const fn empty(at: u32) -> Self {
+        Self { start: at, end: at }
+    }
+
+    /// How many bytes it holds.
+    pub const fn len(self) -> u32 {
+        self.end.saturating_sub(self.start)
+    }
+
+    /// Whether it holds no byte.
+    pub const fn is_empty(self) -> bool {
+        self.end <= self.start
+    }
+
+    /// Whether byte `at` is inside, or right behind: where an editor's cursor touches it.
+    pub const fn touches(self, at: u32) -> bool {
+        self.start <= at && at <= self.end
+    }
+
+    /// Whether `other` lies inside.
+    pub const fn contains(self, other: Self) -> bool {
+        self.start <= other.start && other.end <= self.end
+    }
+
+    /// The same place in file `file`.
+    pub const fn in_file(self, file: FileId) -> Location {
+        Location { file, span: self }
+    }
+}
+
+/// A range of bytes of one file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Location {
+    /// The file.
+    pub file: FileId,
+    /// The bytes in it.
+    pub span: Span,
+}
+
+/// One text and the name under which users know it.
+#[derive(Debug)]
+pub struct SourceFile {
+    path: Arc<str>,
+    text: Arc<str>,
+    lines: OnceLock<LineIndex>,
+}
+
+impl SourceFile {
+    /// The name that users know: the path as they gave it.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The whole text, a byte order mark included.
+    pub fn text(&self) -> &Arc<str> {
+        &self.text
+    }
+
+    /// The line and column of byte `at`; a place past the end counts as the end.
+    pub fn line_column(&self, at: u32) -> LineColumn {
+        self.index().line_column(&self.text, at)
+    }
+
+    /// Lines and columns of both ends of `span`.
+    pub fn range(&self, span: Span) -> LineRange {
+        LineRange { start: self.line_column(span.start), end: self.line_column(span.end.max(span.start)) }
+    }
+
+    /// The byte at a line and column, the nearest one when the text has no such place.
+    pub fn offset(&self, place: LineColumn) -> u32 {
+        self.index().offset(&self.text, place)
+    }
+
+    fn index(&self) -> &LineIndex {
+        self.lines.get_or_init(|| LineIndex::new(&self.text))
+    }
+}
+
+/// Every text that was read.
+///
+/// ```
+/// use saoms_core::source::{Sources, Span};
+///
+/// let mut sources = Sources::new();
+/// let file = sources.add("fleet.composite", "<composite\n  name='fleet'/>");
+/// let place = sources.get(file).line_column(13);
+/// assert_eq!((place.line, place.column), (2, 3));
+/// assert_eq!(sources.snippet(Span::new(13, 17).in_file(file)), "name");
+/// ```
+#[derive(Debug, Default)]
+pub struct Sources {
+    files: Vec<SourceFile>,
+}
+
+impl Sources {
+    /// No texts yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a text under the name that users know it by.
+    ///
+    /// # Panics
+    /// When `text` has 4 GiB or more (a span could not name its bytes), or after 2^32 files.
+    pub fn add(&mut self, path: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> FileId {
+        let text = text.into();
+        assert!(u32::try_from(text.len()).is_ok(), "a source text is below 4 GiB");
+        let id = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
+        self.files.push(SourceFile { path: path.into(), text, lines: OnceLock::new() });
+        id
+    }
+
+    /// The file of an identifier that [`Sources::add`] gave.
+    ///
+    /// # Panics
+    /// When the identifier is of another `Sources`.
+    pub fn get(&self, file: FileId) -> &SourceFile {
+        &self.files[file.0 as usize]
+    }
+
+    /// The text at a place; empty when the place is not in the text.
+    pub fn snippet(&self, at: Location) -> &str {
+        self.get(at.file).text.get(at.span.start as usize..at.span.end as usize).unwrap_or_default()
+    }
+
+    /// All files in the order in which they were added.
+    pub fn iter(&self) -> impl Iterator<Item = (FileId, &SourceFile)> {
+        self.files.iter().enumerate().map(|(index, file)| (FileId(index as u32), file))
+    }
+}

@@ -1,0 +1,284 @@
+//! Views of elements and attributes.
+
+use std::borrow::Cow;
+
+use super::tree::{Document, ElementId, NO_NAMESPACE, NONE, Node, RawAttribute, XMLNS};
+use super::value;
+use crate::source::{Located, Location, Span, Text};
+
+/// An element of a document; as cheap to copy as a reference.
+#[derive(Clone, Copy, Debug)]
+pub struct Element<'a> {
+    document: &'a Document,
+    id: ElementId,
+}
+
+impl<'a> Element<'a> {
+    pub(super) fn new(document: &'a Document, id: ElementId) -> Self {
+        assert!((id.0 as usize) < document.nodes.len(), "the element is of this document");
+        Self { document, id }
+    }
+
+    fn node(self) -> &'a Node {
+        &self.document.nodes[self.id.0 as usize]
+    }
+
+    fn at(self, id: u32) -> Option<Self> {
+        (id != NONE).then_some(Self { document: self.document, id: ElementId(id) })
+    }
+
+    /// Its identifier in its document.
+    pub fn id(self) -> ElementId {
+        self.id
+    }
+
+    /// The document.
+    pub fn document(self) -> &'a Document {
+        self.document
+    }
+
+    /// The name as written, with its prefix.
+    pub fn name(self) -> &'a str {
+        slice(self.document, self.name_span())
+    }
+
+    /// The name without its prefix.
+    pub fn local_name(self) -> &'a str {
+        split(self.name()).1
+    }
+
+    /// The prefix as written.
+    pub fn prefix(self) -> Option<&'a str> {
+        split(self.name()).0
+    }
+
+    /// The namespace; empty for none.
+    pub fn namespace(self) -> &'a str {
+        &self.document.namespaces[self.node().namespace as usize]
+    }
+
+    /// From the `<` of the start tag to behind the `>` of the end tag.
+    pub fn span(self) -> Span {
+        Span::new(self.node().start, self.node().end)
+    }
+
+    /// From the `<` to behind the `>` of the start tag.
+    pub fn start_tag_span(self) -> Span {
+        Span::new(self.node().start, self.node().tag_end)
+    }
+
+    /// The name in the start tag.
+    pub fn name_span(self) -> Span {
+        let start = self.node().start + 1;
+        Span::new(start, start + self.node().name_len)
+    }
+
+    /// Where the name in the start tag is.
+    pub fn name_location(self) -> Location {
+        self.name_span().in_file(self.document.file)
+    }
+
+    /// Whether it is written as one tag, `<a/>`.
+    pub fn is_empty_tag(self) -> bool {
+        self.node().tag_end == self.node().end
+    }
+
+    /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
+    pub fn content_span(self) -> Span {
+        let Node { tag_end, end, .. } = *self.node();
+        if tag_end == end {
+            return Span::empty(end);
+        }
+        // An end tag holds no `<` but its first character.
+        let content = &self.document.text.as_bytes()[tag_end as usize..end as usize];
+        let length = content.iter().rposition(|&byte| byte == b'<').unwrap_or(content.len());
+        Span::new(tag_end, tag_end + length as u32)
+    }
+
+    /// The element it is in.
+    pub fn parent(self) -> Option<Self> {
+        self.at(self.node().parent)
+    }
+
+    /// The elements directly inside, in order.
+    pub fn children(self) -> impl Iterator<Item = Self> + use<'a> {
+        let next = self.id.0 + 1;
+        let first = match self.document.nodes.get(next as usize) {
+            Some(node) if node.parent == self.id.0 => self.at(next),
+            _ => None,
+        };
+        std::iter::successors(first, |child| child.at(child.node().next))
+    }
+
+    /// Itself and everything inside, in document order.
+    pub fn descendants(self) -> impl Iterator<Item = Self> + use<'a> {
+        let end = self.node().end;
+        (self.id.0..self.document.nodes.len() as u32)
+            .map_while(move |id| self.at(id).filter(|inner| inner.node().start < end))
+    }
+
+    fn raw_attributes(self) -> &'a [RawAttribute] {
+        let next = self.document.nodes.get(self.id.0 as usize + 1);
+        let end = next.map_or(self.document.attributes.len(), |next| next.attributes as usize);
+        &self.document.attributes[self.node().attributes as usize..end]
+    }
+
+    /// Its attributes in order, without declarations of namespaces.
+    pub fn attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        let document = self.document;
+        let all = self.raw_attributes().iter();
+        all.filter(|one| one.namespace != XMLNS).map(move |raw| Attribute { document, raw })
+    }
+
+    /// Its declarations of namespaces (`xmlns`, `xmlns:a`) in order.
+    pub fn namespace_declarations(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        let document = self.document;
+        let all = self.raw_attributes().iter();
+        all.filter(|one| one.namespace == XMLNS).map(move |raw| Attribute { document, raw })
+    }
+
+    /// The attribute of this name in no namespace.
+    pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
+        self.attributes().find(|one| one.raw.namespace == NO_NAMESPACE && one.name() == name)
+    }
+
+    /// The attribute of this name in this namespace.
+    pub fn attribute_in(self, namespace: &str, local_name: &str) -> Option<Attribute<'a>> {
+        self.attributes().find(|one| one.local_name() == local_name && one.namespace() == namespace)
+    }
+
+    /// The namespace that `prefix` is bound to here; "" asks for the default namespace. `None` when it is unbound.
+    pub fn resolve_prefix(self, prefix: &str) -> Option<Cow<'a, str>> {
+        if prefix == "xml" {
+            return Some(Cow::Borrowed(super::XML_NAMESPACE));
+        }
+        let mut here = Some(self);
+        while let Some(element) = here {
+            for declaration in element.namespace_declarations() {
+                let (before, local) = split(declaration.name());
+                let declares = if before.is_some() { local } else { "" };
+                if declares == prefix {
+                    return Some(declaration.value()).filter(|uri| !uri.is_empty());
+                }
+            }
+            here = element.parent();
+        }
+        None
+    }
+
+    /// Whether text other than white space is directly inside.
+    pub fn has_text(self) -> bool {
+        self.node().has_text
+    }
+
+    /// The stretches of its content that hold text, comments and instructions but no elements.
+    fn stretches(self) -> impl Iterator<Item = Span> + use<'a> {
+        let content = self.content_span();
+        let mut start = Some(content.start);
+        let mut children = self.children();
+        std::iter::from_fn(move || {
+            let from = start?;
+            let child = children.next();
+            start = child.map(|child| child.span().end);
+            Some(Span::new(from, child.map_or(content.end, |child| child.span().start)))
+        })
+        .filter(|stretch| !stretch.is_empty())
+    }
+
+    /// The text directly inside, without that of inner elements: references resolved, line ends as LF.
+    pub fn text(self) -> Cow<'a, str> {
+        let mut text = Cow::Borrowed("");
+        for stretch in self.stretches() {
+            let piece = value::character_data(slice(self.document, stretch));
+            if text.is_empty() {
+                text = piece;
+            } else {
+                text.to_mut().push_str(&piece);
+            }
+        }
+        text
+    }
+
+    /// From the first to behind the last character of the text directly inside, white space at both ends not
+    /// counted; `None` when there is nothing but white space.
+    pub fn text_span(self) -> Option<Span> {
+        if !self.has_text() {
+            return None;
+        }
+        let pieces = || {
+            self.stretches().flat_map(|stretch| {
+                value::text_pieces(slice(self.document, stretch))
+                    .map(move |piece| Span::new(stretch.start + piece.start, stretch.start + piece.end))
+            })
+        };
+        Some(Span::new(pieces().next()?.start, pieces().last()?.end))
+    }
+}
+
+/// An attribute of an element.
+#[derive(Clone, Copy, Debug)]
+pub struct Attribute<'a> {
+    document: &'a Document,
+    raw: &'a RawAttribute,
+}
+
+impl<'a> Attribute<'a> {
+    /// The name as written, with its prefix.
+    pub fn name(self) -> &'a str {
+        slice(self.document, self.name_span())
+    }
+
+    /// The name without its prefix.
+    pub fn local_name(self) -> &'a str {
+        split(self.name()).1
+    }
+
+    /// The prefix as written.
+    pub fn prefix(self) -> Option<&'a str> {
+        split(self.name()).0
+    }
+
+    /// The namespace; empty for none, as for every attribute without a prefix.
+    pub fn namespace(self) -> &'a str {
+        &self.document.namespaces[self.raw.namespace as usize]
+    }
+
+    /// The value: references resolved, each white space character a blank.
+    pub fn value(self) -> Cow<'a, str> {
+        value::attribute_value(self.raw_value())
+    }
+
+    /// The value as written.
+    pub fn raw_value(self) -> &'a str {
+        slice(self.document, self.raw.value)
+    }
+
+    /// From the name to behind the closing quote.
+    pub fn span(self) -> Span {
+        Span::new(self.raw.start, self.raw.value.end + 1)
+    }
+
+    /// The name.
+    pub fn name_span(self) -> Span {
+        Span::new(self.raw.start, self.raw.start + self.raw.name_len)
+    }
+
+    /// The value, without its quotes.
+    pub fn value_span(self) -> Span {
+        self.raw.value
+    }
+
+    /// The value and where it is.
+    pub fn located(self) -> Text {
+        Located::new(self.value().into(), self.raw.value.in_file(self.document.file))
+    }
+}
+
+fn slice(document: &Document, span: Span) -> &str {
+    &document.text[span.start as usize..span.end as usize]
+}
+
+/// A name into its prefix and its local part.
+fn split(name: &str) -> (Option<&str>, &str) {
+    name.split_once(':').map_or((None, name), |(prefix, local)| (Some(prefix), local))
+}

@@ -1,0 +1,16 @@
+//! XML 1.0 with namespaces, read into a flat tree in which everything knows its place.
+//!
+//! The tree is an array of elements in document order; nothing of it is recursive, so depth costs no stack. Names and
+//! values stay in the text: only spans are stored. Comments and processing instructions are checked and not kept.
+
+mod element;
+mod tree;
+mod value;
+
+pub use element::{Attribute, Element};
+pub use tree::{Document, ElementId};
+
+/// The namespace to which the prefix `xml` is bound always.
+pub const XML_NAMESPACE: &str = "http://www.w3.org/XML/1998/namespace";
+/// The namespace of namespace declarations themselves.
+pub const XMLNS_NAMESPACE: &str = "http://www.w3.org/2000/xmlns/";

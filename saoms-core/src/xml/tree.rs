@@ -1,0 +1,102 @@
+//! The arena.
+
+use std::sync::Arc;
+
+use super::Element;
+use crate::source::{FileId, Span};
+
+/// An element of a [`Document`]; the numbers rise in document order, the root is 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ElementId(pub u32);
+
+impl ElementId {
+    /// The root of every document.
+    pub const ROOT: Self = Self(0);
+}
+
+/// No element; also no attribute.
+pub(super) const NONE: u32 = u32::MAX;
+/// The number of "no namespace" in [`Document::namespaces`].
+pub(super) const NO_NAMESPACE: u32 = 0;
+/// The number of the namespace of declarations.
+pub(super) const XMLNS: u32 = 2;
+
+/// 36 bytes: a file of nothing but `<a/>` costs nine times its size.
+#[derive(Debug)]
+pub(super) struct Node {
+    /// At the `<` of the start tag.
+    pub(super) start: u32,
+    /// Behind the `>` of the end tag.
+    pub(super) end: u32,
+    /// Behind the `>` of the start tag.
+    pub(super) tag_end: u32,
+    /// Bytes of the name in the start tag, its prefix included.
+    pub(super) name_len: u32,
+    pub(super) namespace: u32,
+    pub(super) parent: u32,
+    pub(super) next: u32,
+    /// The first of its attributes; they end where those of the next element begin.
+    pub(super) attributes: u32,
+    /// Whether text other than white space is directly inside.
+    pub(super) has_text: bool,
+}
+
+/// An attribute as written, declarations of namespaces included.
+#[derive(Debug)]
+pub(super) struct RawAttribute {
+    pub(super) start: u32,
+    pub(super) name_len: u32,
+    /// Without the quotes.
+    pub(super) value: Span,
+    pub(super) namespace: u32,
+}
+
+/// A well-formed XML text with its elements.
+#[derive(Debug)]
+pub struct Document {
+    pub(super) file: FileId,
+    pub(super) text: Arc<str>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) attributes: Vec<RawAttribute>,
+    pub(super) namespaces: Vec<Box<str>>,
+}
+
+impl Document {
+    /// The file it was read from.
+    pub fn file(&self) -> FileId {
+        self.file
+    }
+
+    /// The text it was read from.
+    pub fn text(&self) -> &Arc<str> {
+        &self.text
+    }
+
+    /// The one element that holds all others.
+    pub fn root(&self) -> Element<'_> {
+        self.element(ElementId::ROOT)
+    }
+
+    /// An element by its identifier.
+    ///
+    /// # Panics
+    /// When the identifier is of another document.
+    pub fn element(&self, id: ElementId) -> Element<'_> {
+        Element::new(self, id)
+    }
+
+    /// All elements in document order.
+    pub fn elements(&self) -> impl Iterator<Item = Element<'_>> {
+        (0..self.nodes.len() as u32).map(|id| self.element(ElementId(id)))
+    }
+
+    /// The innermost element that byte `at` is in, the root for a place outside.
+    pub fn element_at(&self, at: u32) -> Element<'_> {
+        let mut here = self.root();
+        while let Some(inner) = here.children().find(|child| child.span().start < at && at < child.span().end)
+        {
+            here = inner;
+        }
+        here
+    }
+}
