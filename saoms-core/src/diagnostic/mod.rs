@@ -6,9 +6,20 @@
 
 pub mod codes;
 mod collector;
+mod human;
+mod json;
+mod nearest;
+mod quoted;
+#[cfg(test)]
+mod tests;
+mod window;
 
 pub use codes::Code;
 pub use collector::Diagnostics;
+pub use human::human;
+pub use json::json;
+pub use nearest::{nearest, nearest_few};
+pub use quoted::quoted;
 
 use crate::source::Location;
 

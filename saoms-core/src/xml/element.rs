@@ -85,14 +85,19 @@ impl<'a> Element<'a> {
 
     /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
     pub fn content_span(self) -> Span {
-        let Node { tag_end, end, .. } = *self.node();
-        if tag_end == end {
-            return Span::empty(end);
+        let Node { tag_end, end, is_closed, .. } = *self.node();
+        if tag_end == end || !is_closed {
+            return Span::new(tag_end, end);
         }
         // An end tag holds no `<` but its first character.
         let content = &self.document.text.as_bytes()[tag_end as usize..end as usize];
         let length = content.iter().rposition(|&byte| byte == b'<').unwrap_or(content.len());
         Span::new(tag_end, tag_end + length as u32)
+    }
+
+    /// Whether it was read to its end; only those that were open at a fault were not.
+    pub fn is_closed(self) -> bool {
+        self.node().is_closed
     }
 
     /// The element it is in.

@@ -3,11 +3,23 @@
 //! The tree is an array of elements in document order; nothing of it is recursive, so depth costs no stack. Names and
 //! values stay in the text: only spans are stored. Comments and processing instructions are checked and not kept.
 
+mod characters;
 mod element;
+mod fault;
+mod names;
+mod namespaces;
+mod parse;
+mod prolog;
+mod reference;
+mod tag;
+#[cfg(test)]
+mod tests;
 mod tree;
+mod unbound;
 mod value;
 
 pub use element::{Attribute, Element};
+pub use parse::{Parsed, parse};
 pub use tree::{Document, ElementId};
 
 /// The namespace to which the prefix `xml` is bound always.

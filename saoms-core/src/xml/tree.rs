@@ -39,6 +39,8 @@ pub(super) struct Node {
     pub(super) attributes: u32,
     /// Whether text other than white space is directly inside.
     pub(super) has_text: bool,
+    /// Whether its end tag was read; only those around a fault are not.
+    pub(super) is_closed: bool,
 }
 
 /// An attribute as written, declarations of namespaces included.
@@ -92,10 +94,12 @@ impl Document {
 
     /// The innermost element that byte `at` is in, the root for a place outside.
     pub fn element_at(&self, at: u32) -> Element<'_> {
-        let mut here = self.root();
-        while let Some(inner) = here.children().find(|child| child.span().start < at && at < child.span().end)
+        let started = self.nodes.partition_point(|node| node.start < at);
+        let mut here = self.element(ElementId(started.saturating_sub(1) as u32));
+        while at >= here.span().end
+            && let Some(outer) = here.parent()
         {
-            here = inner;
+            here = outer;
         }
         here
     }

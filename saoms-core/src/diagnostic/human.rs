@@ -1,0 +1,79 @@
+//! Diagnostics for people, with a picture of the place in the look of rustc.
+
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+
+use super::window::{Mark, Window, windows};
+use super::{Diagnostic, Severity};
+use crate::source::{FileId, Sources};
+
+/// All diagnostics as text, one after the other, an empty line between two.
+pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
+    let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+    let mut out = String::new();
+    for one in diagnostics {
+        if !out.is_empty() {
+            out.push('\n');
+        }
+        // A blank line that only ends the picture would be two with ours.
+        out.push_str(render(one, sources, &renderer).trim_end());
+        out.push('\n');
+    }
+    out
+}
+
+fn render(one: &Diagnostic, sources: &Sources, renderer: &Renderer) -> String {
+    let level = match one.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
+    };
+    let mut group = Group::with_title(level.primary_title(&one.message).id(one.code.id));
+    let windows = pictures(one, sources);
+    for (file, window) in &windows {
+        group = picture(group, *file, window, sources);
+    }
+    for help in &one.help {
+        group = group.element(Level::HELP.message(help));
+    }
+    for suggestion in &one.suggestions {
+        group = group.element(Level::HELP.message(&suggestion.description));
+    }
+    if let Some(rule) = one.rule {
+        group = group.element(Level::NOTE.message(format!("rule {rule} of SCA Assembly 1.1")));
+    }
+    renderer.render(&[group])
+}
+
+/// The parts of files to show: that of the diagnostic's own place first.
+fn pictures<'a>(one: &'a Diagnostic, sources: &Sources) -> Vec<(FileId, Window<'a>)> {
+    let own = Mark { span: one.location.span, text: one.at.as_deref().unwrap_or(""), is_primary: true };
+    let mut files: Vec<(FileId, Vec<Mark<'a>>)> = vec![(one.location.file, vec![own])];
+    for label in &one.labels {
+        let mark = Mark { span: label.location.span, text: &label.text, is_primary: false };
+        match files.iter_mut().find(|(file, _)| *file == label.location.file) {
+            Some((_, marks)) => marks.push(mark),
+            None => files.push((label.location.file, vec![mark])),
+        }
+    }
+    let shown = |(file, marks)| windows(sources.get(file), marks).into_iter().map(move |one| (file, one));
+    files.into_iter().flat_map(shown).collect()
+}
+
+fn picture<'a>(group: Group<'a>, file: FileId, window: &'a Window<'a>, sources: &'a Sources) -> Group<'a> {
+    let path = sources.get(file).path();
+    if sources.get(file).text().is_empty() {
+        return group.element(Origin::path(path));
+    }
+    let snippet = Snippet::source(&window.text).line_start(window.first_line as usize);
+    let snippet = snippet.annotations(window.marks.iter().map(|(range, mark)| {
+        let kind = if mark.is_primary { AnnotationKind::Primary } else { AnnotationKind::Context };
+        kind.span(range.clone()).label((!mark.text.is_empty()).then_some(mark.text))
+    }));
+    match window.moved {
+        None => group.element(snippet.path(path)),
+        Some(place) => {
+            let origin = Origin::path(path).line(place.line as usize).char_column(place.column as usize);
+            group.element(origin).element(snippet)
+        }
+    }
+}

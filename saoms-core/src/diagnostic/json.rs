@@ -1,0 +1,47 @@
+//! Diagnostics for machines.
+
+use serde_json::{Value, json};
+
+use super::Diagnostic;
+use crate::source::{Location, Sources};
+
+/// One object with all diagnostics, each with 1-based lines and columns in Unicode scalars, ends exclusive.
+///
+/// `rule` is null when the diagnostic stems from no rule of the SCA specification, `help` when there is none; several
+/// lines of help are joined by line feeds.
+pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
+    let all: Vec<Value> = diagnostics.iter().map(|one| diagnostic(one, sources)).collect();
+    json!({ "diagnostics": all })
+}
+
+fn diagnostic(one: &Diagnostic, sources: &Sources) -> Value {
+    let labels = one.labels.iter().map(|label| placed(label.location, sources, "text", &label.text));
+    let suggestions = one.suggestions.iter().map(|suggestion| {
+        let edits = suggestion.edits.iter();
+        let edits: Vec<Value> =
+            edits.map(|edit| placed(edit.location, sources, "replacement", &edit.replacement)).collect();
+        json!({ "description": suggestion.description, "edits": edits })
+    });
+    let help = (!one.help.is_empty()).then(|| one.help.join("\n"));
+    let mut object = placed(one.location, sources, "message", &one.message);
+    object["severity"] = one.severity.name().into();
+    object["code"] = one.code.id.into();
+    object["rule"] = one.rule.into();
+    object["help"] = help.into();
+    object["labels"] = labels.collect();
+    object["suggestions"] = suggestions.collect();
+    object
+}
+
+fn placed(location: Location, sources: &Sources, key: &str, text: &str) -> Value {
+    let file = sources.get(location.file);
+    let range = file.range(location.span);
+    json!({
+        "file": file.path(),
+        "line": range.start.line,
+        "column": range.start.column,
+        "end_line": range.end.line,
+        "end_column": range.end.column,
+        key: text,
+    })
+}

@@ -1,0 +1,167 @@
+use std::collections::HashSet;
+
+use serde_json::json;
+
+use super::*;
+use crate::source::{FileId, Sources, Span};
+
+const FLEET: &str = "<composite>\n\t<component name=\"Röbot\" nmae='x'/>\n</composite>\n";
+
+fn place(sources: &Sources, file: FileId, needle: &str) -> Location {
+    let start = sources.get(file).text().find(needle).unwrap() as u32;
+    Span::new(start, start + needle.len() as u32).in_file(file)
+}
+
+fn fleet() -> (Sources, Diagnostic) {
+    let mut sources = Sources::new();
+    let file = sources.add("fleet.composite", FLEET);
+    let at = place(&sources, file, "nmae");
+    let one = Diagnostic::new(&codes::XML_ATTRIBUTE, at, "no such attribute `nmae`")
+        .at("not known here")
+        .label(place(&sources, file, "component"), "in this component")
+        .help("attributes are name and autowire")
+        .rule("ASM13001")
+        .suggest("replace `nmae` with `name`", at, "name");
+    (sources, one)
+}
+
+#[test]
+fn codes_are_unique_grouped_and_documented() {
+    let mut seen = HashSet::new();
+    for code in codes::ALL {
+        assert!(seen.insert(code.id) && seen.insert(code.name), "{} or its name is used twice", code.id);
+        let digits = code.id.strip_prefix('S').unwrap_or_else(|| panic!("{} starts with S", code.id));
+        assert!(digits.len() == 4 && digits.bytes().all(|byte| byte.is_ascii_digit()), "{}", code.id);
+        assert!(code.name.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'-'), "{}", code.name);
+        assert!(code.meaning.ends_with('.') && code.meaning.contains(' '), "{} is documented", code.id);
+    }
+    assert!(codes::ALL.is_sorted_by_key(|code| code.id), "the table is in order");
+}
+
+#[test]
+fn people_see_the_place() {
+    let (sources, one) = fleet();
+    let expected = "\
+error[S0105]: no such attribute `nmae`
+ --> fleet.composite:2:26
+  |
+2 |     <component name=\"Röbot\" nmae='x'/>
+  |      ---------              ^^^^ not known here
+  |      |
+  |      in this component
+  |
+  = help: attributes are name and autowire
+  = help: replace `nmae` with `name`
+  = note: rule ASM13001 of SCA Assembly 1.1
+";
+    assert_eq!(human(&[one], &sources, false), expected);
+}
+
+#[test]
+fn machines_see_the_same() {
+    let (sources, one) = fleet();
+    let at = |end_column: u32, column: u32, key: &str, text: &str| {
+        json!({"file": "fleet.composite", "line": 2, "column": column, "end_line": 2, "end_column": end_column,
+            key: text})
+    };
+    let mut expected = at(30, 26, "message", "no such attribute `nmae`");
+    expected["severity"] = "error".into();
+    expected["code"] = "S0105".into();
+    expected["rule"] = "ASM13001".into();
+    expected["help"] = "attributes are name and autowire".into();
+    expected["labels"] = json!([at(12, 3, "text", "in this component")]);
+    expected["suggestions"] =
+        json!([{"description": "replace `nmae` with `name`", "edits": [at(30, 26, "replacement", "name")]}]);
+    assert_eq!(json(&[one], &sources), json!({ "diagnostics": [expected] }));
+}
+
+#[test]
+fn nothing_to_say_is_null_and_empty() {
+    let mut sources = Sources::new();
+    let file = sources.add("none", "");
+    let one = Diagnostic::new(&codes::FILE_EMPTY, Span::empty(0).in_file(file), "empty");
+    let object = &json(std::slice::from_ref(&one), &sources)["diagnostics"][0];
+    assert_eq!((&object["rule"], &object["help"]), (&json!(null), &json!(null)));
+    assert_eq!(
+        (&object["labels"], &object["line"], &object["end_column"]),
+        (&json!([]), &json!(1), &json!(1))
+    );
+    assert_eq!(human(&[one], &sources, false), "error[S0005]: empty\n--> none\n");
+}
+
+/// Everything a picture could stumble over: marks of no length, at ends, over many lines, in endless lines.
+#[test]
+fn pictures_of_awkward_places_stay_small() {
+    let long = format!("<a>{}<b/>{}</a>", "é".repeat(100_000), "x".repeat(100_000));
+    let tall = "<a>\n".repeat(5_000);
+    for text in [&*long, &*tall, "a\tb", "\r\n", "é", "\u{feff}<a", "a\r"] {
+        let mut sources = Sources::new();
+        let file = sources.add("t", text);
+        let len = text.len() as u32;
+        let starts = [0, 1, len / 2, len.saturating_sub(1), len, len + 9];
+        for start in starts {
+            for end in [start, start + 1, len / 2 + 4, len] {
+                let span = Span::new(start, end).in_file(file);
+                let other = Span::new(len / 3, len / 3 + 2).in_file(file);
+                let one = Diagnostic::new(&codes::XML_SYNTAX, span, "m").label(other, "label");
+                let shown = human(std::slice::from_ref(&one), &sources, false);
+                assert!(shown.contains(" t:") && shown.len() < 3_000, "{start}..{end}: {shown}");
+                json(&[one], &sources);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_long_line_is_cut_around_the_mark_and_keeps_its_column() {
+    let mut sources = Sources::new();
+    let file = sources.add("t", format!("{}<bad/>{}", "x".repeat(5000), "y".repeat(5000)));
+    let at = place(&sources, file, "bad");
+    let shown = human(&[Diagnostic::new(&codes::XML_SYNTAX, at, "m").at("here")], &sources, false);
+    assert!(shown.contains("t:1:5002") && shown.contains("<bad/>") && shown.contains("^^^ here"), "{shown}");
+}
+
+#[test]
+fn of_many_alike_the_first_thousand_are_kept_and_all_counted() {
+    let mut all = Diagnostics::new();
+    let file = FileId(0);
+    for at in (0..1500).rev() {
+        all.push(Diagnostic::new(&codes::XML_SYNTAX, Span::empty(at).in_file(file), format!("{at}")));
+    }
+    all.push(
+        Diagnostic::new(&codes::XML_NAME, Span::empty(7).in_file(file), "other").severity(Severity::Warning),
+    );
+    assert_eq!((all.errors(), all.warnings(), all.has_errors()), (1500, 1, true));
+    let sorted = all.into_sorted();
+    assert_eq!(sorted.len(), 1002);
+    assert!(sorted.is_sorted_by_key(|one| one.location));
+    let more: Vec<_> = sorted.iter().filter(|one| one.code == &codes::TOO_MANY).collect();
+    assert_eq!(more.len(), 1);
+    assert_eq!(more[0].message, "500 more of the kind S0101 (xml-syntax)");
+}
+
+#[test]
+fn the_nearest_name_is_the_one_that_was_meant() {
+    let names = ["period", "delay", "runOnStartup", "mayInterruptIfRunning", "useJMS", "url", "user"];
+    for (typed, meant) in [
+        ("peroid", Some("period")),
+        ("runonstartup", Some("runOnStartup")),
+        ("USEJMS", Some("useJMS")),
+        ("mayInteruptIfRuning", Some("mayInterruptIfRunning")),
+        ("usr", Some("user")),
+        ("x", None),
+        ("", None),
+        ("ID", None),
+        ("targetNamespace", None),
+    ] {
+        assert_eq!(nearest(typed, names), meant, "{typed}");
+    }
+    assert_eq!(nearest_few("usrl", names, 3), ["url"]);
+    assert_eq!(
+        nearest_few("robot.Robot01", ["robot.Robot001", "robot.Robot010", "gps"], 3),
+        ["robot.Robot001", "robot.Robot010"]
+    );
+    assert_eq!(nearest(&"a".repeat(100_000), ["a"]), None);
+    assert_eq!(nearest("é", ["è"]), None);
+    assert_eq!(nearest("éa", ["èa"]), Some("èa"));
+}

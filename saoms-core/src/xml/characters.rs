@@ -1,0 +1,43 @@
+//! Characters: what XML forbids, and white space.
+
+use super::fault::Input;
+use crate::diagnostic::{Diagnostic, codes};
+
+/// Bytes that are looked at together.
+const CHUNK: usize = 64;
+
+/// Where the first character is that XML 1.0 does not allow: controls but tab, line feed and carriage return, and
+/// U+FFFE and U+FFFF. Surrogates cannot be in a Rust text.
+pub(super) fn first_forbidden(text: &[u8]) -> Option<usize> {
+    for (index, chunk) in text.chunks(CHUNK).enumerate() {
+        // The whole chunk without a branch first: the compiler makes vector instructions of it. 0xEF starts U+FFFE.
+        let suspect = chunk.iter().fold(false, |any, &byte| any | is_control(byte) | (byte == 0xef));
+        if suspect {
+            let start = index * CHUNK;
+            let found = (start..start + chunk.len())
+                .find(|&at| is_control(text[at]) || matches!(text[at..], [0xef, 0xbf, 0xbe | 0xbf, ..]));
+            if found.is_some() {
+                return found;
+            }
+        }
+    }
+    None
+}
+
+fn is_control(byte: u8) -> bool {
+    (byte < b' ') & (byte != b'\t') & (byte != b'\n') & (byte != b'\r')
+}
+
+/// The diagnostic for such a character at byte `at`.
+pub(super) fn forbidden(input: Input<'_>, at: u32) -> Diagnostic {
+    let number = input.text[at as usize..].chars().next().map_or(0, u32::from);
+    let message = format!("the character U+{number:04X} is not allowed in XML");
+    let end = input.character_end(at);
+    let place = crate::source::Span::new(at, end).in_file(input.file);
+    input.fault(&codes::XML_CHARACTER, at, end, message).suggest("remove it", place, "")
+}
+
+/// Whether there is nothing but white space.
+pub(super) fn is_blank(bytes: &[u8]) -> bool {
+    bytes.iter().all(|byte| matches!(byte, b' ' | b'\t' | b'\r' | b'\n'))
+}

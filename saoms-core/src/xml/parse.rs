@@ -1,0 +1,381 @@
+//! The parser: quick-xml's events, what it does not check, and the tree.
+
+use std::sync::Arc;
+
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+use super::characters::{first_forbidden, forbidden, is_blank};
+use super::fault::{Checked, Fault, Input};
+use super::namespaces::{Namespaces, refusal};
+use super::tree::{Document, NO_NAMESPACE, NONE, Node, RawAttribute, XMLNS};
+use super::{prolog, reference, tag, unbound, value};
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::source::{FileId, Span};
+
+/// What a text is as XML.
+#[derive(Debug)]
+pub struct Parsed {
+    /// The tree; up to the fault when there is one. `None` when not even the root was reached.
+    pub document: Option<Document>,
+    /// The first thing that is not well-formed.
+    pub fault: Option<Diagnostic>,
+}
+
+/// Reads a text of less than 4 GiB as XML 1.0 with namespaces.
+///
+/// ```
+/// use saoms_core::{source::Sources, xml};
+///
+/// let mut sources = Sources::new();
+/// let file = sources.add("t", "<fleet size='2 &gt; 1'><robot/>idle</fleet>");
+/// let document = xml::parse(file, sources.get(file).text()).document.unwrap();
+/// let fleet = document.root();
+/// assert_eq!(fleet.attribute("size").unwrap().value(), "2 > 1");
+/// assert_eq!(fleet.children().next().unwrap().name(), "robot");
+/// assert_eq!(fleet.text(), "idle");
+/// ```
+pub fn parse(file: FileId, text: &Arc<str>) -> Parsed {
+    // A character that XML forbids ends the text for all that follows: faults before it come first.
+    let bad = first_forbidden(text.as_bytes());
+    let visible = &text[..bad.unwrap_or(text.len())];
+    let mut parser = Parser::new(Input { file, text: visible });
+    let fault = match (parser.run(), bad) {
+        (Err(Fault::Wrong(one)), _) => Some(*one),
+        (Err(Fault::Ended(_)) | Ok(()), Some(at)) => Some(forbidden(Input { file, text }, at as u32)),
+        (Err(fault), None) => Some(fault.into_diagnostic()),
+        (Ok(()), None) => None,
+    };
+    Parsed { document: parser.into_document(text), fault }
+}
+
+/// An element whose end tag has not come yet.
+#[derive(Debug)]
+struct Open {
+    node: u32,
+    /// The last of its children so far.
+    last_child: u32,
+    /// Declarations of namespaces in scope outside it.
+    outside: u32,
+}
+
+struct Parser<'a> {
+    input: Input<'a>,
+    /// Where the event being read starts.
+    start: u32,
+    nodes: Vec<Node>,
+    attributes: Vec<RawAttribute>,
+    namespaces: Namespaces<'a>,
+    open: Vec<Open>,
+}
+
+impl<'a> Parser<'a> {
+    fn new(input: Input<'a>) -> Self {
+        Self {
+            input,
+            start: 0,
+            nodes: Vec::new(),
+            attributes: Vec::new(),
+            namespaces: Namespaces::new(),
+            open: Vec::new(),
+        }
+    }
+
+    fn run(&mut self) -> Checked<()> {
+        let text = self.input.text;
+        let base = if text.starts_with('\u{feff}') { 3 } else { 0 };
+        self.start = base;
+        let rest = &text[base as usize..];
+        if rest.starts_with('\u{feff}') {
+            // quick-xml would take it for the mark that is already gone.
+            return Err(self.outside(base, base + 3));
+        }
+        let mut reader = Reader::from_str(rest);
+        let config = reader.config_mut();
+        config.check_end_names = false;
+        config.allow_unmatched_ends = true;
+        loop {
+            let event = reader.read_event();
+            let (start, end) = (self.start, base + reader.buffer_position() as u32);
+            match event {
+                Ok(Event::Start(_) | Event::Empty(_)) => self.start_tag(start)?,
+                Ok(Event::End(_)) => self.end_tag(start, end)?,
+                Ok(Event::Text(_)) => self.text(start, end)?,
+                Ok(Event::CData(_)) => self.cdata(start, end)?,
+                Ok(Event::GeneralRef(_)) => self.reference(start)?,
+                Ok(Event::Comment(_)) => prolog::comment(self.input, start, end)?,
+                Ok(Event::PI(_) | Event::Decl(_)) => prolog::instruction(self.input, start, end, base)?,
+                Ok(Event::DocType(_)) => return Err(prolog::doctype(self.input, start, start + 9).into()),
+                Ok(Event::Eof) => return self.finish(),
+                Err(_) => return Err(self.broken(start)),
+            }
+            self.start = end;
+        }
+    }
+
+    fn start_tag(&mut self, start: u32) -> Checked<()> {
+        let first = self.attributes.len();
+        let result = self.start_element(start, first);
+        if result.is_err() {
+            self.attributes.truncate(first);
+        }
+        result
+    }
+
+    fn start_element(&mut self, start: u32, first: usize) -> Checked<()> {
+        let tag = tag::start_tag(self.input, start, &mut self.attributes)?;
+        let name = Span::new(start + 1, start + 1 + tag.name_len);
+        if self.open.is_empty() && !self.nodes.is_empty() {
+            return Err(self.second_root(name));
+        }
+        let outside = self.namespaces.depth();
+        if tag.has_prefixes {
+            self.declare(first)?;
+        }
+        let namespace = match self.input.slice(name.start, name.end).split_once(':') {
+            None => self.namespaces.default(),
+            Some((prefix, _)) => self.resolve(prefix, name)?,
+        };
+        if tag.has_prefixes {
+            self.resolve_attributes(first)?;
+        }
+        let id = self.nodes.len() as u32;
+        let mut parent = NONE;
+        if let Some(open) = self.open.last_mut() {
+            parent = open.node;
+            if open.last_child != NONE {
+                self.nodes[open.last_child as usize].next = id;
+            }
+            open.last_child = id;
+        }
+        self.nodes.push(Node {
+            start,
+            end: tag.end,
+            tag_end: tag.end,
+            name_len: tag.name_len,
+            namespace,
+            parent,
+            next: NONE,
+            attributes: first as u32,
+            has_text: false,
+            is_closed: tag.is_empty,
+        });
+        if tag.is_empty {
+            self.namespaces.leave(outside);
+        } else {
+            self.open.push(Open { node: id, last_child: NONE, outside });
+        }
+        Ok(())
+    }
+
+    /// Takes the declarations among the attributes from `first` on.
+    fn declare(&mut self, first: usize) -> Checked<()> {
+        for one in &self.attributes[first..] {
+            if one.namespace != XMLNS {
+                continue;
+            }
+            let name = self.input.slice(one.start, one.start + one.name_len);
+            let prefix = name.strip_prefix("xmlns:").unwrap_or_default();
+            let uri = value::attribute_value(self.input.slice(one.value.start, one.value.end));
+            if let Some(message) = refusal(prefix, &uri) {
+                let end = one.value.end + 1;
+                return Err(self.input.fault(&codes::XML_PREFIX, one.start, end, message).into());
+            }
+            self.namespaces.declare(prefix, uri);
+        }
+        Ok(())
+    }
+
+    /// Finds the namespaces of the attributes from `first` on, and two of one namespace and name.
+    fn resolve_attributes(&mut self, first: usize) -> Checked<()> {
+        let input = self.input;
+        let mut seen = std::collections::HashMap::new();
+        for index in first..self.attributes.len() {
+            let one = &self.attributes[index];
+            if one.namespace == XMLNS || one.namespace == NO_NAMESPACE {
+                continue;
+            }
+            let name = Span::new(one.start, one.start + one.name_len);
+            let (prefix, local) = input.slice(name.start, name.end).split_once(':').unwrap_or_default();
+            let namespace = self.resolve(prefix, name)?;
+            self.attributes[index].namespace = namespace;
+            if let Some(before) = seen.insert((namespace, local), index) {
+                let uri = self.namespaces.name(namespace);
+                let (before, one) = (&self.attributes[before], &self.attributes[index]);
+                return Err(tag::duplicate(input, before, one, Some(uri)).into());
+            }
+        }
+        Ok(())
+    }
+
+    fn resolve(&self, prefix: &str, name: Span) -> Checked<u32> {
+        match self.namespaces.get(prefix) {
+            Some(number) => Ok(number),
+            None => {
+                let prefixes = self.namespaces.prefixes();
+                let root = self.nodes.first().map_or(self.start, |root| root.start);
+                Err(unbound::prefix(self.input, prefix, name.start, &prefixes, root).into())
+            }
+        }
+    }
+
+    fn end_tag(&mut self, start: u32, end: u32) -> Checked<()> {
+        let name = tag::end_tag(self.input, start)?;
+        let found = self.input.slice(name.start, name.end);
+        let Some(open) = self.open.last() else {
+            let message = format!("{} closes nothing: no element is open", quoted(&format!("</{found}>")));
+            let one = self.input.fault(&codes::XML_TAG_MISMATCH, start, end, message);
+            return Err(one.into());
+        };
+        let node = &mut self.nodes[open.node as usize];
+        if self.input.slice(node.start + 1, node.start + 1 + node.name_len) != found {
+            return Err(self.mismatch(found, start, end));
+        }
+        node.end = end;
+        node.is_closed = true;
+        self.namespaces.leave(open.outside);
+        self.open.pop();
+        Ok(())
+    }
+
+    fn mismatch(&self, found: &str, start: u32, end: u32) -> Fault {
+        let names = || {
+            let open = self.open.iter().rev().map(|open| &self.nodes[open.node as usize]);
+            open.map(|node| (self.input.slice(node.start + 1, node.start + 1 + node.name_len), node.start))
+        };
+        let (expected, at) = names().next().unwrap_or_default();
+        let file = self.input.file;
+        let message = format!(
+            "{} found where {} is expected",
+            quoted(&format!("</{found}>")),
+            quoted(&format!("</{expected}>"))
+        );
+        let tag = Span::new(at + 1, at + 1 + expected.len() as u32).in_file(file);
+        let one = self.input.fault(&codes::XML_TAG_MISMATCH, start, end, message);
+        let one = one.label(tag, format!("{} is open", quoted(expected)));
+        let close = format!("</{expected}>");
+        let close_first = format!("close {} first", quoted(expected));
+        if names().skip(1).any(|(name, _)| name == found) && nearest(found, [expected]).is_none() {
+            return one.suggest(close_first, Span::empty(start).in_file(file), close).into();
+        }
+        let description = format!("replace it with {}", quoted(&close));
+        one.suggest(description, Span::new(start, end).in_file(file), close).into()
+    }
+
+    fn text(&mut self, start: u32, end: u32) -> Checked<()> {
+        let text = self.input.slice(start, end);
+        if is_blank(text.as_bytes()) {
+            return Ok(());
+        }
+        let Some(open) = self.open.last() else {
+            let blank = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n');
+            let from = end - text.trim_start_matches(blank).len() as u32;
+            return Err(self.outside(from, start + text.trim_end_matches(blank).len() as u32));
+        };
+        self.nodes[open.node as usize].has_text = true;
+        if let Some(at) = text.find("]]>") {
+            let at = start + at as u32;
+            let place = Span::new(at, at + 3).in_file(self.input.file);
+            return Err(self
+                .input
+                .fault(
+                    &codes::XML_SYNTAX,
+                    at,
+                    at + 3,
+                    "`]]>` in text, which XML allows only to end a CDATA section",
+                )
+                .suggest("replace it with `]]&gt;`", place, "]]&gt;")
+                .into());
+        }
+        Ok(())
+    }
+
+    fn cdata(&mut self, start: u32, end: u32) -> Checked<()> {
+        let Some(open) = self.open.last() else {
+            return Err(self.outside(start, end));
+        };
+        if !is_blank(&self.input.bytes()[start as usize + 9..end as usize - 3]) {
+            self.nodes[open.node as usize].has_text = true;
+        }
+        Ok(())
+    }
+
+    fn reference(&mut self, start: u32) -> Checked<()> {
+        let end = reference::check(self.input, start)?;
+        let Some(open) = self.open.last() else {
+            return Err(self.outside(start, end));
+        };
+        self.nodes[open.node as usize].has_text = true;
+        Ok(())
+    }
+
+    /// The fault in what quick-xml could not read.
+    fn broken(&mut self, start: u32) -> Fault {
+        let rest = &self.input.text[start as usize..];
+        let result = match rest.as_bytes() {
+            [b'<', b'!' | b'?', ..] => Err(prolog::broken(self.input, start)),
+            [b'<', b'/', ..] => tag::end_tag(self.input, start).map(drop),
+            [b'<', ..] => self.start_tag(start),
+            _ => reference::check(self.input, start).map(drop),
+        };
+        let message = "this is not well-formed XML";
+        let end = start + rest.chars().next().map_or(0, char::len_utf8) as u32;
+        result.err().unwrap_or_else(|| self.input.fault(&codes::XML_SYNTAX, start, end, message).into())
+    }
+
+    fn outside(&self, start: u32, end: u32) -> Fault {
+        let one = self.input.fault(&codes::XML_OUTSIDE_ROOT, start, end, "text outside of the root element");
+        match self.nodes.first() {
+            None => {
+                one.help("a file is one element; before it only comments and instructions can stand").into()
+            }
+            Some(root) => {
+                let name = Span::new(root.start + 1, root.start + 1 + root.name_len).in_file(self.input.file);
+                one.label(name, "the root element").into()
+            }
+        }
+    }
+
+    fn second_root(&self, name: Span) -> Fault {
+        let Some(root) = self.nodes.first() else { return self.outside(name.start, name.end) };
+        let first = Span::new(root.start + 1, root.start + 1 + root.name_len).in_file(self.input.file);
+        self.input
+            .fault(
+                &codes::XML_OUTSIDE_ROOT,
+                name.start,
+                name.end,
+                "a second root element: a file is one element",
+            )
+            .label(first, "the first root element")
+            .into()
+    }
+
+    fn finish(&self) -> Checked<()> {
+        let input = self.input;
+        if let Some(open) = self.open.last() {
+            let node = &self.nodes[open.node as usize];
+            let (start, end) = (node.start + 1, node.start + 1 + node.name_len);
+            let name = quoted(input.slice(start, end));
+            return Err(input.ended(&codes::XML_UNCLOSED, start, end, format!("{name} is never closed")));
+        }
+        if self.nodes.is_empty() {
+            let at = input.text.len() as u32;
+            return Err(input.ended(&codes::XML_SYNTAX, at, at, "the file holds no element"));
+        }
+        Ok(())
+    }
+
+    fn into_document(mut self, text: &Arc<str>) -> Option<Document> {
+        // Behind a fault the open elements end where reading ended.
+        for open in &self.open {
+            self.nodes[open.node as usize].end = self.start;
+        }
+        (!self.nodes.is_empty()).then(|| Document {
+            file: self.input.file,
+            text: Arc::clone(text),
+            nodes: self.nodes,
+            attributes: self.attributes,
+            namespaces: self.namespaces.into_names(),
+        })
+    }
+}

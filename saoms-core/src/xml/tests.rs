@@ -1,0 +1,260 @@
+use std::sync::Arc;
+
+use super::*;
+use crate::source::{FileId, Sources, Span};
+
+fn tree(text: &str) -> Document {
+    let parsed = parse(FileId(0), &Arc::from(text));
+    assert!(parsed.fault.is_none(), "{text}: {:?}", parsed.fault);
+    parsed.document.unwrap()
+}
+
+/// The fault as `line:column [marked text] code message`, then its suggestion.
+fn fault(text: &str) -> String {
+    let mut sources = Sources::new();
+    let file = sources.add("t", text);
+    let one = parse(file, sources.get(file).text()).fault.expect("a fault");
+    let place = sources.get(file).line_column(one.location.span.start);
+    let marked = sources.snippet(one.location);
+    let mut out = format!("{}:{} [{marked}] {} {}", place.line, place.column, one.code.id, one.message);
+    for suggestion in &one.suggestions {
+        out.push_str(&format!(" | {}", suggestion.description));
+    }
+    out
+}
+
+#[test]
+fn a_tree_knows_its_places() {
+    let text = "\u{feff}<?xml version='1.0'?><!--c--><a:r xmlns:a = \"u\" a:x='1'\n y=\"2\"><b/> t <c>u</c ></a:r>\n";
+    let document = tree(text);
+    let slice = |span: Span| &text[span.start as usize..span.end as usize];
+    let root = document.root();
+    assert_eq!(
+        (root.name(), root.prefix(), root.local_name(), root.namespace()),
+        ("a:r", Some("a"), "r", "u")
+    );
+    assert_eq!(slice(root.name_span()), "a:r");
+    assert_eq!(slice(root.start_tag_span()), "<a:r xmlns:a = \"u\" a:x='1'\n y=\"2\">");
+    assert_eq!(slice(root.content_span()), "<b/> t <c>u</c >");
+    let attributes: Vec<_> =
+        root.attributes().map(|one| (one.name(), one.namespace(), one.value())).collect();
+    assert_eq!(attributes, [("a:x", "u", "1".into()), ("y", "", "2".into())]);
+    let y = root.attribute("y").unwrap();
+    assert_eq!((slice(y.span()), slice(y.name_span()), slice(y.value_span())), ("y=\"2\"", "y", "2"));
+    assert_eq!(root.attribute_in("u", "x").unwrap().name(), "a:x");
+    assert!(root.attribute("x").is_none());
+    let declared: Vec<_> = root.namespace_declarations().map(|one| slice(one.span())).collect();
+    assert_eq!(declared, ["xmlns:a = \"u\""]);
+    let children: Vec<_> = root.children().map(|child| slice(child.span())).collect();
+    assert_eq!(children, ["<b/>", "<c>u</c >"]);
+    assert_eq!((root.text(), slice(root.text_span().unwrap())), (" t ".into(), "t"));
+    let inner = document.element_at(text.find("u</c").unwrap() as u32);
+    assert_eq!((inner.name(), inner.parent().unwrap().id()), ("c", root.id()));
+    assert_eq!(inner.namespace(), "");
+    assert_eq!(document.element_at(0).id(), root.id());
+}
+
+#[test]
+fn values_are_normalised_as_xml_says() {
+    let document = tree(
+        "<a v='1\t2\r\n3\n4&#10;5&lt;&#x3C;&quot;é'>x\r\ny\rz&amp;<!--c--><![CDATA[<&amp;>]]><?p?>w</a>",
+    );
+    assert_eq!(document.root().attribute("v").unwrap().value(), "1 2 3 4\n5<<\"é");
+    assert_eq!(document.root().text(), "x\ny\nz&<&amp;>w");
+}
+
+#[test]
+fn text_has_a_place_without_the_blanks_and_comments_around_it() {
+    let shown = |text: &str| {
+        let document = tree(text);
+        document.root().text_span().map(|span| text[span.start as usize..span.end as usize].to_owned())
+    };
+    assert_eq!(shown("<a> \n x y \t</a>").as_deref(), Some("x y"));
+    assert_eq!(shown("<a> <!-- x --> x <b>y</b> z <?p?> </a>").as_deref(), Some("x <b>y</b> z"));
+    assert_eq!(shown("<a> <![CDATA[ x ]]> </a>").as_deref(), Some("x"));
+    assert_eq!(shown("<a>&#65;</a>").as_deref(), Some("&#65;"));
+    assert_eq!(shown("<a> <!-- x --> <![CDATA[ ]]> <b>y</b></a>"), None);
+}
+
+#[test]
+fn prefixes_hold_where_they_are_declared() {
+    let document =
+        tree("<a xmlns='d' xmlns:p='1'><p:b xmlns:p='2' xmlns=''><c p:x=''/></p:b><p:d xml:lang='en'/></a>");
+    let all: Vec<_> = document.elements().map(|one| (one.local_name(), one.namespace())).collect();
+    assert_eq!(all, [("a", "d"), ("b", "2"), ("c", ""), ("d", "1")]);
+    let c = document.elements().nth(2).unwrap();
+    assert_eq!(c.attributes().next().unwrap().namespace(), "2");
+    assert_eq!(c.resolve_prefix("p").as_deref(), Some("2"));
+    assert_eq!(c.resolve_prefix(""), None);
+    assert_eq!(document.root().resolve_prefix("").as_deref(), Some("d"));
+    assert_eq!(document.root().resolve_prefix("q"), None);
+    let d = document.elements().nth(3).unwrap();
+    assert_eq!(d.attributes().next().unwrap().namespace(), XML_NAMESPACE);
+    assert_eq!(d.resolve_prefix("xml").as_deref(), Some(XML_NAMESPACE));
+}
+
+#[test]
+fn what_is_not_well_formed_is_found_at_its_place() {
+    let cases = "
+<a                             => 1:2 [a] S0103 the start tag of `a` is never closed
+<a b='                         => 1:6 ['] S0103 the value of `b` is never closed
+<a>x                           => 1:2 [a] S0103 `a` is never closed
+<a><b></a>                     => 1:7 [</a>] S0102 `</a>` found where `</b>` is expected | close `b` first
+<a></A>                        => 1:4 [</A>] S0102 `</A>` found where `</a>` is expected | replace it with `</a>`
+<a/></a>                       => 1:5 [</a>] S0102 `</a>` closes nothing: no element is open
+<a/><b/>                       => 1:6 [b] S0104 a second root element: a file is one element
+<a/> x                         => 1:6 [x] S0104 text outside of the root element
+x y <a/>                       => 1:1 [x y] S0104 text outside of the root element
+&lt;<a/>                       => 1:1 [&lt;] S0104 text outside of the root element
+<a/><![CDATA[x]]>              => 1:5 [<![CDATA[x]]>] S0104 text outside of the root element
+<!-- c -->                     => 1:11 [] S0101 the file holds no element
+<a b='1' b='2'/>               => 1:10 [b] S0106 the attribute `b` is given twice | remove the second `b`
+<a xmlns:p='u' xmlns:q='u' p:b='' q:b=''/> => 1:35 [q:b] S0106 the attribute `q:b` is given twice: both prefixes are of `u` | remove the second `q:b`
+<a b='<'/>                     => 1:7 [<] S0105 `<` in the value of `b`
+<a b/>                         => 1:4 [b] S0105 the attribute `b` has no value
+<a b=c/>                       => 1:6 [c] S0105 the value of `b` is not in quotes | put it in quotes
+<a b='1'c='2'/>                => 1:9 [c] S0105 white space is missing between two attributes | insert a blank
+<a /b>                         => 1:4 [/] S0101 `/` is misplaced in the start tag of `a`
+<a =''/>                       => 1:4 [=] S0101 `=` is misplaced in the start tag of `a`
+<a <b/></a>                    => 1:4 [<] S0103 the start tag of `a` is not closed before the next `<`
+<a>< b/></a>                   => 1:4 [<] S0107 white space cannot follow `<`: the name of an element is expected | replace `<` with `&lt;`
+<1/>                           => 1:2 [1] S0107 `1` is no name for an element
+<a:b:c/>                       => 1:2 [a:b:c] S0107 `a:b:c` is no name for an element
+<:a/>                          => 1:2 [:a] S0107 `:a` is no name for an element
+<a -b=''/>                     => 1:4 [-b] S0107 `-b` is no name for an attribute
+<a></ a>                       => 1:4 [</] S0107 an end tag is `</`, the name of the element, and `>`
+<a></a b=''>                   => 1:8 [b] S0101 `b` is misplaced in an end tag
+<a></a                         => 1:4 [</a] S0103 this end tag is never closed
+<a>&nbsp;</a>                  => 1:4 [&nbsp;] S0109 `&nbsp;` is no entity that is known here
+<a>&AMP;</a>                   => 1:4 [&AMP;] S0109 `&AMP;` is no entity that is known here | replace `&AMP;` with `&amp;`
+<a>a & b</a>                   => 1:6 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
+<a b='x&y'/>                   => 1:8 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
+<a>&#0;</a>                    => 1:4 [&#0;] S0109 `&#0;` is no character that XML allows
+<a>&#xD800;</a>                => 1:4 [&#xD800;] S0109 `&#xD800;` is no character that XML allows
+<a>&#X41;</a>                  => 1:4 [&#X41;] S0109 `&#X41;` is no character that XML allows
+<a>&#1114112;</a>              => 1:4 [&#1114112;] S0109 `&#1114112;` is no character that XML allows
+<a>]]></a>                     => 1:4 []]>] S0101 `]]>` in text, which XML allows only to end a CDATA section | replace it with `]]&gt;`
+<a><!-- x -- y --></a>         => 1:11 [--] S0101 `--` inside a comment
+<a><!-- x ---></a>             => 1:11 [--] S0101 `--` inside a comment
+<a><!-- x </a>                 => 1:4 [<!--] S0103 this comment is never closed
+<a><![CDATA[ x </a>            => 1:4 [<![CDATA[] S0103 this CDATA section is never closed
+<a><?p x </a>                  => 1:4 [<?] S0103 this processing instruction is never closed
+<a><!x></a>                    => 1:4 [<!] S0101 `<!` starts a comment (`<!--`) or a CDATA section (`<![CDATA[`), and nothing else here
+<!DOCTYPE a><a/>               => 1:1 [<!DOCTYPE] S0110 a document type declaration is not allowed here
+<!DOCTYPE a [<!ENTITY x '<a/>  => 1:1 [<!DOCTYPE] S0110 a document type declaration is not allowed here
+<!doctype a><a/>               => 1:1 [<!doctype] S0110 a document type declaration is not allowed here
+<a><?xml version='1.0'?></a>   => 1:4 [<?xml version='1.0'?>] S0111 the XML declaration stands at the very start of a file, and only there
+<?xml?><a/>                    => 1:3 [xml] S0111 an XML declaration starts with its version
+<?xml encoding='UTF-8'?><a/>   => 1:3 [xml] S0111 an XML declaration starts with its version
+<?xml version='2.0'?><a/>      => 1:16 [2.0] S0111 `2.0` is no value of version in an XML declaration
+<?xml version='1.0' encoding='-'?><a/> => 1:31 [-] S0111 `-` is no value of encoding in an XML declaration
+<?xml version='1.0'encoding='x'?><a/> => 1:20 [encoding] S0111 `encoding` is misplaced in the XML declaration
+<?xml version='1.0' standalone='no' encoding='x'?><a/> => 1:37 [encoding] S0111 `encoding` is misplaced in the XML declaration
+<?xml version='1.0' standalone='maybe'?><a/> => 1:33 [maybe] S0111 `maybe` is no value of standalone in an XML declaration
+<?xml version='1.0' x?><a/>    => 1:21 [x] S0111 this is no declaration of version, encoding or standalone
+<?XML x?><a/>                  => 1:3 [XML] S0111 `XML` is reserved: an instruction cannot have this name
+<?1?><a/>                      => 1:1 [<?1] S0107 a processing instruction is `<?`, a name, white space, anything, and `?>`
+<p:a/>                         => 1:2 [p] S0112 the prefix `p` is bound to no namespace
+<a p:b=''/>                    => 1:4 [p] S0112 the prefix `p` is bound to no namespace
+<a xsi:type=''/>               => 1:4 [xsi] S0112 the prefix `xsi` is bound to no namespace | declare it in the root element: `xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"`
+<a xmlns:scx='u'><sca:b/></a>  => 1:19 [sca] S0112 the prefix `sca` is bound to no namespace | replace `sca` with `scx`
+<a><b xmlns:p='u'/><p:c/></a>  => 1:21 [p] S0112 the prefix `p` is bound to no namespace
+<a xmlns:p=''/>                => 1:4 [xmlns:p=''] S0112 a prefix cannot be bound to no namespace
+<a xmlns:xmlns='u'/>           => 1:4 [xmlns:xmlns='u'] S0112 the prefix `xmlns` cannot be declared
+<a xmlns:xml='u'/>             => 1:4 [xmlns:xml='u'] S0112 the prefix `xml` stands for its own namespace and for no other
+<a xmlns='http://www.w3.org/2000/xmlns/'/> => 1:4 [xmlns='http://www.w3.org/2000/xmlns/'] S0112 nothing can be bound to the namespace of declarations
+<xmlns:a/>                     => 1:2 [xmlns] S0112 the prefix `xmlns` is bound to no namespace
+<                              => 1:1 [<] S0107 the file ends behind `<` | replace `<` with `&lt;`
+";
+    for case in cases.trim().lines() {
+        let (text, expected) = case.split_once("=> ").unwrap();
+        assert_eq!(fault(text.trim_end()), expected, "{text}");
+    }
+}
+
+#[test]
+fn a_fault_before_a_forbidden_character_comes_first() {
+    assert_eq!(
+        fault("<a>\u{1}</a>"),
+        "1:4 [\u{1}] S0108 the character U+0001 is not allowed in XML | remove it"
+    );
+    assert_eq!(
+        fault("<a b='\u{ffff}'/>"),
+        "1:7 [\u{ffff}] S0108 the character U+FFFF is not allowed in XML | remove it"
+    );
+    assert!(fault("<a/>\u{0}").starts_with("1:5"));
+    assert!(fault("<a></b>\u{0}").contains("S0102"));
+    let far = format!("<a>{}\u{2}", "x\n".repeat(500));
+    assert!(fault(&far).starts_with("501:1 [\u{2}]"));
+    tree("<a>\u{7f}\u{fffd}\u{e000}\u{10ffff}\u{ef}</a>");
+}
+
+#[test]
+fn what_looks_odd_and_is_fine() {
+    for text in [
+        "<a>]] > ]></a>",
+        "<a b='>' c=\"'\" d='\"'/>",
+        "<é:ö xmlns:é='u' é:ü='1'/>",
+        "<a\n\tb = '1'\r\n/>",
+        "<a></a \n>",
+        "<!---->\n<a><!-- - --></a><?p?>",
+        "<a><![CDATA[]]></a>",
+        "<a><![CDATA[<!--]]]]></a>",
+        "<a><?p <x> ??></a>",
+        "<?xml version = \"1.0\" encoding='ISO-8859-1' standalone='yes' ?><a/>",
+        "<?xml version='1.1'?><a/>",
+        "<a xmlns:xml='http://www.w3.org/XML/1998/namespace'/>",
+        "<a xmlns:p='u' b='' p:b=''/>",
+        "<a xmlns='' xmlns:p='u'/>",
+        "<a>&#x0000000000000000000000000000000000000000000000000000000000000000000041;</a>",
+        "<?xml-stylesheet href='x'?><a/>",
+        "<xmlish/>",
+        "<a xmlnsx='1'/>",
+    ] {
+        tree(text);
+    }
+}
+
+#[test]
+fn a_tree_ends_at_the_fault() {
+    let text = "<a><b x='1'>t</b><c>u<d>&nope;</d></c></a>";
+    let parsed = parse(FileId(0), &Arc::from(text));
+    assert!(parsed.fault.is_some());
+    let document = parsed.document.unwrap();
+    let shown: Vec<_> = document
+        .elements()
+        .map(|one| (one.name(), one.is_closed(), one.text().into_owned(), one.content_span().end))
+        .collect();
+    let at = text.find('&').unwrap() as u32;
+    assert_eq!(
+        shown,
+        [
+            ("a", false, String::new(), at),
+            ("b", true, "t".to_owned(), 13),
+            ("c", false, "u".to_owned(), at),
+            ("d", false, String::new(), at)
+        ]
+    );
+    assert_eq!(document.root().text_span(), None);
+    assert!(parse(FileId(0), &Arc::from("  x")).document.is_none());
+}
+
+/// Depth, width and length cost time in proportion; a test that hangs or overflows the stack fails.
+#[test]
+fn neither_depth_nor_width_matters() {
+    let depth = 1_000_000;
+    let deep = format!("{}{}", "<a>".repeat(depth), "</a>".repeat(depth));
+    let document = tree(&deep);
+    assert_eq!(document.root().descendants().count(), depth);
+    assert_eq!(document.element_at(3 * depth as u32).id().0 as usize, depth - 1);
+    assert!(fault(&"<a>".repeat(depth / 10)).contains("S0103"));
+    let scopes: String = (0..100_000).map(|n| format!("<p0:a xmlns:p{n}='u{n}'>")).collect();
+    assert!(fault(&scopes).contains("S0103"));
+    let attributes: String = (0..100_000).map(|n| format!(" a{n}=''")).collect();
+    assert_eq!(tree(&format!("<a{attributes}/>")).root().attributes().count(), 100_000);
+    assert!(fault(&format!("<a{attributes} a7=''/>")).contains("S0106"));
+    let flat = format!("<a>{}</a>", "<b/>t&amp;".repeat(100_000));
+    let document = tree(&flat);
+    assert_eq!(document.root().children().count(), 100_000);
+    assert_eq!(document.root().text().len(), 200_000);
+}
