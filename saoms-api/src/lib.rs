@@ -1,1 +1,102 @@
 //! The contract that authors of SAOMS components compile against.
+//!
+//! A component is a struct with properties that a composite file sets, topics that it publishes and reads, and services that it
+//! offers and needs. It implements [`Component`]; `#[derive(Class)]` declares it to the program. Everything from outside
+//! (messages, time, chance, the log, other components) reaches it through its [`Context`], so that the same component runs in
+//! real time, in virtual time, in a test, linked in, or from a library that was built separately.
+//!
+//! ```
+//! use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
+//!
+//! /// What the thermometer measured.
+//! #[derive(Clone, Debug, PartialEq, Message)]
+//! pub struct Temperature {
+//!     /// In degrees Celsius.
+//!     pub degrees: f64,
+//! }
+//!
+//! /// The newest measurement of each thermometer.
+//! pub const TEMPERATURE: Topic<Temperature> = Topic::state("TEMPERATURE");
+//!
+//! /// What a composite says about a thermometer.
+//! #[derive(Properties)]
+//! pub struct ThermometerProperties {
+//!     /// Added to every measurement.
+//!     #[property(default = 0.0, range = -5.0..=5.0, unit = "degrees Celsius")]
+//!     offset: f64,
+//! }
+//!
+//! /// Publishes the temperature in each period.
+//! #[derive(Class)]
+//! #[class(name = "example.Thermometer", periodic, publishes(TEMPERATURE))]
+//! pub struct Thermometer {
+//!     properties: ThermometerProperties,
+//!     temperature: Publisher<Temperature>,
+//! }
+//!
+//! impl Component for Thermometer {
+//!     type Properties = ThermometerProperties;
+//!
+//!     fn new(properties: ThermometerProperties) -> Result<Self, Failure> {
+//!         Ok(Thermometer { properties, temperature: Publisher::default() })
+//!     }
+//!
+//!     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+//!         self.temperature = context.publish(&TEMPERATURE)?;
+//!         Ok(())
+//!     }
+//!
+//!     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+//!         let degrees = 20.0 + self.properties.offset;
+//!         context.send(&self.temperature, Temperature { degrees })?;
+//!         Ok(())
+//!     }
+//! }
+//! ```
+//!
+//! Nothing in this contract relies on sharing Rust types with a separately built library: declarations are text, messages
+//! and service calls have a declared schema and a byte form ([`cdr`]) beside the shared value used inside one build.
+
+// So that the macros' paths lead here from inside, too.
+extern crate self as saoms_api;
+
+pub mod cdr;
+mod chance;
+mod component;
+mod context;
+pub mod declaration;
+mod failure;
+mod field;
+mod message;
+mod property;
+mod registration;
+mod report;
+mod service;
+mod task;
+mod time;
+mod topic;
+
+pub use chance::Chance;
+pub use component::{Class, Component, DynComponent};
+pub use context::{Context, Host, Level};
+pub use failure::{CallError, Failure};
+pub use field::{Arguments, Field};
+pub use message::{Header, Message, Messages, SharedMessage};
+pub use property::{Properties, PropertyField, PropertyValue};
+pub use registration::Registration;
+pub use report::{ReportValue, Work};
+pub use service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
+pub use task::{TaskInterface, TaskInterfaceReference};
+pub use time::{Time, format_duration, parse_duration};
+pub use topic::{Publisher, Subscription, Topic, TopicDeclaration, TopicKind};
+
+pub use saoms_derive::{Class, Field, Message, Properties, PropertyField, interface};
+
+/// For the code that the macros generate.
+#[doc(hidden)]
+pub mod generated {
+    pub use crate::message::Key;
+    pub use crate::property::{PropertyShape, chosen, complex, contains, only_known, property};
+    pub use crate::service::{no_operation, no_service};
+    pub use inventory;
+}

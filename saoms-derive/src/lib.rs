@@ -1,1 +1,56 @@
-//! Derive macros of the SAOMS contract.
+//! Derive macros of the SAOMS contract. `saoms-api` exports them and says what they are for.
+
+mod case;
+mod class;
+mod docs;
+mod enumeration;
+mod field;
+mod interface;
+mod json;
+mod literal;
+mod properties;
+mod range;
+
+use proc_macro::TokenStream;
+use syn::{DeriveInput, ItemTrait, parse_macro_input};
+
+fn finish(result: syn::Result<proc_macro2::TokenStream>) -> TokenStream {
+    result.unwrap_or_else(syn::Error::into_compile_error).into()
+}
+
+/// See `saoms_api::Message`.
+#[proc_macro_derive(Message, attributes(message))]
+pub fn message(input: TokenStream) -> TokenStream {
+    finish(field::message(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::Field`.
+#[proc_macro_derive(Field, attributes(field))]
+pub fn field(input: TokenStream) -> TokenStream {
+    finish(field::field(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::Properties`.
+#[proc_macro_derive(Properties, attributes(property))]
+pub fn properties(input: TokenStream) -> TokenStream {
+    finish(properties::properties(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::PropertyField`.
+#[proc_macro_derive(PropertyField, attributes(property))]
+pub fn property_field(input: TokenStream) -> TokenStream {
+    finish(enumeration::property_field(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::Class`.
+#[proc_macro_derive(Class, attributes(class))]
+pub fn class(input: TokenStream) -> TokenStream {
+    finish(class::class(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::Interface`.
+#[proc_macro_attribute]
+pub fn interface(arguments: TokenStream, item: TokenStream) -> TokenStream {
+    let item = parse_macro_input!(item as ItemTrait);
+    finish(interface::interface(arguments.into(), &item))
+}

@@ -1,0 +1,128 @@
+use crate::{CallError, Context, Failure, Invocation, Properties};
+
+/// What an author writes: a component of a fleet.
+///
+/// The host calls, always from one thread at a time and never twice at once:
+///
+/// 1. [`new`](Component::new) with the properties of the composite. It may refuse values that do not fit together; it does no work, opens
+///    nothing and sends nothing, because the checker constructs components that will never run.
+/// 2. [`initialize`](Component::initialize) once, when the component is scheduled: it asks for its topics and references.
+/// 3. [`execute`](Component::execute) once in each period. Messages that it sends leave when it returns.
+/// 4. [`shutdown`](Component::shutdown) once, when the component is unscheduled or the run ends.
+///
+/// A component that is scheduled again, or restarted after a failure, is a new one from [`new`](Component::new) on.
+///
+/// # Failures
+/// An `Err` and a panic from `initialize`, `execute` or `shutdown` are the same to the host: the component has failed, the report says so,
+/// and its `restart` policy decides. Other components go on.
+///
+/// # Blocking
+/// `execute` must not wait for anything. An execution beyond the watchdog's budget is reported, and from then on the component runs on
+/// a worker thread, where it is less punctual:
+///
+/// ```ignore
+/// fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+///     std::thread::sleep(self.drive_time);            // wrong: nobody else can run, or this component loses its punctuality
+///     context.send(&self.arrived, Arrived {})
+/// }
+/// ```
+///
+/// Remember the state instead, and look again in the next period:
+///
+/// ```ignore
+/// fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+///     if context.now() < self.arrival { return Ok(()) }
+///     context.send(&self.arrived, Arrived {})
+/// }
+/// ```
+pub trait Component: Send + Sized + 'static {
+    /// What the composite can set.
+    type Properties: Properties;
+
+    /// Makes the component.
+    ///
+    /// # Errors
+    /// The values do not fit together; the message says which and why.
+    fn new(properties: Self::Properties) -> Result<Self, Failure>;
+
+    /// Asks for topics and references.
+    ///
+    /// # Errors
+    /// The component cannot start; at the start of a fleet nothing starts then.
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let _ = context;
+        Ok(())
+    }
+
+    /// Does the work of one period. Never called for a passive component.
+    ///
+    /// # Errors
+    /// The component has failed.
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let _ = context;
+        Ok(())
+    }
+
+    /// Ends the work; what it sends still leaves.
+    ///
+    /// # Errors
+    /// The component could not end properly.
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let _ = context;
+        Ok(())
+    }
+}
+
+/// The declaration of a component, which `#[derive(Class)]` writes.
+pub trait Class: Component {
+    /// Name, properties, topics, services and references as one JSON text; its shape is described in [`crate::declaration`].
+    const DECLARATION: &'static str;
+
+    /// Serves a call to one of the declared services.
+    ///
+    /// # Errors
+    /// As [`CallError`] says.
+    fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError>;
+}
+
+/// A component of any class, as hosts hold it.
+pub trait DynComponent: Send {
+    /// See [`Component::initialize`].
+    ///
+    /// # Errors
+    /// As there.
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// See [`Component::execute`].
+    ///
+    /// # Errors
+    /// As there.
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// See [`Component::shutdown`].
+    ///
+    /// # Errors
+    /// As there.
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// See [`Class::serve`].
+    ///
+    /// # Errors
+    /// As there.
+    fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError>;
+}
+
+impl<C: Class> DynComponent for C {
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        Component::initialize(self, context)
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        Component::execute(self, context)
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        Component::shutdown(self, context)
+    }
+
+    fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError> {
+        Class::serve(self, invocation, context)
+    }
+}

@@ -1,0 +1,227 @@
+use std::fmt;
+use std::time::Duration;
+
+use crate::{
+    CallError, Chance, Failure, Header, Message, Messages, Publisher, Reference, ReportValue, ServiceCall,
+    SharedMessage, Subscription, Time, Topic, TopicDeclaration, Work,
+};
+
+/// How much a log line matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Something that the operator has to look at.
+    Error,
+    /// Something unexpected that the component could handle.
+    Warning,
+    /// What happens, for somebody who watches.
+    Info,
+    /// Details, for somebody who searches.
+    Debug,
+}
+
+/// Everything that reaches a component from outside: its messages, time, chance, the log, other components.
+///
+/// A context lives for one call of the component. Handles ([`Publisher`], [`Subscription`], [`Reference`]) come from `initialize` and
+/// stay valid until `shutdown`.
+pub struct Context<'a> {
+    host: &'a mut dyn Host,
+    inboxes: &'a [Vec<SharedMessage>],
+}
+
+impl<'a> Context<'a> {
+    /// For hosts: a context over the messages of this period, one list per subscription in the order of subscribing.
+    pub fn new(host: &'a mut dyn Host, inboxes: &'a [Vec<SharedMessage>]) -> Context<'a> {
+        Context { host, inboxes }
+    }
+
+    /// The component's name: its path in the composite.
+    pub fn name(&self) -> &str {
+        self.host.name()
+    }
+
+    /// The present time. In virtual time it stands still during an execution.
+    pub fn now(&self) -> Time {
+        self.host.now()
+    }
+
+    /// When the present execution was due.
+    pub fn due(&self) -> Time {
+        self.host.due()
+    }
+
+    /// The number of the present execution, from 0.
+    pub fn execution(&self) -> u64 {
+        self.host.execution()
+    }
+
+    /// The component's period, [`Duration::ZERO`] for a passive one.
+    pub fn period(&self) -> Duration {
+        self.host.period()
+    }
+
+    /// Whether a long execution should end early: the task was unscheduled with `mayInterruptIfRunning`, or the run ends.
+    pub fn cancelled(&self) -> bool {
+        self.host.cancelled()
+    }
+
+    /// The component's own source of chance: the same seed gives the same numbers, whatever the other components do.
+    pub fn chance(&mut self) -> &mut Chance {
+        self.host.chance()
+    }
+
+    /// Becomes a publisher of the topic. Only in `initialize`.
+    ///
+    /// # Errors
+    /// `useJMS` is false, the topic carries other messages, or `initialize` is over.
+    pub fn publish<M: Message>(&mut self, topic: &Topic<M>) -> Result<Publisher<M>, Failure> {
+        self.host.publish(&topic.declaration()).map(Publisher::new)
+    }
+
+    /// Becomes a subscriber of the topic. Only in `initialize`.
+    ///
+    /// # Errors
+    /// `useJMS` is false, the topic carries other messages, or `initialize` is over.
+    pub fn subscribe<M: Message>(&mut self, topic: &Topic<M>) -> Result<Subscription<M>, Failure> {
+        self.host.subscribe(&topic.declaration()).map(Subscription::new)
+    }
+
+    /// Sends a message; it leaves at the end of the present execution. What `initialize` sends leaves when the whole fleet starts.
+    ///
+    /// # Errors
+    /// The publisher belongs to no topic.
+    pub fn send<M: Message>(&mut self, publisher: &Publisher<M>, message: M) -> Result<(), Failure> {
+        let header = Header { sender: self.host.sender(), sent: self.host.due() };
+        self.host.send(publisher.index(), SharedMessage::new(header, message))
+    }
+
+    /// All messages that arrived for this period, oldest first. Asking twice gives the same messages.
+    pub fn receive<M: Message>(&self, subscription: &Subscription<M>) -> Messages<'a, M> {
+        Messages::new(self.inbox(subscription.index()))
+    }
+
+    /// The newest message that arrived for this period.
+    pub fn receive_last<M: Message>(&self, subscription: &Subscription<M>) -> Option<&'a M> {
+        self.receive(subscription).next_back()
+    }
+
+    fn inbox(&self, index: u32) -> &'a [SharedMessage] {
+        let inboxes = self.inboxes;
+        inboxes.get(index as usize).map_or(&[], Vec::as_slice)
+    }
+
+    /// A reference that the class declares, for calls. Only in `initialize`.
+    ///
+    /// # Errors
+    /// The class declares no reference of this name and interface. A reference without a target is no error here, but every call is.
+    pub fn reference<R: Reference>(&mut self, name: &str) -> Result<R, Failure> {
+        self.host.reference(name, R::INTERFACE).map(R::from_index)
+    }
+
+    /// Whether the reference leads to a service.
+    pub fn is_wired<R: Reference>(&self, reference: &R) -> bool {
+        self.host.is_wired(reference.index())
+    }
+
+    /// For generated code: calls through the reference of this index.
+    ///
+    /// # Errors
+    /// As [`CallError`] says.
+    #[doc(hidden)]
+    pub fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+        self.host.call(reference, call)
+    }
+
+    /// Writes a line to the log, with the time and the component's name. Formatted only where somebody listens.
+    pub fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
+        self.host.log(level, line);
+    }
+
+    /// [`log`](Context::log) at [`Level::Info`].
+    pub fn info(&mut self, line: fmt::Arguments<'_>) {
+        self.host.log(Level::Info, line);
+    }
+
+    /// [`log`](Context::log) at [`Level::Warning`].
+    pub fn warn(&mut self, line: fmt::Arguments<'_>) {
+        self.host.log(Level::Warning, line);
+    }
+
+    /// Writes a line of the original's console, for `--console classic`. Formatted only where somebody listens.
+    pub fn console(&mut self, line: fmt::Arguments<'_>) {
+        self.host.console(line);
+    }
+
+    /// Sets a value of the run's report, such as `map.blocks`; dots lead into nested objects. The last value counts.
+    pub fn report(&mut self, path: &str, value: impl Into<ReportValue>) {
+        self.host.report(path, value.into());
+    }
+
+    /// Adds to a number of the run's report, such as `luggage.delivered`, which several components may share.
+    pub fn count(&mut self, path: &str, more: i64) {
+        self.host.count(path, more);
+    }
+
+    /// Says whether this component has work left. The run ends by itself when at least one component voted and all that voted are
+    /// [`Work::Done`].
+    pub fn vote(&mut self, work: Work) {
+        self.host.vote(work);
+    }
+}
+
+/// What a host gives to a component: the scheduler in a run, a stand-in in a test, a function table behind a plugin's boundary.
+/// Component authors use [`Context`].
+pub trait Host {
+    /// See [`Context::name`].
+    fn name(&self) -> &str;
+    /// The index that stands for this component in [`Header::sender`].
+    fn sender(&self) -> u32;
+    /// See [`Context::now`].
+    fn now(&self) -> Time;
+    /// See [`Context::due`].
+    fn due(&self) -> Time;
+    /// See [`Context::execution`].
+    fn execution(&self) -> u64;
+    /// See [`Context::period`].
+    fn period(&self) -> Duration;
+    /// See [`Context::cancelled`].
+    fn cancelled(&self) -> bool;
+    /// See [`Context::chance`].
+    fn chance(&mut self) -> &mut Chance;
+    /// See [`Context::publish`].
+    ///
+    /// # Errors
+    /// As there.
+    fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure>;
+    /// See [`Context::subscribe`]. The index is the place of the subscription's inbox in the context.
+    ///
+    /// # Errors
+    /// As there.
+    fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure>;
+    /// See [`Context::send`].
+    ///
+    /// # Errors
+    /// As there.
+    fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure>;
+    /// See [`Context::reference`].
+    ///
+    /// # Errors
+    /// As there.
+    fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure>;
+    /// See [`Context::is_wired`].
+    fn is_wired(&self, reference: u32) -> bool;
+    /// Calls through a reference.
+    ///
+    /// # Errors
+    /// As [`CallError`] says.
+    fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
+    /// See [`Context::log`].
+    fn log(&mut self, level: Level, line: fmt::Arguments<'_>);
+    /// See [`Context::console`].
+    fn console(&mut self, line: fmt::Arguments<'_>);
+    /// See [`Context::report`].
+    fn report(&mut self, path: &str, value: ReportValue);
+    /// See [`Context::count`].
+    fn count(&mut self, path: &str, more: i64);
+    /// See [`Context::vote`].
+    fn vote(&mut self, work: Work);
+}

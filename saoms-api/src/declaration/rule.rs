@@ -1,0 +1,240 @@
+use std::cmp::Ordering;
+use std::fmt;
+use std::time::Duration;
+
+use crate::parse_duration;
+
+/// The type of a property, as declarations name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PropertyKind {
+    /// `true` or `false`; as in XML Schema also `1` or `0`.
+    Boolean,
+    /// A whole number in decimal digits, with an optional sign.
+    Integer,
+    /// A finite number: decimals and an exponent are allowed.
+    Float,
+    /// Any text.
+    String,
+    /// What [`parse_duration`] reads.
+    Duration,
+    /// One of the allowed texts.
+    Enumeration,
+    /// Properties of its own.
+    Complex,
+}
+
+impl PropertyKind {
+    /// All of them.
+    pub const ALL: [PropertyKind; 7] = [
+        PropertyKind::Boolean,
+        PropertyKind::Integer,
+        PropertyKind::Float,
+        PropertyKind::String,
+        PropertyKind::Duration,
+        PropertyKind::Enumeration,
+        PropertyKind::Complex,
+    ];
+
+    /// The name that declarations use.
+    pub const fn name(self) -> &'static str {
+        match self {
+            PropertyKind::Boolean => "boolean",
+            PropertyKind::Integer => "integer",
+            PropertyKind::Float => "float",
+            PropertyKind::String => "string",
+            PropertyKind::Duration => "duration",
+            PropertyKind::Enumeration => "enumeration",
+            PropertyKind::Complex => "complex",
+        }
+    }
+
+    /// The type of this name.
+    pub fn from_name(name: &str) -> Option<PropertyKind> {
+        PropertyKind::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// A value that was read from text.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scalar {
+    /// True or false.
+    Boolean(bool),
+    /// A whole number; `i128` holds those of every integer type.
+    Integer(i128),
+    /// A finite number.
+    Float(f64),
+    /// A string, or the chosen text of an enumeration.
+    Text(String),
+    /// A duration.
+    Duration(Duration),
+}
+
+impl Scalar {
+    /// Their order; `None` for values of different types.
+    fn compare(&self, other: &Scalar) -> Option<Ordering> {
+        match (self, other) {
+            (Scalar::Integer(one), Scalar::Integer(other)) => Some(one.cmp(other)),
+            (Scalar::Float(one), Scalar::Float(other)) => one.partial_cmp(other),
+            (Scalar::Duration(one), Scalar::Duration(other)) => Some(one.cmp(other)),
+            _ => None,
+        }
+    }
+}
+
+/// What one scalar property accepts, as its declaration says. The checker and the component read values through it, so they agree.
+///
+/// ```
+/// use saoms_api::declaration::{PropertyKind, Rule, Scalar};
+///
+/// let rule = Rule { min: Some("1"), max: Some("99"), unit: Some("%"), ..Rule::of(PropertyKind::Integer) };
+/// assert_eq!(rule.check("35"), Ok(Scalar::Integer(35)));
+/// assert_eq!(rule.check("0").unwrap_err(), "`0` is out of range: expected a whole number from 1 to 99 [%]");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rule<'a> {
+    /// Its type.
+    pub kind: PropertyKind,
+    /// The least value.
+    pub min: Option<&'a str>,
+    /// The greatest value.
+    pub max: Option<&'a str>,
+    /// The value below which it has to stay.
+    pub exclusive_max: Option<&'a str>,
+    /// The unit, for messages.
+    pub unit: Option<&'a str>,
+    /// The texts that are allowed; empty where all are.
+    pub allowed: &'a [&'a str],
+    /// Whether the text must not be empty or blank.
+    pub non_empty: bool,
+}
+
+impl<'a> Rule<'a> {
+    /// Any value of the type.
+    pub const fn of(kind: PropertyKind) -> Rule<'a> {
+        Rule { kind, min: None, max: None, exclusive_max: None, unit: None, allowed: &[], non_empty: false }
+    }
+
+    /// Reads a value and checks it. Blanks around it do not count, except in a string.
+    ///
+    /// # Errors
+    /// What was found and what was expected, in one line.
+    pub fn check(&self, text: &str) -> Result<Scalar, String> {
+        let refuse = |what: &str| Err(format!("`{}` is {what}: expected {}", text.trim(), Expected(self)));
+        if text.trim().is_empty() && (self.non_empty || self.kind != PropertyKind::String) {
+            return Err(format!("the value is empty: expected {}", Expected(self)));
+        }
+        let Some(value) = parse_scalar(self.kind, text) else { return refuse(why_not(self.kind, text)) };
+        if let Scalar::Text(text) = &value
+            && !self.allowed.is_empty()
+            && !self.allowed.contains(&text.as_str())
+        {
+            return refuse("not allowed");
+        }
+        let order = |bound: Option<&str>| value.compare(&parse_scalar(self.kind, bound?)?);
+        let below = order(self.min) == Some(Ordering::Less);
+        let above = order(self.max) == Some(Ordering::Greater)
+            || matches!(order(self.exclusive_max), Some(Ordering::Greater | Ordering::Equal));
+        if below || above { refuse("out of range") } else { Ok(value) }
+    }
+
+    /// What is expected, as in `a whole number from 1 to 99 [%]`.
+    pub fn expected(&self) -> String {
+        Expected(self).to_string()
+    }
+}
+
+/// Reads a value of a scalar type. `None` when the text is no such value; [`Rule::check`] says why.
+pub fn parse_scalar(kind: PropertyKind, text: &str) -> Option<Scalar> {
+    let trimmed = text.trim();
+    match kind {
+        PropertyKind::Boolean => match trimmed {
+            "true" | "1" => Some(Scalar::Boolean(true)),
+            "false" | "0" => Some(Scalar::Boolean(false)),
+            _ => None,
+        },
+        PropertyKind::Integer => trimmed.parse().ok().map(Scalar::Integer),
+        // `parse` also knows `inf` and `NaN`, which no range could refuse.
+        PropertyKind::Float => {
+            trimmed.parse().ok().filter(|value: &f64| value.is_finite()).map(Scalar::Float)
+        }
+        PropertyKind::String => Some(Scalar::Text(text.to_owned())),
+        PropertyKind::Duration => parse_duration(trimmed).ok().map(Scalar::Duration),
+        PropertyKind::Enumeration => Some(Scalar::Text(trimmed.to_owned())),
+        PropertyKind::Complex => None,
+    }
+}
+
+/// What keeps a text from being a value of the type.
+fn why_not(kind: PropertyKind, text: &str) -> &'static str {
+    let text = text.trim();
+    match kind {
+        PropertyKind::Boolean => "not a boolean",
+        PropertyKind::Integer => {
+            let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
+            // Digits alone were refused, so there are too many.
+            if digits.bytes().all(|byte| byte.is_ascii_digit()) {
+                "out of range"
+            } else {
+                "not a whole number"
+            }
+        }
+        PropertyKind::Float => match text.parse::<f64>() {
+            Ok(value) if value.is_infinite() && text.contains(|c: char| c.is_ascii_digit()) => "out of range",
+            _ => "not a number",
+        },
+        PropertyKind::Duration => match text.strip_prefix('-').map(parse_duration) {
+            Some(Ok(_)) => "negative",
+            _ => "not a duration",
+        },
+        PropertyKind::String | PropertyKind::Enumeration => "not allowed",
+        PropertyKind::Complex => "a single value",
+    }
+}
+
+struct Expected<'a>(&'a Rule<'a>);
+
+impl fmt::Display for Expected<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rule = self.0;
+        if !rule.allowed.is_empty() {
+            return list(rule.allowed, formatter);
+        }
+        formatter.write_str(match rule.kind {
+            PropertyKind::Boolean => "`true` or `false`",
+            PropertyKind::Integer => "a whole number",
+            PropertyKind::Float => "a number",
+            PropertyKind::String if rule.non_empty => "a text that is not empty",
+            PropertyKind::String => "a text",
+            PropertyKind::Duration => "a duration",
+            PropertyKind::Enumeration => "one of the allowed values",
+            PropertyKind::Complex => "properties of its own",
+        })?;
+        match (rule.min, rule.max, rule.exclusive_max) {
+            (None, None, None) => {}
+            (Some(min), None, None) => write!(formatter, ", at least {min}")?,
+            (None, Some(max), _) => write!(formatter, ", at most {max}")?,
+            (None, None, Some(max)) => write!(formatter, ", below {max}")?,
+            (Some(min), Some(max), _) => write!(formatter, " from {min} to {max}")?,
+            (Some(min), None, Some(max)) => write!(formatter, " from {min} to below {max}")?,
+        }
+        match (rule.unit, rule.kind) {
+            (_, PropertyKind::Duration) => {
+                formatter.write_str(" (in ms, or with a unit: ns, us, ms, s, min, h)")
+            }
+            (Some(unit), _) => write!(formatter, " [{unit}]"),
+            (None, _) => Ok(()),
+        }
+    }
+}
+
+fn list(allowed: &[&str], formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+    for (place, value) in allowed.iter().enumerate() {
+        let before = match place {
+            0 => "",
+            last if last + 1 == allowed.len() => " or ",
+            _ => ", ",
+        };
+        write!(formatter, "{before}`{value}`")?;
+    }
+    Ok(())
+}

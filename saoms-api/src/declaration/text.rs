@@ -1,0 +1,95 @@
+/// A text that is put together while the program is compiled, as a tree: parts can come from constants of other types.
+#[derive(Clone, Copy, Debug)]
+pub enum Text {
+    /// As it stands.
+    Plain(&'static str),
+    /// As a JSON string: in quotation marks, with escapes.
+    Quoted(&'static str),
+    /// One after the other.
+    Joined(&'static [Text]),
+}
+
+impl Text {
+    /// No text.
+    pub const EMPTY: Text = Text::Plain("");
+
+    /// Its length in bytes.
+    pub const fn length(self) -> usize {
+        match self {
+            Text::Plain(text) => text.len(),
+            Text::Quoted(text) => {
+                let (bytes, mut at, mut length) = (text.as_bytes(), 0, 2);
+                while at < bytes.len() {
+                    length += escape(bytes[at]).1;
+                    at += 1;
+                }
+                length
+            }
+            Text::Joined(parts) => {
+                let (mut at, mut length) = (0, 0);
+                while at < parts.len() {
+                    length += parts[at].length();
+                    at += 1;
+                }
+                length
+            }
+        }
+    }
+
+    /// Its bytes; `N` has to be its [`length`](Text::length).
+    pub const fn bytes<const N: usize>(self) -> [u8; N] {
+        let mut bytes = [0; N];
+        let end = self.put(&mut bytes, 0);
+        assert!(end == N, "N has to be the length of the text");
+        bytes
+    }
+
+    const fn put(self, bytes: &mut [u8], start: usize) -> usize {
+        match self {
+            Text::Plain(text) => copy(text.as_bytes(), text.len(), bytes, start),
+            Text::Quoted(text) => {
+                let mut end = copy(b"\"", 1, bytes, start);
+                let mut at = 0;
+                while at < text.len() {
+                    let (escaped, length) = escape(text.as_bytes()[at]);
+                    end = copy(&escaped, length, bytes, end);
+                    at += 1;
+                }
+                copy(b"\"", 1, bytes, end)
+            }
+            Text::Joined(parts) => {
+                let (mut at, mut end) = (0, start);
+                while at < parts.len() {
+                    end = parts[at].put(bytes, end);
+                    at += 1;
+                }
+                end
+            }
+        }
+    }
+}
+
+/// The text of bytes from [`Text::bytes`].
+#[expect(clippy::panic, reason = "it stops the compiler, not the program: a text's bytes are UTF-8")]
+pub const fn text(bytes: &'static [u8]) -> &'static str {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(_) => panic!("not the bytes of a text"),
+    }
+}
+
+const fn copy(from: &[u8], length: usize, to: &mut [u8], at: usize) -> usize {
+    to.split_at_mut(at).1.split_at_mut(length).0.copy_from_slice(from.split_at(length).0);
+    at + length
+}
+
+const fn escape(byte: u8) -> ([u8; 6], usize) {
+    const DIGITS: &[u8; 16] = b"0123456789abcdef";
+    match byte {
+        b'"' | b'\\' => ([b'\\', byte, 0, 0, 0, 0], 2),
+        0..=0x1f => {
+            ([b'\\', b'u', b'0', b'0', DIGITS[(byte >> 4) as usize], DIGITS[(byte & 15) as usize]], 6)
+        }
+        _ => ([byte, 0, 0, 0, 0, 0], 1),
+    }
+}

@@ -1,0 +1,110 @@
+use std::fmt;
+
+/// Why a component cannot go on, in words for the person who runs the fleet.
+///
+/// The host adds the component's name and the time. What happens next is the `restart` policy of the composite.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    message: String,
+}
+
+impl Failure {
+    /// A failure with this message.
+    pub fn new(message: impl Into<String>) -> Failure {
+        Failure { message: message.into() }
+    }
+
+    /// The message.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Failure {
+        Failure { message }
+    }
+}
+
+impl From<&str> for Failure {
+    fn from(message: &str) -> Failure {
+        Failure::new(message)
+    }
+}
+
+impl From<CallError> for Failure {
+    fn from(error: CallError) -> Failure {
+        Failure::new(error.to_string())
+    }
+}
+
+/// Why a call through a reference brought no reply.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CallError {
+    /// The reference is not wired to a service.
+    NotWired {
+        /// The reference as the component names it.
+        reference: String,
+    },
+    /// The provider is in the middle of an execution or of another call, by this caller's own chain of calls or because it is slow.
+    Busy {
+        /// The component that offers the service.
+        provider: String,
+    },
+    /// The provider is not running: not scheduled yet, unscheduled, or failed.
+    NotRunning {
+        /// The component that offers the service.
+        provider: String,
+    },
+    /// The provider knows no such service, operation or argument types.
+    Mismatch {
+        /// What did not fit.
+        message: String,
+    },
+    /// The provider answered with a failure.
+    Failed {
+        /// The component that offers the service, empty where the caller is told by the host.
+        provider: String,
+        /// Its own words.
+        failure: Failure,
+    },
+}
+
+impl fmt::Display for CallError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CallError::NotWired { reference } => write!(
+                formatter,
+                "reference `{reference}` is not wired: give it a target in the composite, or do not call it"
+            ),
+            CallError::Busy { provider } => {
+                write!(
+                    formatter,
+                    "component `{provider}` is in the middle of an execution and cannot be called"
+                )
+            }
+            CallError::NotRunning { provider } => write!(formatter, "component `{provider}` is not running"),
+            CallError::Mismatch { message } => formatter.write_str(message),
+            CallError::Failed { provider, failure } if provider.is_empty() => write!(formatter, "{failure}"),
+            CallError::Failed { provider, failure } => {
+                write!(formatter, "component `{provider}` could not serve the call: {failure}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for CallError {}
+
+impl From<Failure> for CallError {
+    fn from(failure: Failure) -> CallError {
+        CallError::Failed { provider: String::new(), failure }
+    }
+}

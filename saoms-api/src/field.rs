@@ -1,0 +1,180 @@
+use crate::cdr::{DecodeError, Reader, Writer};
+use crate::declaration::Text;
+
+/// What a message, a service argument or a reply can hold: `bool`, `i8` to `i64`, `u8` to `u64`, `f32`, `f64`, `String`, `Vec`s,
+/// other messages, and enumerations (`#[derive(Field)]` on an enum without data).
+///
+/// Authors derive it; generated code and hosts call it.
+pub trait Field: Sized + 'static {
+    /// The type as a fragment of the schema, in JSON with the names of ROS 2 interfaces: `"uint32"`, `{"sequence":"int32"}`.
+    const TYPE: Text;
+    /// The least number of bytes that a value takes, at least 1. A sequence that claims more elements than the bytes left can hold is
+    /// refused before anything is allocated.
+    const LEAST_SIZE: usize;
+
+    /// Appends the value.
+    fn write(&self, writer: &mut Writer);
+
+    /// Reads a value.
+    ///
+    /// # Errors
+    /// The bytes hold no such value.
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError>;
+
+    /// Appends the elements of a sequence, after its length.
+    fn write_all(values: &[Self], writer: &mut Writer) {
+        for value in values {
+            value.write(writer);
+        }
+    }
+
+    /// Reads the elements of a sequence, after its length.
+    ///
+    /// # Errors
+    /// As [`read`](Field::read).
+    fn read_all(count: usize, reader: &mut Reader<'_>) -> Result<Vec<Self>, DecodeError> {
+        let mut values = Vec::with_capacity(count);
+        for _ in 0..count {
+            values.push(Self::read(reader)?);
+        }
+        Ok(values)
+    }
+}
+
+macro_rules! numbers {
+    ($($type:ty => $name:literal),* $(,)?) => {
+        $(impl Field for $type {
+            const TYPE: Text = Text::Plain(concat!("\"", $name, "\""));
+            const LEAST_SIZE: usize = size_of::<$type>();
+
+            #[inline]
+            fn write(&self, writer: &mut Writer) {
+                writer.scalar(self.to_le_bytes());
+            }
+
+            #[inline]
+            fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+                reader.scalar().map(<$type>::from_le_bytes)
+            }
+
+            fn write_all(values: &[Self], writer: &mut Writer) {
+                writer.scalars(values, <$type>::to_le_bytes);
+            }
+
+            fn read_all(count: usize, reader: &mut Reader<'_>) -> Result<Vec<Self>, DecodeError> {
+                reader.scalars(count, <$type>::from_le_bytes)
+            }
+        })*
+    };
+}
+
+numbers! {
+    i8 => "int8", i16 => "int16", i32 => "int32", i64 => "int64",
+    u8 => "uint8", u16 => "uint16", u32 => "uint32", u64 => "uint64",
+    f32 => "float32", f64 => "float64",
+}
+
+impl Field for bool {
+    const TYPE: Text = Text::Plain("\"bool\"");
+    const LEAST_SIZE: usize = 1;
+
+    #[inline]
+    fn write(&self, writer: &mut Writer) {
+        writer.scalar([u8::from(*self)]);
+    }
+
+    #[inline]
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let at = reader.offset();
+        match reader.scalar()? {
+            [0] => Ok(false),
+            [1] => Ok(true),
+            [other] => Err(DecodeError::new(format!("found {other}, expected 0 or 1 for a bool"), at)),
+        }
+    }
+}
+
+impl Field for String {
+    const TYPE: Text = Text::Plain("\"string\"");
+    const LEAST_SIZE: usize = 4;
+
+    fn write(&self, writer: &mut Writer) {
+        writer.string(self);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        reader.string().map(str::to_owned)
+    }
+}
+
+impl<T: Field> Field for Vec<T> {
+    const TYPE: Text = Text::Joined(&[Text::Plain("{\"sequence\":"), T::TYPE, Text::Plain("}")]);
+    const LEAST_SIZE: usize = 4;
+
+    fn write(&self, writer: &mut Writer) {
+        writer.length(self.len());
+        T::write_all(self, writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let count = reader.length(T::LEAST_SIZE)?;
+        T::read_all(count, reader)
+    }
+}
+
+/// The reply of an operation that has nothing to say.
+impl Field for () {
+    const TYPE: Text = Text::Plain("null");
+    const LEAST_SIZE: usize = 1;
+
+    fn write(&self, writer: &mut Writer) {
+        writer.scalar([0]);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        reader.scalar::<1>().map(|_| ())
+    }
+}
+
+/// The arguments of an operation: a tuple of up to six [`Field`]s, encoded one after the other.
+pub trait Arguments: Sized + 'static {
+    /// Appends the arguments.
+    fn write(&self, writer: &mut Writer);
+
+    /// Reads the arguments.
+    ///
+    /// # Errors
+    /// The bytes hold no such arguments.
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError>;
+}
+
+impl Arguments for () {
+    fn write(&self, writer: &mut Writer) {
+        Field::write(self, writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        Field::read(reader)
+    }
+}
+
+macro_rules! arguments {
+    ($($type:ident $place:tt),*) => {
+        impl<$($type: Field),*> Arguments for ($($type,)*) {
+            fn write(&self, writer: &mut Writer) {
+                $(self.$place.write(writer);)*
+            }
+
+            fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+                Ok(($($type::read(reader)?,)*))
+            }
+        }
+    };
+}
+
+arguments!(A 0);
+arguments!(A 0, B 1);
+arguments!(A 0, B 1, C 2);
+arguments!(A 0, B 1, C 2, D 3);
+arguments!(A 0, B 1, C 2, D 3, E 4);
+arguments!(A 0, B 1, C 2, D 3, E 4, F 5);

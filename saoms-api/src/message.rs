@@ -1,0 +1,231 @@
+use std::any::Any;
+use std::fmt;
+use std::slice;
+use std::sync::{Arc, OnceLock};
+
+use crate::cdr;
+use crate::{Field, Time};
+
+/// What components send each other. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are numbers, `bool`, `String`,
+/// `Vec`s, enumerations or other messages. `#[message(key = "field")]` names the integer field that is the key of a state topic.
+pub trait Message: Field + Clone + fmt::Debug + Send + Sync + 'static {
+    /// The name of the type, as tools show it.
+    const NAME: &'static str;
+    /// The schema as text, in the terms of ROS 2 interfaces. Equal text, equal encoding.
+    const SCHEMA: &'static str;
+
+    /// The key under which a state topic keeps this message; `None` keeps one message per publisher.
+    fn key(&self) -> Option<u64> {
+        None
+    }
+}
+
+/// An integer that can be the key of a state topic.
+pub trait Key: Copy {
+    /// The key; negative numbers have their place too.
+    fn key(self) -> u64;
+}
+
+macro_rules! keys {
+    ($($type:ty),*) => {
+        $(impl Key for $type {
+            fn key(self) -> u64 {
+                self as u64
+            }
+        })*
+    };
+}
+
+keys!(i8, i16, i32, i64, u8, u16, u32, u64);
+
+/// Who sent a message, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Header {
+    /// The sender's index in the running fleet.
+    pub sender: u32,
+    /// When the execution that sent it was due.
+    pub sent: Time,
+}
+
+/// A message on its way: one value, shared by all its readers, encoded at most once and only where it leaves this build of the program.
+#[derive(Clone)]
+pub struct SharedMessage(Arc<dyn Payload>);
+
+impl SharedMessage {
+    /// Shares a value.
+    pub fn new<M: Message>(header: Header, value: M) -> SharedMessage {
+        let key = value.key();
+        SharedMessage(Arc::new(Typed { header, key, value, bytes: OnceLock::new(), others: OnceLock::new() }))
+    }
+
+    /// Takes over a message that arrived as bytes (see [`cdr`]). The schema must have been checked against the topic's.
+    pub fn from_bytes(header: Header, key: Option<u64>, bytes: Vec<u8>) -> SharedMessage {
+        SharedMessage(Arc::new(Encoded { header, key, bytes, forms: OnceLock::new() }))
+    }
+
+    /// Who sent it, and when.
+    pub fn header(&self) -> Header {
+        self.0.header()
+    }
+
+    /// Its key on a state topic, if the message type has one.
+    pub fn key(&self) -> Option<u64> {
+        self.0.key()
+    }
+
+    /// The value as this Rust type. A message that arrived as bytes, or was sent by code built with another copy of the type, is
+    /// decoded once, however many readers there are. `None` when its bytes are not such a message.
+    pub fn get<M: Message>(&self) -> Option<&M> {
+        match self.0.value().downcast_ref::<M>() {
+            Some(value) => Some(value),
+            None => decoded(self.0.others(), self.0.bytes()),
+        }
+    }
+
+    /// The CDR form, encoded at the first call.
+    pub fn bytes(&self) -> &[u8] {
+        self.0.bytes()
+    }
+}
+
+impl fmt::Debug for SharedMessage {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "SharedMessage({:?})", self.header())
+    }
+}
+
+/// A decoded form, and those of other Rust types: as a rule there is one.
+struct Form {
+    value: Box<dyn Any + Send + Sync>,
+    next: OnceLock<Box<Form>>,
+}
+
+fn decoded<'a, M: Message>(mut forms: &'a OnceLock<Box<Form>>, bytes: &[u8]) -> Option<&'a M> {
+    while let Some(form) = forms.get() {
+        if let Some(value) = form.value.downcast_ref::<M>() {
+            return Some(value);
+        }
+        forms = &form.next;
+    }
+    let value: M = cdr::decode(bytes).ok()?;
+    // Another thread may have added a form meanwhile: walk on until ours has its place.
+    let mut form = Box::new(Form { value: Box::new(value), next: OnceLock::new() });
+    loop {
+        match forms.set(form) {
+            Ok(()) => return forms.get()?.value.downcast_ref(),
+            Err(ours) => {
+                form = ours;
+                forms = &forms.get()?.next;
+            }
+        }
+    }
+}
+
+trait Payload: Send + Sync {
+    fn header(&self) -> Header;
+    fn key(&self) -> Option<u64>;
+    fn value(&self) -> &dyn Any;
+    fn others(&self) -> &OnceLock<Box<Form>>;
+    fn bytes(&self) -> &[u8];
+}
+
+struct Typed<M> {
+    header: Header,
+    key: Option<u64>,
+    value: M,
+    bytes: OnceLock<Vec<u8>>,
+    others: OnceLock<Box<Form>>,
+}
+
+impl<M: Message> Payload for Typed<M> {
+    fn header(&self) -> Header {
+        self.header
+    }
+
+    fn key(&self) -> Option<u64> {
+        self.key
+    }
+
+    fn value(&self) -> &dyn Any {
+        &self.value
+    }
+
+    fn others(&self) -> &OnceLock<Box<Form>> {
+        &self.others
+    }
+
+    fn bytes(&self) -> &[u8] {
+        self.bytes.get_or_init(|| cdr::encode(&self.value))
+    }
+}
+
+struct Encoded {
+    header: Header,
+    key: Option<u64>,
+    bytes: Vec<u8>,
+    forms: OnceLock<Box<Form>>,
+}
+
+impl Payload for Encoded {
+    fn header(&self) -> Header {
+        self.header
+    }
+
+    fn key(&self) -> Option<u64> {
+        self.key
+    }
+
+    fn value(&self) -> &dyn Any {
+        &()
+    }
+
+    fn others(&self) -> &OnceLock<Box<Form>> {
+        &self.forms
+    }
+
+    fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+/// The messages of one topic in one period, oldest first, from [`Context::receive`](crate::Context::receive).
+#[derive(Debug)]
+pub struct Messages<'a, M> {
+    shared: slice::Iter<'a, SharedMessage>,
+    message: std::marker::PhantomData<fn() -> M>,
+}
+
+impl<'a, M: Message> Messages<'a, M> {
+    pub(crate) fn new(shared: &'a [SharedMessage]) -> Self {
+        Messages { shared: shared.iter(), message: std::marker::PhantomData }
+    }
+
+    /// The messages together with who sent them and when.
+    pub fn with_headers(self) -> impl DoubleEndedIterator<Item = (Header, &'a M)> {
+        self.shared.filter_map(|shared| Some((shared.header(), shared.get::<M>()?)))
+    }
+}
+
+impl<M> Clone for Messages<'_, M> {
+    fn clone(&self) -> Self {
+        Messages { shared: self.shared.clone(), message: std::marker::PhantomData }
+    }
+}
+
+impl<'a, M: Message> Iterator for Messages<'a, M> {
+    type Item = &'a M;
+
+    fn next(&mut self) -> Option<&'a M> {
+        self.shared.by_ref().find_map(SharedMessage::get)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (0, self.shared.size_hint().1)
+    }
+}
+
+impl<'a, M: Message> DoubleEndedIterator for Messages<'a, M> {
+    fn next_back(&mut self) -> Option<&'a M> {
+        self.shared.by_ref().rev().find_map(SharedMessage::get)
+    }
+}

@@ -1,0 +1,104 @@
+mod read;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod types;
+
+pub use read::{chosen, complex, only_known, property};
+pub use shape::{PropertyField, PropertyShape, contains};
+
+use crate::Failure;
+
+/// A value as the composite gives it, once `source` and `file` are resolved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PropertyValue {
+    /// The text of an attribute or element.
+    Text(String),
+    /// The values of a property that takes many.
+    Many(Vec<PropertyValue>),
+    /// The named values of a complex property.
+    Complex(Vec<(String, PropertyValue)>),
+}
+
+impl From<&str> for PropertyValue {
+    fn from(text: &str) -> PropertyValue {
+        PropertyValue::Text(text.to_owned())
+    }
+}
+
+/// What a composite can set of a component: derive it on a struct whose fields are [`PropertyField`]s.
+///
+/// ```
+/// use std::time::Duration;
+/// use saoms_api::{Properties, PropertyField};
+///
+/// /// What to do with late messages.
+/// #[derive(Debug, PartialEq, PropertyField)]
+/// enum Late {
+///     /// Use them.
+///     Use,
+///     /// Forget them.
+///     DropSilently,
+/// }
+///
+/// #[derive(Properties)]
+/// struct GuardProperties {
+///     /// The number of the guard.
+///     #[property(range = 1..=99, unique = "guard")]
+///     number: u8,
+///     /// How long to wait.
+///     #[property(default = "500ms", range = "1ms"..="1h")]
+///     wait_time: Duration,
+///     /// Late messages.
+///     #[property(default = "use")]
+///     late: Late,
+///     /// What to call it on screens.
+///     #[property(name = "label")]
+///     title: Option<String>,
+/// }
+///
+/// let values = [("number".to_owned(), "7".into()), ("late".to_owned(), "dropSilently".into())];
+/// let properties = GuardProperties::from_values(&values).unwrap();
+/// assert_eq!((properties.number, properties.wait_time), (7, Duration::from_millis(500)));
+/// assert_eq!((properties.late, properties.title), (Late::DropSilently, None));
+///
+/// let failure = GuardProperties::from_values(&[("number".to_owned(), "100".into())]).err().unwrap();
+/// assert_eq!(failure.message(), "property `number`: `100` is out of range: expected a whole number from 1 to 99");
+/// ```
+///
+/// # Attributes
+/// A property's name is the field's name in lowerCamelCase, its doc is the field's. `#[property(...)]` takes:
+///
+/// | attribute | meaning |
+/// | --- | --- |
+/// | `name = "..."` | another name |
+/// | `default = 5` | a literal, as the composite would write it; text for durations and enumerations |
+/// | `range = 1..=99` | for numbers; also `0.0..1.0`, `1..`, `..=9`, and `"1ms"..="1h"` for durations |
+/// | `unit = "m"` | shown to people |
+/// | `allowed("a", "b")` | for strings |
+/// | `unique = "robot"` | no two components of a composite have the same value for properties with this word |
+/// | `required_text` | for strings: not empty, not blank |
+///
+/// A property without a default is required, unless its type is an `Option` or a `Vec`.
+pub trait Properties: Sized {
+    /// The properties as a JSON array, in the shape of [`crate::declaration`].
+    const DECLARATION: &'static str;
+    /// Their names, in order.
+    const NAMES: &'static [&'static str];
+
+    /// Reads the values; absent ones take their defaults.
+    ///
+    /// # Errors
+    /// A value is missing, unknown, given twice, or not what the declaration allows: its name, what was found, what was expected.
+    fn from_values(values: &[(String, PropertyValue)]) -> Result<Self, Failure>;
+}
+
+/// No properties.
+impl Properties for () {
+    const DECLARATION: &'static str = "[]";
+    const NAMES: &'static [&'static str] = &[];
+
+    fn from_values(values: &[(String, PropertyValue)]) -> Result<Self, Failure> {
+        only_known(values, Self::NAMES)
+    }
+}

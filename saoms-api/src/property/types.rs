@@ -1,0 +1,90 @@
+use std::time::Duration;
+
+use super::{PropertyField, PropertyShape};
+use crate::PropertyValue;
+use crate::declaration::{PropertyKind, Rule, Scalar};
+
+/// Reads a scalar through its rule.
+fn scalar(value: &PropertyValue, rule: &Rule<'_>) -> Result<Scalar, String> {
+    let found = match value {
+        PropertyValue::Text(text) => return rule.check(text),
+        PropertyValue::Many(_) => "a list",
+        PropertyValue::Complex(_) => "a complex value",
+    };
+    Err(format!("found {found}: expected {}", rule.expected()))
+}
+
+macro_rules! scalars {
+    ($($type:ty, $rule:expr, $variant:ident($value:ident) => $result:expr;)*) => {
+        $(impl PropertyField for $type {
+            const TYPE: PropertyShape = PropertyShape::scalar($rule);
+
+            fn from_value(value: &PropertyValue) -> Result<Self, String> {
+                const RULE: Rule<'static> = <$type as PropertyField>::TYPE.rule;
+                match scalar(value, &RULE)? {
+                    Scalar::$variant($value) => $result,
+                    _ => Err(format!("expected {}", RULE.expected())),
+                }
+            }
+        })*
+    };
+}
+
+scalars! {
+    bool, Rule::of(PropertyKind::Boolean), Boolean(value) => Ok(value);
+    String, Rule::of(PropertyKind::String), Text(value) => Ok(value);
+    Duration, Rule::of(PropertyKind::Duration), Duration(value) => Ok(value);
+    f64, Rule::of(PropertyKind::Float), Float(value) => Ok(value);
+    f32, Rule::of(PropertyKind::Float), Float(value) => match value as f32 {
+        narrow if narrow.is_finite() => Ok(narrow),
+        _ => Err(format!("`{value}` is out of range: expected at most {}", f32::MAX)),
+    };
+}
+
+macro_rules! integers {
+    ($($type:ty, $min:literal, $max:literal;)*) => {
+        scalars! { $(
+            $type, Rule { min: Some($min), max: Some($max), ..Rule::of(PropertyKind::Integer) },
+                Integer(value) => <$type>::try_from(value).map_err(|error| error.to_string());
+        )* }
+    };
+}
+
+integers! {
+    i8, "-128", "127";
+    i16, "-32768", "32767";
+    i32, "-2147483648", "2147483647";
+    i64, "-9223372036854775808", "9223372036854775807";
+    u8, "0", "255";
+    u16, "0", "65535";
+    u32, "0", "4294967295";
+    u64, "0", "18446744073709551615";
+    usize, "0", "18446744073709551615";
+}
+
+impl<T: PropertyField> PropertyField for Option<T> {
+    const TYPE: PropertyShape = PropertyShape { optional: true, ..T::TYPE };
+
+    fn from_value(value: &PropertyValue) -> Result<Self, String> {
+        T::from_value(value).map(Some)
+    }
+
+    fn absent() -> Option<Self> {
+        Some(None)
+    }
+}
+
+impl<T: PropertyField> PropertyField for Vec<T> {
+    const TYPE: PropertyShape = PropertyShape { many: true, optional: true, ..T::TYPE };
+
+    fn from_value(value: &PropertyValue) -> Result<Self, String> {
+        match value {
+            PropertyValue::Many(values) => values.iter().map(T::from_value).collect(),
+            one => T::from_value(one).map(|value| vec![value]),
+        }
+    }
+
+    fn absent() -> Option<Self> {
+        Some(Vec::new())
+    }
+}

@@ -1,0 +1,42 @@
+use crate::{Class, DynComponent, Failure, Properties, PropertyValue};
+
+/// Makes a component from the values of its properties.
+type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
+
+/// What a registry needs of a class: its declaration as text, and how to construct it. `#[derive(Class)]` submits one for every class that
+/// is linked in; a registry value collects them with [`Registration::linked`].
+#[derive(Clone, Copy, Debug)]
+pub struct Registration {
+    declaration: &'static str,
+    construct: Construct,
+}
+
+impl Registration {
+    /// The registration of a class.
+    pub const fn of<C: Class>() -> Registration {
+        Registration {
+            declaration: C::DECLARATION,
+            construct: |values| Ok(Box::new(C::new(C::Properties::from_values(values)?)?)),
+        }
+    }
+
+    /// The class's declaration, in the shape of [`crate::declaration`].
+    pub const fn declaration(&self) -> &'static str {
+        self.declaration
+    }
+
+    /// Constructs a component from the values that its composite gives; absent ones take their defaults.
+    ///
+    /// # Errors
+    /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit together.
+    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        (self.construct)(values)
+    }
+
+    /// The classes that are linked into this program, in no particular order.
+    pub fn linked() -> impl Iterator<Item = &'static Registration> {
+        inventory::iter::<Registration>()
+    }
+}
+
+inventory::collect!(Registration);

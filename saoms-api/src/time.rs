@@ -1,0 +1,123 @@
+use std::fmt;
+use std::ops::{Add, Sub};
+use std::time::Duration;
+
+/// A point in the time of a run: nanoseconds since the run started.
+///
+/// In real time it follows the machine's monotonic clock, in virtual time it jumps from one due execution to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Time(u64);
+
+impl Time {
+    /// The start of the run.
+    pub const START: Time = Time(0);
+
+    /// The time that many nanoseconds after the start.
+    pub const fn from_nanos(nanos: u64) -> Time {
+        Time(nanos)
+    }
+
+    /// Nanoseconds since the start.
+    pub const fn as_nanos(self) -> u64 {
+        self.0
+    }
+
+    /// Seconds since the start.
+    pub fn as_secs_f64(self) -> f64 {
+        self.0 as f64 / 1e9
+    }
+
+    /// How long after `earlier` this is; zero when it is not after it.
+    pub const fn since(self, earlier: Time) -> Duration {
+        Duration::from_nanos(self.0.saturating_sub(earlier.0))
+    }
+}
+
+impl Add<Duration> for Time {
+    type Output = Time;
+
+    /// Saturates at the end of time, some 584 years after the start.
+    fn add(self, duration: Duration) -> Time {
+        Time(self.0.saturating_add(u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)))
+    }
+}
+
+impl Sub<Time> for Time {
+    type Output = Duration;
+
+    fn sub(self, earlier: Time) -> Duration {
+        self.since(earlier)
+    }
+}
+
+impl fmt::Display for Time {
+    /// In seconds with three decimals: `12.500 s`.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}.{:03} s", self.0 / 1_000_000_000, self.0 / 1_000_000 % 1_000)
+    }
+}
+
+/// Reads a duration as composite files write it: a bare number is milliseconds, otherwise the unit is one of `ns`, `us`, `ms`, `s`,
+/// `min` and `h`. Decimals are allowed; the result is rounded to nanoseconds.
+///
+/// ```
+/// use std::time::Duration;
+/// assert_eq!(saoms_api::parse_duration("500"), Ok(Duration::from_millis(500)));
+/// assert_eq!(saoms_api::parse_duration("100us"), Ok(Duration::from_micros(100)));
+/// assert_eq!(saoms_api::parse_duration("1.5 s"), Ok(Duration::from_millis(1500)));
+/// assert!(saoms_api::parse_duration("soon").is_err());
+/// ```
+///
+/// # Errors
+/// What was found and what was expected, when the text is no such duration, is negative, or is longer than 584 years.
+pub fn parse_duration(text: &str) -> Result<Duration, String> {
+    const EXPECTED: &str =
+        "a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h";
+    let text = text.trim();
+    let unit_at = text.find(|c: char| c.is_ascii_alphabetic() || c == 'µ').unwrap_or(text.len());
+    let (number, unit) = (text[..unit_at].trim(), text[unit_at..].trim());
+    let scale: u64 = match unit {
+        "ns" => 1,
+        "us" | "µs" => 1_000,
+        "" | "ms" => 1_000_000,
+        "s" => 1_000_000_000,
+        "min" => 60_000_000_000,
+        "h" => 3_600_000_000_000,
+        _ => return Err(format!("`{text}` is not a duration: expected {EXPECTED}")),
+    };
+    let too_long = || format!("`{text}` is longer than any run can last");
+    if let Some(digits) = number.strip_prefix('-')
+        && digits.parse::<f64>().is_ok()
+    {
+        return Err(format!("`{text}` is negative: expected {EXPECTED}"));
+    }
+    if !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()) {
+        let nanos = number.parse::<u64>().ok().and_then(|n| n.checked_mul(scale)).ok_or_else(too_long)?;
+        return Ok(Duration::from_nanos(nanos));
+    }
+    let plain = number.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+    match number.parse::<f64>() {
+        Ok(value) if plain => {
+            let nanos = (value * scale as f64).round();
+            if nanos < u64::MAX as f64 { Ok(Duration::from_nanos(nanos as u64)) } else { Err(too_long()) }
+        }
+        _ => Err(format!("`{text}` is not a duration: expected {EXPECTED}")),
+    }
+}
+
+/// Writes a duration as [`parse_duration`] reads it, with the largest unit that needs no decimals.
+///
+/// ```
+/// use std::time::Duration;
+/// assert_eq!(saoms_api::format_duration(Duration::from_micros(100)), "100us");
+/// assert_eq!(saoms_api::format_duration(Duration::from_millis(1500)), "1500ms");
+/// assert_eq!(saoms_api::format_duration(Duration::from_secs(2)), "2s");
+/// ```
+pub fn format_duration(duration: Duration) -> String {
+    let nanos = duration.as_nanos();
+    let units = [("s", 1_000_000_000), ("ms", 1_000_000), ("us", 1_000)];
+    match units.iter().find(|(_, scale)| nanos.is_multiple_of(*scale)) {
+        Some((unit, scale)) => format!("{}{unit}", nanos / scale),
+        None => format!("{nanos}ns"),
+    }
+}

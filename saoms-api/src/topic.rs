@@ -1,0 +1,132 @@
+use std::fmt;
+use std::marker::PhantomData;
+
+use crate::Message;
+
+/// What a topic promises to its readers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TopicKind {
+    /// Keeps the newest message of each key; a reader that comes later gets those. The key is [`Message::key`], or the publisher.
+    State,
+    /// Loses nothing: every message reaches every reader, in order, through a bounded queue whose overflow is counted and reported.
+    Event,
+}
+
+impl TopicKind {
+    /// `state` or `event`, as declarations say it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            TopicKind::State => "state",
+            TopicKind::Event => "event",
+        }
+    }
+}
+
+/// A named channel for messages of one type. Make it a constant, and name it in `#[class(publishes(...), subscribes(...))]`.
+pub struct Topic<M> {
+    name: &'static str,
+    kind: TopicKind,
+    message: PhantomData<fn() -> M>,
+}
+
+impl<M: Message> Topic<M> {
+    /// A topic that keeps the newest message of each key.
+    pub const fn state(name: &'static str) -> Topic<M> {
+        Topic { name, kind: TopicKind::State, message: PhantomData }
+    }
+
+    /// A topic that loses no message.
+    pub const fn event(name: &'static str) -> Topic<M> {
+        Topic { name, kind: TopicKind::Event, message: PhantomData }
+    }
+
+    /// The name before any `topicRename`.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// State or event.
+    pub const fn kind(&self) -> TopicKind {
+        self.kind
+    }
+
+    /// The schema of its messages, for the declaration of a class.
+    pub const fn schema(&self) -> &'static str {
+        M::SCHEMA
+    }
+
+    /// What the host is told when a component publishes or subscribes.
+    pub const fn declaration(&self) -> TopicDeclaration<'static> {
+        TopicDeclaration { name: self.name, kind: self.kind, message: M::NAME, schema: M::SCHEMA }
+    }
+}
+
+impl<M> fmt::Debug for Topic<M> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Topic({}, {})", self.name, self.kind.name())
+    }
+}
+
+/// A topic without its Rust type, as it crosses the boundary to the host.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TopicDeclaration<'a> {
+    /// The name before any `topicRename`.
+    pub name: &'a str,
+    /// State or event.
+    pub kind: TopicKind,
+    /// The name of the message type.
+    pub message: &'a str,
+    /// The schema of the message type: two ends agree when these are equal.
+    pub schema: &'a str,
+}
+
+/// The right to send on a topic, from [`Context::publish`](crate::Context::publish). The default one belongs to no topic: sending with it
+/// is a failure that says so.
+pub struct Publisher<M> {
+    index: u32,
+    message: PhantomData<fn() -> M>,
+}
+
+/// The right to read a topic, from [`Context::subscribe`](crate::Context::subscribe). The default one belongs to no topic and receives
+/// nothing.
+pub struct Subscription<M> {
+    index: u32,
+    message: PhantomData<fn() -> M>,
+}
+
+macro_rules! handle {
+    ($name:ident) => {
+        impl<M> $name<M> {
+            pub(crate) const fn new(index: u32) -> Self {
+                $name { index, message: PhantomData }
+            }
+
+            pub(crate) const fn index(&self) -> u32 {
+                self.index
+            }
+        }
+
+        impl<M> Default for $name<M> {
+            fn default() -> Self {
+                $name::new(u32::MAX)
+            }
+        }
+
+        impl<M> Clone for $name<M> {
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+
+        impl<M> Copy for $name<M> {}
+
+        impl<M> fmt::Debug for $name<M> {
+            fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(formatter, concat!(stringify!($name), "({})"), self.index)
+            }
+        }
+    };
+}
+
+handle!(Publisher);
+handle!(Subscription);

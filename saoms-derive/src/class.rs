@@ -1,0 +1,269 @@
+use proc_macro2::{Span, TokenStream};
+use quote::{quote, quote_spanned};
+use syn::ext::IdentExt;
+use syn::meta::ParseNestedMeta;
+use syn::parse::ParseStream;
+use syn::punctuated::Punctuated;
+use syn::spanned::Spanned;
+use syn::{DeriveInput, Error, Expr, Ident, LitStr, Path, Result, Token, parenthesized};
+
+use crate::docs::docs;
+use crate::field::no_generics;
+use crate::json::{self, Json};
+use crate::literal::Literal;
+
+/// Everything that `#[class(...)]` says.
+#[derive(Default)]
+struct Declared {
+    name: Option<LitStr>,
+    periodic: Option<(bool, Span)>,
+    publishes: Vec<Path>,
+    subscribes: Vec<Path>,
+    services: Vec<(LitStr, Path)>,
+    references: Vec<(LitStr, Path, bool)>,
+    also: Vec<Also>,
+}
+
+/// A further name of the class, with preset properties.
+struct Also {
+    name: LitStr,
+    presets: Vec<(String, String, Span)>,
+}
+
+/// `#[derive(Class)]`.
+pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
+    no_generics(&input.generics, "a component")?;
+    let declared = Declared::of(input)?;
+    let ident = &input.ident;
+    let properties = quote!(<#ident as ::saoms_api::Component>::Properties as ::saoms_api::Properties);
+    let declaration = json::flat(&declared.declaration(&docs(&input.attrs), &properties)?.into_text());
+    let class = declared.name()?.value();
+    let arms = declared.services.iter().map(|(service, interface)| {
+        quote_spanned! {interface.span()=>
+            #service => <dyn #interface>::dispatch(self, invocation, context),
+        }
+    });
+    let presets = declared.also.iter().flat_map(|also| &also.presets).map(|(name, _, span)| {
+        let message = format!("`also` presets `{name}`, which is no property of the component");
+        quote_spanned! {*span=>
+            const _: () = ::core::assert!(::saoms_api::generated::contains(<#properties>::NAMES, #name), #message);
+        }
+    });
+    Ok(quote! {
+        const _: () = {
+            const DECLARATION: &str = #declaration;
+
+            #[automatically_derived]
+            impl ::saoms_api::Class for #ident {
+                const DECLARATION: &'static str = DECLARATION;
+
+                fn serve(
+                    &mut self,
+                    invocation: &mut ::saoms_api::Invocation<'_>,
+                    context: &mut ::saoms_api::Context<'_>,
+                ) -> ::core::result::Result<(), ::saoms_api::CallError> {
+                    let _ = &context;
+                    match invocation.service {
+                        #(#arms)*
+                        other => ::core::result::Result::Err(::saoms_api::generated::no_service(#class, other)),
+                    }
+                }
+            }
+
+            #(#presets)*
+
+            ::saoms_api::generated::inventory::submit! { ::saoms_api::Registration::of::<#ident>() }
+        };
+    })
+}
+
+impl Declared {
+    fn of(input: &DeriveInput) -> Result<Declared> {
+        let mut declared = Declared::default();
+        let attributes: Vec<_> =
+            input.attrs.iter().filter(|attribute| attribute.path().is_ident("class")).collect();
+        for attribute in &attributes {
+            attribute.parse_nested_meta(|meta| declared.take(&meta))?;
+        }
+        let place = attributes.first().map_or(input.ident.span(), |attribute| attribute.span());
+        if declared.name.is_none() {
+            let message = "expected `#[class(name = \"...\", periodic)]`: the name that composite files use";
+            return Err(Error::new(place, message));
+        }
+        match declared.periodic {
+            None => Err(Error::new(
+                place,
+                "expected `periodic` or `passive`: whether the component is executed in each period",
+            )),
+            Some((false, _)) => match declared.subscribes.first() {
+                Some(topic) => Err(Error::new_spanned(
+                    topic,
+                    "a passive component is never executed and so receives nothing: make it `periodic`, or drop `subscribes`",
+                )),
+                None => Ok(declared),
+            },
+            Some((true, _)) => Ok(declared),
+        }
+    }
+
+    fn take(&mut self, meta: &ParseNestedMeta<'_>) -> Result<()> {
+        let word = meta.path.get_ident().map(|ident| ident.unraw().to_string()).unwrap_or_default();
+        match word.as_str() {
+            "name" if self.name.is_none() => self.name = Some(meta.value()?.parse()?),
+            "name" => {
+                return Err(meta.error("the class has a name already: use `also(\"...\")` for further ones"));
+            }
+            "periodic" | "passive" if self.periodic.is_none() => {
+                self.periodic = Some((word == "periodic", meta.path.span()));
+            }
+            "periodic" | "passive" => {
+                return Err(meta.error("a component is either `periodic` or `passive`, said once"));
+            }
+            "publishes" => self.publishes.extend(paths(meta.input)?),
+            "subscribes" => self.subscribes.extend(paths(meta.input)?),
+            "service" => {
+                let list;
+                parenthesized!(list in meta.input);
+                let (name, interface) = named(&list)?;
+                end(&list)?;
+                if self.services.iter().any(|(other, _)| other.value() == name.value()) {
+                    return Err(Error::new(name.span(), "another service has this name, too"));
+                }
+                self.services.push((name, interface));
+            }
+            "reference" => {
+                let list;
+                parenthesized!(list in meta.input);
+                let (name, interface) = named(&list)?;
+                let optional = optional(&list)?;
+                end(&list)?;
+                if self.references.iter().any(|(other, ..)| other.value() == name.value()) {
+                    return Err(Error::new(name.span(), "another reference has this name, too"));
+                }
+                self.references.push((name, interface, optional));
+            }
+            "also" => {
+                let list;
+                parenthesized!(list in meta.input);
+                self.also.push(Also::of(&list)?);
+            }
+            _ => {
+                return Err(meta.error(
+                    "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, `reference`, `also`",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> Result<&LitStr> {
+        self.name.as_ref().ok_or_else(|| Error::new(Span::call_site(), "expected a name"))
+    }
+
+    fn declaration(&self, doc: &str, properties: &TokenStream) -> Result<Json> {
+        let mut text = Json::default();
+        text.plain("{\"contract\":1,\"class\":");
+        text.string(&self.name()?.value());
+        text.member("doc", doc);
+        text.member("kind", if matches!(self.periodic, Some((true, _))) { "periodic" } else { "passive" });
+        text.plain(",\"also\":");
+        text.list(&self.also, |text, also| also.declare(text));
+        text.plain(",\"properties\":");
+        text.json(quote!(<#properties>::DECLARATION));
+        for (member, topics) in [("publishes", &self.publishes), ("subscribes", &self.subscribes)] {
+            text.plain(&format!(",\"{member}\":"));
+            text.list(topics, topic);
+        }
+        text.plain(",\"services\":");
+        text.list(&self.services, |text, (name, of)| {
+            interface(text, name, of);
+            text.plain("}");
+        });
+        text.plain(",\"references\":");
+        text.list(&self.references, |text, (name, of, optional)| {
+            interface(text, name, of);
+            text.plain(&format!(",\"optional\":{optional}}}"));
+        });
+        text.plain("}");
+        Ok(text)
+    }
+}
+
+impl Also {
+    fn of(list: ParseStream<'_>) -> Result<Also> {
+        let name = list.parse()?;
+        let mut presets: Vec<(String, String, Span)> = Vec::new();
+        while list.parse::<Option<Token![,]>>()?.is_some() && !list.is_empty() {
+            let property = Ident::parse_any(list)?;
+            list.parse::<Token![=]>()?;
+            let value = Literal::of(&list.parse::<Expr>()?)?.text();
+            let name = property.unraw().to_string();
+            if presets.iter().any(|(other, ..)| *other == name) {
+                return Err(Error::new(property.span(), "this property is preset already"));
+            }
+            presets.push((name, value, property.span()));
+        }
+        end(list)?;
+        Ok(Also { name, presets })
+    }
+
+    fn declare(&self, text: &mut Json) {
+        text.plain("{\"class\":");
+        text.string(&self.name.value());
+        text.plain(",\"preset\":{");
+        for (place, (name, value, _)) in self.presets.iter().enumerate() {
+            text.plain(if place > 0 { "," } else { "" });
+            text.string(name);
+            text.plain(":");
+            text.string(value);
+        }
+        text.plain("}}");
+    }
+}
+
+fn topic(text: &mut Json, topic: &Path) {
+    text.plain("{\"topic\":");
+    text.quoted(quote_spanned!(topic.span()=> #topic.name()));
+    text.plain(",\"kind\":");
+    text.quoted(quote!(#topic.kind().name()));
+    text.plain(",\"message\":");
+    text.quoted(quote!(#topic.declaration().message));
+    text.plain(",\"schema\":");
+    text.json(quote!(#topic.schema()));
+    text.plain("}");
+}
+
+fn interface(text: &mut Json, name: &LitStr, interface: &Path) {
+    text.plain("{\"name\":");
+    text.string(&name.value());
+    text.plain(",\"interface\":");
+    text.json(quote_spanned!(interface.span()=> <dyn #interface as ::saoms_api::Interface>::DECLARATION));
+}
+
+fn paths(input: ParseStream<'_>) -> Result<Vec<Path>> {
+    let list;
+    parenthesized!(list in input);
+    Ok(Punctuated::<Path, Token![,]>::parse_terminated(&list)?.into_iter().collect())
+}
+
+/// `"name": Interface`.
+fn named(list: ParseStream<'_>) -> Result<(LitStr, Path)> {
+    let name = list.parse()?;
+    list.parse::<Token![:]>()?;
+    Ok((name, list.parse()?))
+}
+
+/// `, optional`.
+fn optional(list: ParseStream<'_>) -> Result<bool> {
+    if !list.peek(Token![,]) || !list.peek2(Ident) {
+        return Ok(false);
+    }
+    list.parse::<Token![,]>()?;
+    let word: Ident = list.parse()?;
+    if word == "optional" { Ok(true) } else { Err(Error::new(word.span(), "expected `optional`")) }
+}
+
+fn end(list: ParseStream<'_>) -> Result<()> {
+    list.parse::<Option<Token![,]>>()?;
+    if list.is_empty() { Ok(()) } else { Err(list.error("expected the end")) }
+}

@@ -1,0 +1,160 @@
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::ext::IdentExt;
+use syn::{Data, DeriveInput, Error, Fields, Generics, Ident, LitStr, Result, Type};
+
+use crate::enumeration;
+use crate::json::{self, Json};
+
+/// `#[derive(Message)]`.
+pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
+    let fields = struct_fields(input, "a message")?;
+    let mut name = input.ident.unraw().to_string();
+    let mut key: Option<LitStr> = None;
+    for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("message")) {
+        attribute.parse_nested_meta(|meta| {
+            if meta.path.is_ident("name") {
+                name = meta.value()?.parse::<LitStr>()?.value();
+            } else if meta.path.is_ident("key") {
+                key = Some(meta.value()?.parse()?);
+            } else {
+                return Err(meta.error("expected `name = \"...\"` or `key = \"field\"`"));
+            }
+            Ok(())
+        })?;
+    }
+    let key_field = key.as_ref().map(|key| key_field(key, &fields)).transpose()?;
+    let key_name = key_field.as_ref().map(|field| field.unraw().to_string()).unwrap_or_default();
+    let key = key_field.map(|field| {
+        quote! {
+            fn key(&self) -> ::core::option::Option<u64> {
+                ::core::option::Option::Some(::saoms_api::generated::Key::key(self.#field))
+            }
+        }
+    });
+    let ident = &input.ident;
+    let field = structure(ident, &name, &key_name, &fields);
+    let schema = json::flat(&quote!(<#ident as ::saoms_api::Field>::TYPE));
+    Ok(quote! {
+        #field
+
+        #[automatically_derived]
+        impl ::saoms_api::Message for #ident {
+            const NAME: &'static str = #name;
+            const SCHEMA: &'static str = #schema;
+
+            #key
+        }
+    })
+}
+
+/// `#[derive(Field)]`.
+pub(crate) fn field(input: &DeriveInput) -> Result<TokenStream> {
+    if let Data::Enum(data) = &input.data {
+        return enumeration::field(input, data);
+    }
+    let fields = struct_fields(input, "a field")?;
+    let mut name = input.ident.unraw().to_string();
+    for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("field")) {
+        attribute.parse_nested_meta(|meta| {
+            if !meta.path.is_ident("name") {
+                return Err(meta.error("expected `name = \"...\"`"));
+            }
+            name = meta.value()?.parse::<LitStr>()?.value();
+            Ok(())
+        })?;
+    }
+    Ok(structure(&input.ident, &name, "", &fields))
+}
+
+fn key_field<'a>(key: &LitStr, fields: &[(&'a Ident, &Type)]) -> Result<&'a Ident> {
+    let names =
+        || fields.iter().map(|(name, _)| format!("`{}`", name.unraw())).collect::<Vec<_>>().join(", ");
+    match fields.iter().find(|(name, _)| name.unraw() == key.value().as_str()) {
+        Some((name, _)) => Ok(name),
+        None => Err(Error::new(
+            key.span(),
+            format!("there is no field `{}`: expected one of {}", key.value(), names()),
+        )),
+    }
+}
+
+/// The named fields of a struct; none for `struct X;`.
+pub(crate) fn struct_fields<'a>(input: &'a DeriveInput, what: &str) -> Result<Vec<(&'a Ident, &'a Type)>> {
+    no_generics(&input.generics, what)?;
+    match &input.data {
+        Data::Struct(data) => match &data.fields {
+            Fields::Named(fields) => {
+                Ok(fields.named.iter().filter_map(|field| Some((field.ident.as_ref()?, &field.ty))).collect())
+            }
+            Fields::Unit => Ok(Vec::new()),
+            Fields::Unnamed(fields) => Err(Error::new_spanned(
+                fields,
+                format!("{what} has named fields, which its declaration lists"),
+            )),
+        },
+        _ => Err(Error::new_spanned(&input.ident, format!("{what} has to be a struct with named fields"))),
+    }
+}
+
+pub(crate) fn no_generics(generics: &Generics, what: &str) -> Result<()> {
+    if generics.params.is_empty() {
+        return Ok(());
+    }
+    Err(Error::new_spanned(
+        generics,
+        format!("{what} cannot be generic: one declaration stands for one type"),
+    ))
+}
+
+fn structure(ident: &Ident, name: &str, key: &str, fields: &[(&Ident, &Type)]) -> TokenStream {
+    let mut text = Json::default();
+    text.plain("{\"name\":");
+    text.string(name);
+    text.plain(",\"fields\":");
+    text.list(fields, |text, (name, of)| {
+        text.plain("{\"name\":");
+        text.string(&name.unraw().to_string());
+        text.plain(",\"type\":");
+        text.text(quote!(<#of as ::saoms_api::Field>::TYPE));
+        text.plain("}");
+    });
+    text.member("key", key);
+    text.plain("}");
+    let text = text.into_text();
+    let names: Vec<_> = fields.iter().map(|(name, _)| name).collect();
+    let locals: Vec<_> = names.iter().map(|name| format_ident!("field_{}", name.unraw())).collect();
+    let types: Vec<_> = fields.iter().map(|(_, of)| of).collect();
+    // A structure without fields is one byte, as in ROS 2.
+    let (least, write, read) = if fields.is_empty() {
+        (
+            quote!(1),
+            quote!(::saoms_api::Field::write(&(), writer)),
+            quote!(<() as ::saoms_api::Field>::read(reader)?;),
+        )
+    } else {
+        (
+            quote!(#(<#types as ::saoms_api::Field>::LEAST_SIZE)+*),
+            quote!(#(::saoms_api::Field::write(&self.#names, writer);)*),
+            quote!(#(let #locals = <#types as ::saoms_api::Field>::read(reader)?;)*),
+        )
+    };
+    quote! {
+        #[automatically_derived]
+        impl ::saoms_api::Field for #ident {
+            const TYPE: ::saoms_api::declaration::Text = #text;
+            const LEAST_SIZE: usize = #least;
+
+            fn write(&self, writer: &mut ::saoms_api::cdr::Writer) {
+                #write
+            }
+
+            fn read(
+                reader: &mut ::saoms_api::cdr::Reader<'_>,
+            ) -> ::core::result::Result<Self, ::saoms_api::cdr::DecodeError> {
+                #read
+                ::core::result::Result::Ok(#ident { #(#names: #locals),* })
+            }
+        }
+    }
+}

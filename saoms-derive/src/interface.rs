@@ -1,0 +1,293 @@
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::ext::IdentExt;
+use syn::parse::Parser;
+use syn::punctuated::Punctuated;
+use syn::{
+    Attribute, Error, FnArg, GenericArgument, Ident, ItemTrait, LitStr, Meta, Pat, PathArguments,
+    ReceiverKind, Result, ReturnType, Token, TraitItem, TraitItemFn, Type,
+};
+
+use crate::case::lower_camel;
+use crate::docs::docs;
+use crate::json::{self, Json};
+
+/// One operation.
+struct Operation<'a> {
+    attributes: Vec<&'a Attribute>,
+    ident: &'a Ident,
+    name: String,
+    context: &'a Type,
+    arguments: Vec<(&'a Ident, &'a Type)>,
+    reply: &'a Type,
+}
+
+/// `#[interface(name = "...")]`.
+pub(crate) fn interface(arguments: TokenStream, item: &ItemTrait) -> Result<TokenStream> {
+    let name = name(arguments)?;
+    if !item.generics.params.is_empty() {
+        return Err(Error::new_spanned(
+            &item.generics,
+            "an interface cannot be generic: one declaration stands for one type",
+        ));
+    }
+    let operations = item.items.iter().map(Operation::of).collect::<Result<Vec<_>>>()?;
+    let mut text = Json::default();
+    text.plain("{\"name\":");
+    text.string(&name);
+    text.plain(",\"operations\":");
+    text.list(&operations, Operation::declare);
+    text.plain("}");
+    let declaration = json::flat(&text.into_text());
+    let (ident, visibility) = (&item.ident, &item.vis);
+    let arms = operations.iter().enumerate().map(|(number, operation)| operation.arm(number));
+    let reference = reference(item, &name, &operations);
+    Ok(quote! {
+        #item
+
+        impl ::saoms_api::Interface for dyn #ident {
+            const NAME: &'static str = #name;
+            const DECLARATION: &'static str = #declaration;
+        }
+
+        impl dyn #ident {
+            #[doc(hidden)]
+            #visibility fn dispatch<C: ::saoms_api::Component + #ident>(
+                component: &mut C,
+                invocation: &mut ::saoms_api::Invocation<'_>,
+                context: &mut ::saoms_api::Context<'_>,
+            ) -> ::core::result::Result<(), ::saoms_api::CallError> {
+                match invocation.call.operation() {
+                    #(#arms)*
+                    other => ::core::result::Result::Err(::saoms_api::generated::no_operation(#name, other)),
+                }
+            }
+        }
+
+        #reference
+    })
+}
+
+fn reference(item: &ItemTrait, name: &str, operations: &[Operation<'_>]) -> TokenStream {
+    let (ident, visibility) = (&item.ident, &item.vis);
+    let reference = format_ident!("{}Reference", ident.unraw());
+    let doc = format!(
+        "A handle to call a service with the interface [`{ident}`] through, from [`Context::reference`](::saoms_api::Context::reference)."
+    );
+    let methods =
+        operations.iter().enumerate().map(|(number, operation)| operation.method(visibility, number));
+    quote! {
+        #[doc = #doc]
+        #[derive(Clone, Copy, Debug)]
+        #visibility struct #reference {
+            index: u32,
+        }
+
+        impl ::core::default::Default for #reference {
+            fn default() -> Self {
+                #reference { index: u32::MAX }
+            }
+        }
+
+        impl ::saoms_api::Reference for #reference {
+            const INTERFACE: &'static str = #name;
+
+            fn from_index(index: u32) -> Self {
+                #reference { index }
+            }
+
+            fn index(&self) -> u32 {
+                self.index
+            }
+        }
+
+        impl #reference {
+            #(#methods)*
+        }
+    }
+}
+
+impl<'a> Operation<'a> {
+    fn of(item: &'a TraitItem) -> Result<Operation<'a>> {
+        let TraitItem::Fn(function) = item else {
+            return Err(Error::new_spanned(item, "an interface has operations only: expected `fn`"));
+        };
+        if let Some(default) = &function.default {
+            return Err(Error::new_spanned(
+                default,
+                "the component gives the body of an operation: expected `;`",
+            ));
+        }
+        if !function.sig.generics.params.is_empty() {
+            return Err(Error::new_spanned(&function.sig.generics, "an operation cannot be generic"));
+        }
+        if let Some(asyncness) = &function.sig.asyncness {
+            return Err(Error::new_spanned(asyncness, "an operation runs at once: expected no `async`"));
+        }
+        let mut inputs = function.sig.inputs.iter();
+        receiver(function, inputs.next())?;
+        let context = match inputs.next() {
+            Some(FnArg::Typed(context)) if is_context(&context.ty) => &*context.ty,
+            other => {
+                let found = other.map_or_else(|| quote!(), |argument| quote!(#argument));
+                let place = if found.is_empty() {
+                    let ident = &function.sig.ident;
+                    quote!(#ident)
+                } else {
+                    found
+                };
+                return Err(Error::new_spanned(
+                    place,
+                    "an operation takes `context: &mut Context<'_>` after `&mut self`",
+                ));
+            }
+        };
+        let arguments = inputs.map(argument).collect::<Result<Vec<_>>>()?;
+        if arguments.len() > 6 {
+            return Err(Error::new_spanned(
+                &function.sig.inputs,
+                "an operation takes up to six arguments: put them into a struct with `#[derive(Field)]`",
+            ));
+        }
+        Ok(Operation {
+            attributes: function.attrs.iter().filter(|attribute| attribute.path().is_ident("doc")).collect(),
+            ident: &function.sig.ident,
+            name: lower_camel(&function.sig.ident),
+            context,
+            arguments,
+            reply: reply(function)?,
+        })
+    }
+
+    fn tuple(&self) -> (TokenStream, TokenStream) {
+        let (names, types): (Vec<_>, Vec<_>) = self.arguments.iter().copied().unzip();
+        (quote!((#(#names,)*)), quote!((#(#types,)*)))
+    }
+
+    fn declare(text: &mut Json, operation: &Operation<'_>) {
+        text.plain("{\"name\":");
+        text.string(&operation.name);
+        text.plain(",\"arguments\":");
+        text.list(&operation.arguments, |text, (name, of)| {
+            text.plain("{\"name\":");
+            text.string(&lower_camel(name));
+            text.plain(",\"type\":");
+            text.text(quote!(<#of as ::saoms_api::Field>::TYPE));
+            text.plain("}");
+        });
+        let reply = operation.reply;
+        text.plain(",\"reply\":");
+        text.text(quote!(<#reply as ::saoms_api::Field>::TYPE));
+        text.plain("}");
+    }
+
+    /// The provider's side.
+    fn arm(&self, number: usize) -> TokenStream {
+        let (number, ident, reply) = (number as u32, self.ident, self.reply);
+        let (names, types) = self.tuple();
+        let arguments = self.arguments.iter().map(|(name, _)| name);
+        quote! {
+            #number => invocation.serve::<C, #types, #reply>(component, context, |component, context, #names| {
+                component.#ident(context, #(#arguments),*)
+            }),
+        }
+    }
+
+    /// The caller's side.
+    fn method(&self, visibility: &syn::Visibility, number: usize) -> TokenStream {
+        let (number, ident, reply, context) = (number as u32, self.ident, self.reply, self.context);
+        let (names, types) = self.tuple();
+        let arguments = self.arguments.iter().map(|(name, of)| quote!(#name: #of));
+        let documented = docs(&self.attributes.iter().copied().cloned().collect::<Vec<_>>());
+        let attributes = &self.attributes;
+        let fallback = documented.is_empty().then(|| {
+            let doc = format!("Calls `{}`.", self.name);
+            quote!(#[doc = #doc])
+        });
+        quote! {
+            #(#attributes)*
+            #fallback
+            ///
+            /// # Errors
+            /// The reference is not wired, or the provider cannot be called, or failed.
+            #visibility fn #ident(
+                &self,
+                context: #context,
+                #(#arguments),*
+            ) -> ::core::result::Result<#reply, ::saoms_api::CallError> {
+                let mut call = ::saoms_api::TypedCall::<#types, #reply>::new(#number, #names);
+                context.call(self.index, &mut call)?;
+                call.into_reply()
+            }
+        }
+    }
+}
+
+fn name(arguments: TokenStream) -> Result<String> {
+    const EXPECTED: &str = "expected `#[interface(name = \"...\")]`, the name that composite files use";
+    let span = arguments.clone();
+    let metas = Punctuated::<Meta, Token![,]>::parse_terminated.parse2(arguments)?;
+    match metas.first() {
+        Some(Meta::NameValue(meta)) if meta.path.is_ident("name") && metas.len() == 1 => {
+            let value = &meta.value;
+            Ok(syn::parse2::<LitStr>(quote!(#value))?.value())
+        }
+        Some(meta) => Err(Error::new_spanned(meta, EXPECTED)),
+        None => Err(Error::new_spanned(span, EXPECTED)),
+    }
+}
+
+fn receiver(function: &TraitItemFn, input: Option<&FnArg>) -> Result<()> {
+    match input {
+        Some(FnArg::Receiver(receiver))
+            if matches!(receiver.kind, ReceiverKind::Reference(_, None, Some(_))) =>
+        {
+            Ok(())
+        }
+        Some(other) => Err(Error::new_spanned(other, "an operation takes `&mut self` first")),
+        None => Err(Error::new_spanned(&function.sig.ident, "an operation takes `&mut self` first")),
+    }
+}
+
+/// Whether this is `&mut Context<'_>`, under whatever path.
+fn is_context(of: &Type) -> bool {
+    let Type::Reference(reference) = of else { return false };
+    let Type::Path(path) = &*reference.elem else { return false };
+    path.path.segments.last().is_some_and(|last| last.ident == "Context")
+}
+
+fn argument(input: &FnArg) -> Result<(&Ident, &Type)> {
+    let FnArg::Typed(argument) = input else {
+        return Err(Error::new_spanned(input, "expected an argument"));
+    };
+    let Pat::Ident(name) = &*argument.pat else {
+        return Err(Error::new_spanned(
+            &argument.pat,
+            "an argument needs a name, which its declaration lists",
+        ));
+    };
+    if let Type::Reference(reference) = &*argument.ty {
+        return Err(Error::new_spanned(
+            reference,
+            "arguments travel as values, perhaps to another process: expected an owned type such as `String` or `Vec<T>`",
+        ));
+    }
+    Ok((&name.ident, &argument.ty))
+}
+
+/// The `R` of `-> Result<R, Failure>`.
+fn reply(function: &TraitItemFn) -> Result<&Type> {
+    const EXPECTED: &str = "an operation returns `Result<R, Failure>`";
+    let ReturnType::Type(_, of) = &function.sig.output else {
+        return Err(Error::new_spanned(&function.sig, EXPECTED));
+    };
+    if let Type::Path(path) = &**of
+        && let Some(last) = path.path.segments.last()
+        && last.ident == "Result"
+        && let PathArguments::AngleBracketed(generics) = &last.arguments
+        && let Some(GenericArgument::Type(reply)) = generics.args.first()
+    {
+        return Ok(reply);
+    }
+    Err(Error::new_spanned(of, EXPECTED))
+}

@@ -1,0 +1,275 @@
+use std::collections::HashMap;
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::{
+    Attribute, Data, DeriveInput, Error, Expr, Fields, Ident, LitStr, Result, Token, Type, parenthesized,
+    punctuated::Punctuated,
+};
+
+use crate::case::lower_camel;
+use crate::docs::docs;
+use crate::field::struct_fields;
+use crate::json::{self, Json};
+use crate::literal::Literal;
+use crate::range::Range;
+
+/// One field with its attributes.
+struct Property<'a> {
+    field: &'a Ident,
+    of: &'a Type,
+    name: String,
+    doc: String,
+    default: Option<(Expr, String)>,
+    range: Option<Range>,
+    unit: String,
+    allowed: Vec<String>,
+    unique: String,
+    required_text: bool,
+}
+
+/// `#[derive(Properties)]`.
+pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
+    struct_fields(input, "a property struct")?;
+    let mut properties: Vec<Property<'_>> = Vec::new();
+    let mut fields = HashMap::new();
+    if let Data::Struct(data) = &input.data
+        && let Fields::Named(named) = &data.fields
+    {
+        for field in &named.named {
+            let Some(ident) = &field.ident else { continue };
+            let property = Property::of(ident, &field.ty, &field.attrs)?;
+            if let Some(other) = fields.insert(property.name.clone(), ident) {
+                let message = format!("field `{other}` is the property `{}`, too", property.name);
+                return Err(Error::new_spanned(ident, message));
+            }
+            properties.push(property);
+        }
+    }
+    let mut text = Json::default();
+    text.list(&properties, Property::declare);
+    let declaration = json::flat(&text.into_text());
+    let names: Vec<_> = properties.iter().map(|property| &property.name).collect();
+    let reads = properties.iter().map(Property::read);
+    let checks = properties.iter().filter_map(Property::check_default);
+    let ident = &input.ident;
+    Ok(quote! {
+        #[automatically_derived]
+        impl ::saoms_api::Properties for #ident {
+            const DECLARATION: &'static str = #declaration;
+            const NAMES: &'static [&'static str] = &[#(#names),*];
+
+            fn from_values(
+                values: &[(::std::string::String, ::saoms_api::PropertyValue)],
+            ) -> ::core::result::Result<Self, ::saoms_api::Failure> {
+                ::saoms_api::generated::only_known(values, <Self as ::saoms_api::Properties>::NAMES)?;
+                ::core::result::Result::Ok(#ident { #(#reads),* })
+            }
+        }
+
+        #[automatically_derived]
+        impl ::saoms_api::PropertyField for #ident {
+            const TYPE: ::saoms_api::declaration::PropertyShape = {
+                use ::saoms_api::declaration::{PropertyKind, PropertyShape, Rule, Text};
+                const PARTS: &[Text] = &[
+                    Text::Plain(",\"properties\":"),
+                    Text::Plain(<#ident as ::saoms_api::Properties>::DECLARATION),
+                ];
+                PropertyShape::scalar(Rule::of(PropertyKind::Complex)).with_details(Text::Joined(PARTS))
+            };
+
+            fn from_value(
+                value: &::saoms_api::PropertyValue,
+            ) -> ::core::result::Result<Self, ::std::string::String> {
+                ::saoms_api::generated::complex(value)
+            }
+        }
+
+        #(#checks)*
+    })
+}
+
+impl<'a> Property<'a> {
+    fn of(field: &'a Ident, of: &'a Type, attributes: &[Attribute]) -> Result<Property<'a>> {
+        let mut property = Property {
+            field,
+            of,
+            name: lower_camel(field),
+            doc: docs(attributes),
+            default: None,
+            range: None,
+            unit: String::new(),
+            allowed: Vec::new(),
+            unique: String::new(),
+            required_text: false,
+        };
+        for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("property")) {
+            attribute.parse_nested_meta(|meta| {
+                let text = || meta.value()?.parse::<LitStr>().map(|text| text.value());
+                if meta.path.is_ident("name") {
+                    property.name = text()?;
+                } else if meta.path.is_ident("unit") {
+                    property.unit = text()?;
+                } else if meta.path.is_ident("unique") {
+                    property.unique = text()?;
+                } else if meta.path.is_ident("default") {
+                    let expression: Expr = meta.value()?.parse()?;
+                    let text = Literal::of(&expression)?.text();
+                    property.default = Some((expression, text));
+                } else if meta.path.is_ident("range") {
+                    property.range = Some(Range::of(&meta.value()?.parse()?)?);
+                } else if meta.path.is_ident("allowed") {
+                    let list;
+                    parenthesized!(list in meta.input);
+                    let texts = Punctuated::<LitStr, Token![,]>::parse_terminated(&list)?;
+                    property.allowed = texts.iter().map(LitStr::value).collect();
+                } else if meta.path.is_ident("required_text") {
+                    property.required_text = true;
+                } else {
+                    return Err(meta.error(
+                        "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`",
+                    ));
+                }
+                Ok(())
+            })?;
+        }
+        property.default_fits()?;
+        Ok(property)
+    }
+
+    fn default_fits(&self) -> Result<()> {
+        let Some((expression, text)) = &self.default else { return Ok(()) };
+        if self.range.as_ref().is_some_and(|range| !range.holds(text)) {
+            return Err(Error::new_spanned(expression, "the default is out of the property's own range"));
+        }
+        if !self.allowed.is_empty() && !self.allowed.contains(text) {
+            return Err(Error::new_spanned(expression, "the default is not among the allowed values"));
+        }
+        if self.required_text && text.trim().is_empty() {
+            return Err(Error::new_spanned(
+                expression,
+                "the default is empty, which `required_text` forbids",
+            ));
+        }
+        Ok(())
+    }
+
+    /// A constant that does not compile when the default is not of the field's type.
+    fn check_default(&self) -> Option<TokenStream> {
+        let (expression, text) = self.default.as_ref()?;
+        let of = self.of;
+        let Type::Path(path) = of else { return None };
+        let name = path.path.segments.last()?.ident.to_string();
+        match name.as_str() {
+            "bool" | "f32" | "f64" | "usize" | "i8" | "i16" | "i32" | "i64" | "u8" | "u16" | "u32"
+            | "u64" => Some(quote!(const _: #of = #expression;)),
+            "String" | "Duration" => {
+                matches!(Literal::of(expression), Ok(Literal::Number(_) | Literal::Bool(_)))
+                    .then(|| quote!(const _: &str = #expression;))
+            }
+            _ => {
+                let message =
+                    format!("the default `{text}` is not among the values of property `{}`", self.name);
+                Some(quote! {
+                    const _: () = ::core::assert!(<#of as ::saoms_api::PropertyField>::TYPE.allows(#text), #message);
+                })
+            }
+        }
+    }
+
+    fn rule(&self) -> TokenStream {
+        let of = self.of;
+        let some =
+            |text: &Option<String>| text.as_ref().map(|text| quote!(::core::option::Option::Some(#text)));
+        let none = quote!(::core::option::Option::None);
+        let mut members = Vec::new();
+        if let Some(range) = &self.range {
+            members.extend(some(&range.min).map(|min| quote!(min: #min)));
+            match (some(&range.max), some(&range.exclusive_max)) {
+                (Some(max), _) => members.push(quote!(max: #max)),
+                (None, Some(max)) => members.push(quote!(max: #none, exclusive_max: #max)),
+                (None, None) => {}
+            }
+        }
+        if !self.unit.is_empty() {
+            let unit = &self.unit;
+            members.push(quote!(unit: ::core::option::Option::Some(#unit)));
+        }
+        if !self.allowed.is_empty() {
+            let allowed = &self.allowed;
+            members.push(quote!(allowed: &[#(#allowed),*]));
+        }
+        if self.required_text {
+            members.push(quote!(non_empty: true));
+        }
+        quote! {
+            ::saoms_api::declaration::Rule {
+                #(#members,)*
+                ..<#of as ::saoms_api::PropertyField>::TYPE.rule
+            }
+        }
+    }
+
+    /// The field's initialiser in `from_values`.
+    fn read(&self) -> TokenStream {
+        let (field, name, rule) = (self.field, &self.name, self.rule());
+        let default = match &self.default {
+            Some((_, text)) => quote!(::core::option::Option::Some(#text)),
+            None => quote!(::core::option::Option::None),
+        };
+        quote! {
+            #field: {
+                const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
+                ::saoms_api::generated::property(values, #name, #default, &RULE)?
+            }
+        }
+    }
+
+    /// The property's JSON object.
+    fn declare(text: &mut Json, property: &Property<'_>) {
+        let (of, rule) = (property.of, property.rule());
+        let shape = quote!(<#of as ::saoms_api::PropertyField>::TYPE);
+        text.plain("{\"name\":");
+        text.string(&property.name);
+        text.plain(",\"type\":");
+        text.quoted(quote!(#shape.rule.kind.name()));
+        text.member("doc", &property.doc);
+        text.member("unit", &property.unit);
+        for (label, bound) in [
+            (",\"min\":", quote!(min)),
+            (",\"max\":", quote!(max)),
+            (",\"exclusiveMax\":", quote!(exclusive_max)),
+        ] {
+            text.text(quote! {{
+                const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
+                const PARTS: &[::saoms_api::declaration::Text] =
+                    &::saoms_api::declaration::PropertyShape::bound(RULE.kind, #label, RULE.#bound);
+                ::saoms_api::declaration::Text::Joined(PARTS)
+            }});
+        }
+        let flag = |member: &str, condition: TokenStream| {
+            quote! {
+                if #condition {
+                    ::saoms_api::declaration::Text::Plain(#member)
+                } else {
+                    ::saoms_api::declaration::Text::EMPTY
+                }
+            }
+        };
+        match &property.default {
+            Some((_, default)) => text.plain(&format!(",\"default\":{}", json::quoted(default))),
+            None => text.text(flag(",\"required\":true", quote!(!#shape.optional))),
+        }
+        if !property.allowed.is_empty() {
+            text.plain(",\"allowed\":");
+            text.list(&property.allowed, |text, allowed| text.string(allowed));
+        }
+        if property.required_text {
+            text.plain(",\"nonEmpty\":true");
+        }
+        text.text(flag(",\"many\":true", quote!(#shape.many)));
+        text.member("unique", &property.unique);
+        text.text(quote!(#shape.details));
+        text.plain("}");
+    }
+}
