@@ -1,0 +1,107 @@
+//! Who is measured, and how each is started.
+
+use std::env;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::common::Outcome;
+use crate::cyclictest;
+use crate::probe::Plan;
+use crate::run::{self, Run};
+
+/// One way to start tasks periodically.
+pub(crate) struct Contender {
+    /// Its name on the command line.
+    pub(crate) name: &'static str,
+    /// Its name in the tables.
+    pub(crate) title: &'static str,
+    kind: Kind,
+}
+
+enum Kind {
+    Cyclictest {
+        fifo: bool,
+        tuned: bool,
+    },
+    Java {
+        mode: &'static str,
+    },
+    /// This program again, so that processor time and memory are the contender's own.
+    Inside,
+}
+
+/// All contenders, in the order of the tables.
+pub(crate) const ALL: &[Contender] = &[
+    Contender {
+        name: "cyclictest-fifo",
+        title: "cyclictest, SCHED_FIFO",
+        kind: Kind::Cyclictest { fifo: true, tuned: true },
+    },
+    Contender {
+        name: "cyclictest-fifo-untuned",
+        title: "cyclictest, SCHED_FIFO, processor idle states left alone",
+        kind: Kind::Cyclictest { fifo: true, tuned: false },
+    },
+    Contender {
+        name: "cyclictest",
+        title: "cyclictest, normal priority",
+        kind: Kind::Cyclictest { fifo: false, tuned: true },
+    },
+    Contender { name: "tokio", title: "tokio `interval`", kind: Kind::Inside },
+    Contender {
+        name: "java-per-task",
+        title: "Java, a ScheduledThreadPool(1) per task",
+        kind: Kind::Java { mode: "per-task" },
+    },
+    Contender { name: "java-pool", title: "Java, one pool of 2", kind: Kind::Java { mode: "pool" } },
+];
+
+impl Contender {
+    /// Says why the contender cannot run on this machine, if so.
+    pub(crate) fn unavailable(&self) -> Option<String> {
+        let (tool, package) = match self.kind {
+            Kind::Cyclictest { .. } => ("cyclictest", "Debian package rt-tests"),
+            Kind::Java { .. } => ("javac", "a JDK"),
+            Kind::Inside => return None,
+        };
+        let paths = env::var_os("PATH").unwrap_or_default();
+        let found = env::split_paths(&paths).any(|folder| folder.join(tool).is_file());
+        (!found).then(|| format!("`{tool}` is not installed ({package})"))
+    }
+
+    /// Measures the contender once.
+    pub(crate) fn run(&self, plan: &Plan) -> Outcome<Run> {
+        match self.kind {
+            Kind::Cyclictest { fifo, tuned } => cyclictest::run(plan, fifo, tuned),
+            Kind::Java { mode } => run::run(java(plan, mode)?, plan),
+            Kind::Inside => run::run(again(plan, self.name)?, plan),
+        }
+    }
+}
+
+/// Compiled first: a source file run by `java` leaves the compiler in the measured process.
+fn java(plan: &Plan, mode: &str) -> Outcome<Command> {
+    let classes = Path::new(crate::common::RESULTS).join("java");
+    let source = "benches/lateness/Lateness.java";
+    let changed = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
+    if changed(&classes.join("Lateness.class")) < changed(Path::new(source)) {
+        fs::create_dir_all(&classes)?;
+        let status = Command::new("javac").arg("-d").arg(&classes).arg(source).status()?;
+        if !status.success() {
+            return Err(format!("javac could not compile {source}").into());
+        }
+    }
+    let mut command = Command::new("java");
+    command.arg("-cp").arg(&classes).args(["Lateness", mode, &plan.size.tasks.to_string()]);
+    command.args([plan.size.period, plan.warm_up, plan.measured].map(|time| time.as_nanos().to_string()));
+    Ok(command)
+}
+
+fn again(plan: &Plan, name: &str) -> Outcome<Command> {
+    let mut command = Command::new(env::current_exe()?);
+    command.args(["--bench", "--inside", name, "--sizes", &plan.size.to_string()]);
+    command.args(["--warm-up", &plan.warm_up.as_secs_f64().to_string()]);
+    command.args(["--seconds", &plan.measured.as_secs_f64().to_string()]);
+    Ok(command)
+}
