@@ -1,0 +1,52 @@
+//! A class under one of its names.
+
+use std::sync::Arc;
+
+use saoms_api::{DynComponent, Failure, PropertyValue, Registration};
+
+use super::ClassDeclaration;
+
+/// A class under one of its names: what it declares, and how to construct components of it.
+#[derive(Clone, Debug)]
+pub struct Class {
+    pub(super) name: String,
+    pub(super) declaration: Arc<ClassDeclaration>,
+    pub(super) presets: Vec<(String, PropertyValue)>,
+    pub(super) registration: Registration,
+}
+
+impl Class {
+    /// The name it is registered under: that of the declaration, or a further one.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether the name is a further one, not that of the declaration.
+    pub fn is_alias(&self) -> bool {
+        self.name != self.declaration.name
+    }
+
+    /// What it declares.
+    pub fn declaration(&self) -> &Arc<ClassDeclaration> {
+        &self.declaration
+    }
+
+    /// The declaration as its author's build wrote it: a JSON object in the shape of [`saoms_api::declaration`].
+    pub fn declaration_json(&self) -> &'static str {
+        self.registration.declaration()
+    }
+
+    /// The values that this name presets, for properties that a composite does not give.
+    pub fn presets(&self) -> &[(String, PropertyValue)] {
+        &self.presets
+    }
+
+    /// Constructs a component. `values` are all values, those preset by the name included; absent ones take their
+    /// defaults.
+    ///
+    /// # Errors
+    /// A value is missing or wrong, or the values do not fit together.
+    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        self.registration.construct(values)
+    }
+}

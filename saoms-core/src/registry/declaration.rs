@@ -1,0 +1,242 @@
+//! What classes say about themselves, read from the text of their declarations (see [`saoms_api::declaration`]).
+
+use std::sync::LazyLock;
+
+use saoms_api::declaration::{PropertyKind, Rule, Scalar};
+use saoms_api::{Interface, TaskInterface, TopicKind};
+use serde::Deserialize;
+use serde::de::{Deserializer, Error};
+use serde_json::Value;
+
+/// All that a class declares.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct ClassDeclaration {
+    /// The name that composite files use.
+    #[serde(rename = "class")]
+    pub name: String,
+    /// What the class is for.
+    #[serde(default)]
+    pub doc: String,
+    /// Whether components of it are executed.
+    pub kind: ClassKind,
+    /// Further names.
+    #[serde(default)]
+    pub also: Vec<Alias>,
+    /// Its own properties in order; the task properties of a periodic class are not among them.
+    #[serde(default)]
+    pub properties: Vec<PropertyDeclaration>,
+    /// The topics it publishes.
+    #[serde(default)]
+    pub publishes: Vec<TopicDeclaration>,
+    /// The topics it subscribes to.
+    #[serde(default)]
+    pub subscribes: Vec<TopicDeclaration>,
+    /// The services it implements; [`ClassDeclaration::offers`] also has what the host serves for it.
+    #[serde(default)]
+    pub services: Vec<ServiceDeclaration>,
+    /// The references it can call through.
+    #[serde(default)]
+    pub references: Vec<ReferenceDeclaration>,
+}
+
+/// Whether components of a class are executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ClassKind {
+    /// In each period; such a class has the task properties.
+    Periodic,
+    /// Never: only called.
+    Passive,
+}
+
+/// A further name of a class.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct Alias {
+    /// The name.
+    #[serde(rename = "class")]
+    pub name: String,
+    /// Values that stand for those that the composite does not give.
+    #[serde(default)]
+    pub preset: std::collections::BTreeMap<String, String>,
+}
+
+/// A property.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct PropertyDeclaration {
+    /// Its name.
+    pub name: String,
+    /// Its type.
+    #[serde(rename = "type", deserialize_with = "property_kind")]
+    pub kind: PropertyKind,
+    /// What it is for.
+    #[serde(default)]
+    pub doc: String,
+    /// Its unit, where it has one.
+    pub unit: Option<String>,
+    /// The least value.
+    #[serde(default, deserialize_with = "bound")]
+    pub min: Option<String>,
+    /// The greatest value.
+    #[serde(default, deserialize_with = "bound")]
+    pub max: Option<String>,
+    /// The value below which it has to stay.
+    #[serde(default, deserialize_with = "bound")]
+    pub exclusive_max: Option<String>,
+    /// The value that counts where the composite gives none.
+    pub default: Option<String>,
+    /// Whether the composite has to give a value.
+    #[serde(default)]
+    pub required: bool,
+    /// The texts that are allowed; empty where all are.
+    #[serde(default)]
+    pub allowed: Vec<String>,
+    /// Whether the text must not be empty.
+    #[serde(default)]
+    pub non_empty: bool,
+    /// Whether it takes any number of values.
+    #[serde(default)]
+    pub many: bool,
+    /// The word that it shares with all properties of the fleet that must not have its value, too.
+    pub unique: Option<String>,
+    /// The properties of a complex one.
+    #[serde(default)]
+    pub properties: Vec<PropertyDeclaration>,
+}
+
+impl PropertyDeclaration {
+    /// Reads one value and checks it.
+    ///
+    /// # Errors
+    /// What was found and what was expected, in one line.
+    pub fn check(&self, text: &str) -> Result<Scalar, String> {
+        self.with_rule(|rule| rule.check(text))
+    }
+
+    /// What is expected, as in `a whole number from 1 to 99 [%]`.
+    pub fn expected(&self) -> String {
+        if self.kind == PropertyKind::Complex {
+            let names: Vec<&str> = self.properties.iter().map(|inner| inner.name.as_str()).collect();
+            return format!("the properties {}", names.join(", "));
+        }
+        self.with_rule(|rule| rule.expected())
+    }
+
+    fn with_rule<R>(&self, ask: impl FnOnce(&Rule<'_>) -> R) -> R {
+        let allowed: Vec<&str> = self.allowed.iter().map(String::as_str).collect();
+        ask(&Rule {
+            kind: self.kind,
+            min: self.min.as_deref(),
+            max: self.max.as_deref(),
+            exclusive_max: self.exclusive_max.as_deref(),
+            unit: self.unit.as_deref(),
+            allowed: &allowed,
+            non_empty: self.non_empty,
+        })
+    }
+}
+
+/// A topic that a class publishes or subscribes to.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct TopicDeclaration {
+    /// Its name before any `topicRename`.
+    #[serde(rename = "topic")]
+    pub name: String,
+    /// State or event.
+    #[serde(deserialize_with = "topic_kind")]
+    pub kind: TopicKind,
+    /// The name of the message type.
+    pub message: String,
+    /// The schema of the message type: two ends agree when these are equal.
+    pub schema: Value,
+}
+
+/// A service.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct ServiceDeclaration {
+    /// Its name.
+    pub name: String,
+    /// Its interface.
+    pub interface: InterfaceDeclaration,
+}
+
+/// A reference.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct ReferenceDeclaration {
+    /// Its name.
+    pub name: String,
+    /// Its interface.
+    pub interface: InterfaceDeclaration,
+    /// Whether a component works without a target for it: multiplicity `0..1` rather than `1..1`.
+    #[serde(default)]
+    pub optional: bool,
+}
+
+/// An interface: two ends agree when these are equal.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct InterfaceDeclaration {
+    /// The name that composite files use.
+    pub name: String,
+    /// The operations with their argument and reply types.
+    pub operations: Value,
+}
+
+/// The service that the host serves for every component of a periodic class.
+#[expect(
+    clippy::expect_used,
+    reason = "the declaration is a constant, which every test of the checker reads"
+)]
+static TASK_SERVICE: LazyLock<ServiceDeclaration> = LazyLock::new(|| ServiceDeclaration {
+    name: "TaskInterface".to_owned(),
+    interface: serde_json::from_str(<dyn TaskInterface as Interface>::DECLARATION)
+        .expect("the interface declares itself in JSON"),
+});
+
+impl ClassDeclaration {
+    /// Whether components of it are executed in each period.
+    pub fn is_periodic(&self) -> bool {
+        self.kind == ClassKind::Periodic
+    }
+
+    /// The services that components of it offer: its own, and `TaskInterface` of a periodic class, which the host serves.
+    pub fn offers(&self) -> impl Iterator<Item = &ServiceDeclaration> {
+        let own = |service: &ServiceDeclaration| service.name == TASK_SERVICE.name;
+        let task = (self.is_periodic() && !self.services.iter().any(own)).then(|| &*TASK_SERVICE);
+        self.services.iter().chain(task)
+    }
+
+    /// Its property of this name.
+    pub fn property(&self, name: &str) -> Option<&PropertyDeclaration> {
+        self.properties.iter().find(|property| property.name == name)
+    }
+}
+
+impl ServiceDeclaration {
+    /// Whether the host serves it, not the component.
+    pub fn is_of_host(&self) -> bool {
+        std::ptr::eq(self, &*TASK_SERVICE)
+    }
+}
+
+fn property_kind<'de, D: Deserializer<'de>>(from: D) -> Result<PropertyKind, D::Error> {
+    let name = String::deserialize(from)?;
+    PropertyKind::from_name(&name)
+        .ok_or_else(|| D::Error::custom(format!("`{name}` is no type of properties")))
+}
+
+fn topic_kind<'de, D: Deserializer<'de>>(from: D) -> Result<TopicKind, D::Error> {
+    let name = String::deserialize(from)?;
+    let kinds = [TopicKind::State, TopicKind::Event];
+    let found = kinds.into_iter().find(|kind| kind.name() == name);
+    found.ok_or_else(|| D::Error::custom(format!("`{name}` is neither `state` nor `event`")))
+}
+
+/// A bound as text: numbers are written as numbers, durations as text.
+fn bound<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
+    match Value::deserialize(from)? {
+        Value::Null => Ok(None),
+        Value::Number(number) => Ok(Some(number.to_string())),
+        Value::String(text) => Ok(Some(text)),
+        other => Err(D::Error::custom(format!("`{other}` is no bound of a range"))),
+    }
+}

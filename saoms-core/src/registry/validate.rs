@@ -1,0 +1,75 @@
+//! Contradictions within a declaration.
+//!
+//! The derives exclude most of them; a declaration written by hand, as that of a plugin in C, can have all.
+
+use std::collections::HashSet;
+
+use saoms_api::declaration::PropertyKind;
+
+use super::{ClassDeclaration, PropertyDeclaration};
+
+/// The first contradiction.
+pub(super) fn validate(class: &ClassDeclaration) -> Result<(), String> {
+    if class.name.trim().is_empty() {
+        return Err("the class has no name".to_owned());
+    }
+    properties(&class.properties)?;
+    unique("service", class.services.iter().map(|service| service.name.as_str()))?;
+    unique("reference", class.references.iter().map(|reference| reference.name.as_str()))?;
+    unique("published topic", class.publishes.iter().map(|topic| topic.name.as_str()))?;
+    unique("subscribed topic", class.subscribes.iter().map(|topic| topic.name.as_str()))?;
+    for alias in &class.also {
+        if alias.name.trim().is_empty() {
+            return Err("a further name is empty".to_owned());
+        }
+        for (name, value) in &alias.preset {
+            let Some(property) = class.property(name) else {
+                return Err(format!("`{}` presets `{name}`, which is no property", alias.name));
+            };
+            let checked = property.check(value).map(|_| ());
+            checked.map_err(|message| format!("`{}` presets `{name}`: {message}", alias.name))?;
+        }
+    }
+    Ok(())
+}
+
+fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {
+    unique("property", all.iter().map(|property| property.name.as_str()))?;
+    for property in all {
+        let name = &property.name;
+        if (property.kind == PropertyKind::Complex) == property.properties.is_empty() {
+            return Err(format!(
+                "property `{name}` of type {} has the wrong inner properties",
+                property.kind.name()
+            ));
+        }
+        if let Some(default) = &property.default {
+            property
+                .check(default)
+                .map_err(|message| format!("the default of property `{name}`: {message}"))?;
+        }
+        for bound in [&property.min, &property.max, &property.exclusive_max].into_iter().flatten() {
+            if saoms_api::declaration::parse_scalar(property.kind, bound).is_none() {
+                return Err(format!(
+                    "the bound `{bound}` of property `{name}` is no {}",
+                    property.kind.name()
+                ));
+            }
+        }
+        properties(&property.properties)?;
+    }
+    Ok(())
+}
+
+fn unique<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), String> {
+    let mut seen = HashSet::new();
+    for name in names {
+        if name.is_empty() {
+            return Err(format!("a {what} has no name"));
+        }
+        if !seen.insert(name) {
+            return Err(format!("{what} `{name}` is declared twice"));
+        }
+    }
+    Ok(())
+}
