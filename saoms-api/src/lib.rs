@@ -96,7 +96,9 @@ pub use saoms_derive::{Class, Field, Message, Properties, PropertyField, interfa
 #[doc(hidden)]
 pub mod generated {
     pub use crate::message::Key;
-    pub use crate::property::{PropertyShape, chosen, complex, contains, only_known, property};
+    pub use crate::property::{
+        PropertyShape, bounds_fit, chosen, complex, contains, default_fits, only_known, property,
+    };
     pub use crate::service::{no_operation, no_service};
     pub use inventory;
 }

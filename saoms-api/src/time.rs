@@ -74,34 +74,75 @@ pub fn parse_duration(text: &str) -> Result<Duration, String> {
     const EXPECTED: &str =
         "a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h";
     let text = text.trim();
-    let unit_at = text.find(|c: char| c.is_ascii_alphabetic() || c == 'µ').unwrap_or(text.len());
-    let (number, unit) = (text[..unit_at].trim(), text[unit_at..].trim());
-    let scale: u64 = match unit {
-        "ns" => 1,
-        "us" | "µs" => 1_000,
-        "" | "ms" => 1_000_000,
-        "s" => 1_000_000_000,
-        "min" => 60_000_000_000,
-        "h" => 3_600_000_000_000,
-        _ => return Err(format!("`{text}` is not a duration: expected {EXPECTED}")),
-    };
-    let too_long = || format!("`{text}` is longer than any run can last");
-    if let Some(digits) = number.strip_prefix('-')
-        && digits.parse::<f64>().is_ok()
-    {
-        return Err(format!("`{text}` is negative: expected {EXPECTED}"));
+    match read_duration(text) {
+        Ok(duration) => Ok(duration),
+        Err(WrongDuration::Negative) => Err(format!("`{text}` is negative: expected {EXPECTED}")),
+        Err(WrongDuration::TooLong) => Err(format!("`{text}` is longer than any run can last")),
+        Err(WrongDuration::Other) => Err(format!("`{text}` is not a duration: expected {EXPECTED}")),
     }
-    if !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()) {
-        let nanos = number.parse::<u64>().ok().and_then(|n| n.checked_mul(scale)).ok_or_else(too_long)?;
-        return Ok(Duration::from_nanos(nanos));
+}
+
+/// Why a text is no duration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum WrongDuration {
+    /// A duration with a minus.
+    Negative,
+    /// More nanoseconds than 64 bits hold.
+    TooLong,
+    /// Something else.
+    Other,
+}
+
+/// [`parse_duration`] that can run while a program is compiled. The arithmetic is exact.
+pub(crate) const fn read_duration(text: &str) -> Result<Duration, WrongDuration> {
+    let text = text.as_bytes().trim_ascii();
+    if let [b'-', rest @ ..] = text {
+        return Err(match read_nanos(rest) {
+            Ok(_) | Err(WrongDuration::TooLong) => WrongDuration::Negative,
+            Err(error) => error,
+        });
     }
-    let plain = number.bytes().all(|b| b.is_ascii_digit() || b == b'.');
-    match number.parse::<f64>() {
-        Ok(value) if plain => {
-            let nanos = (value * scale as f64).round();
-            if nanos < u64::MAX as f64 { Ok(Duration::from_nanos(nanos as u64)) } else { Err(too_long()) }
+    match read_nanos(text) {
+        Ok(nanos) => Ok(Duration::from_nanos(nanos)),
+        Err(error) => Err(error),
+    }
+}
+
+const fn read_nanos(mut rest: &[u8]) -> Result<u64, WrongDuration> {
+    // A whole part beyond this is too long in any unit, and decimals behind these do not change a nanosecond of an hour.
+    const MOST: u128 = 10_u128.pow(20);
+    const FINEST: u128 = 10_u128.pow(18);
+    let (mut whole, mut fraction, mut scale) = (0_u128, 0_u128, 1_u128);
+    let (mut digits, mut decimals) = (false, false);
+    while let [byte, tail @ ..] = rest {
+        match *byte {
+            digit @ b'0'..=b'9' => {
+                digits = true;
+                if decimals && scale < FINEST {
+                    (fraction, scale) = (fraction * 10 + (digit - b'0') as u128, scale * 10);
+                } else if !decimals && whole < MOST {
+                    whole = whole * 10 + (digit - b'0') as u128;
+                }
+            }
+            b'.' if !decimals => decimals = true,
+            _ => break,
         }
-        _ => Err(format!("`{text}` is not a duration: expected {EXPECTED}")),
+        rest = tail;
+    }
+    let unit: u128 = match rest.trim_ascii_start() {
+        b"ns" => 1,
+        b"us" | [0xc2, 0xb5, b's'] => 1_000,
+        b"" | b"ms" => 1_000_000,
+        b"s" => 1_000_000_000,
+        b"min" => 60_000_000_000,
+        b"h" => 3_600_000_000_000,
+        _ => return Err(WrongDuration::Other),
+    };
+    let nanos = whole * unit + (fraction * unit + scale / 2) / scale;
+    match digits {
+        false => Err(WrongDuration::Other),
+        true if nanos > u64::MAX as u128 => Err(WrongDuration::TooLong),
+        true => Ok(nanos as u64),
     }
 }
 
@@ -121,3 +162,6 @@ pub fn format_duration(duration: Duration) -> String {
         None => format!("{nanos}ns"),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -39,7 +39,9 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
     let declaration = json::flat(&declared.declaration(&docs(&input.attrs), &properties)?.into_text());
     let class = declared.name()?.value();
     let arms = declared.services.iter().map(|(service, interface)| {
-        quote_spanned! {interface.span()=>
+        // Faults are shown at the interface; `self` is that of this macro.
+        let span = Span::call_site().located_at(interface.span());
+        quote_spanned! {span=>
             #service => <dyn #interface>::dispatch(self, invocation, context),
         }
     });
@@ -89,6 +91,13 @@ impl Declared {
         if declared.name.is_none() {
             let message = "expected `#[class(name = \"...\", periodic)]`: the name that composite files use";
             return Err(Error::new(place, message));
+        }
+        let mut names: Vec<_> = declared.name.iter().map(LitStr::value).collect();
+        for also in &declared.also {
+            if names.contains(&also.name.value()) {
+                return Err(Error::new(also.name.span(), "the class has this name already"));
+            }
+            names.push(also.name.value());
         }
         match declared.periodic {
             None => Err(Error::new(

@@ -1,4 +1,4 @@
-use proc_macro2::TokenStream;
+use proc_macro2::{Span, TokenStream};
 use quote::{format_ident, quote};
 use syn::ext::IdentExt;
 use syn::parse::Parser;
@@ -186,9 +186,11 @@ impl<'a> Operation<'a> {
         let (number, ident, reply) = (number as u32, self.ident, self.reply);
         let (names, types) = self.tuple();
         let arguments = self.arguments.iter().map(|(name, _)| name);
+        // An argument may be called `component` or `context`, too.
+        let (provider, own) = (hidden("component"), hidden("context"));
         quote! {
-            #number => invocation.serve::<C, #types, #reply>(component, context, |component, context, #names| {
-                component.#ident(context, #(#arguments),*)
+            #number => invocation.serve::<C, #types, #reply>(component, context, |#provider, #own, #names| {
+                #provider.#ident(#own, #(#arguments),*)
             }),
         }
     }
@@ -200,6 +202,7 @@ impl<'a> Operation<'a> {
         let arguments = self.arguments.iter().map(|(name, of)| quote!(#name: #of));
         let documented = docs(&self.attributes.iter().copied().cloned().collect::<Vec<_>>());
         let attributes = &self.attributes;
+        let (own, call) = (hidden("context"), hidden("call"));
         let fallback = documented.is_empty().then(|| {
             let doc = format!("Calls `{}`.", self.name);
             quote!(#[doc = #doc])
@@ -212,15 +215,20 @@ impl<'a> Operation<'a> {
             /// The reference is not wired, or the provider cannot be called, or failed.
             #visibility fn #ident(
                 &self,
-                context: #context,
+                #own: #context,
                 #(#arguments),*
             ) -> ::core::result::Result<#reply, ::saoms_api::CallError> {
-                let mut call = ::saoms_api::TypedCall::<#types, #reply>::new(#number, #names);
-                context.call(self.index, &mut call)?;
-                call.into_reply()
+                let mut #call = ::saoms_api::TypedCall::<#types, #reply>::new(#number, #names);
+                #own.call(self.index, &mut #call)?;
+                #call.into_reply()
             }
         }
     }
+}
+
+/// A local name that no name of the author can be mixed up with.
+fn hidden(name: &str) -> Ident {
+    Ident::new(name, Span::mixed_site())
 }
 
 fn name(arguments: TokenStream) -> Result<String> {

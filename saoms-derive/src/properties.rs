@@ -1,7 +1,8 @@
 use std::collections::HashMap;
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{quote, quote_spanned};
+use syn::spanned::Spanned;
 use syn::{
     Attribute, Data, DeriveInput, Error, Expr, Fields, Ident, LitStr, Result, Token, Type, parenthesized,
     punctuated::Punctuated,
@@ -51,7 +52,7 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
     let declaration = json::flat(&text.into_text());
     let names: Vec<_> = properties.iter().map(|property| &property.name).collect();
     let reads = properties.iter().map(Property::read);
-    let checks = properties.iter().filter_map(Property::check_default);
+    let checks = properties.iter().map(Property::checks);
     let ident = &input.ident;
     Ok(quote! {
         #[automatically_derived]
@@ -154,26 +155,49 @@ impl<'a> Property<'a> {
         Ok(())
     }
 
-    /// A constant that does not compile when the default is not of the field's type.
-    fn check_default(&self) -> Option<TokenStream> {
-        let (expression, text) = self.default.as_ref()?;
-        let of = self.of;
-        let Type::Path(path) = of else { return None };
-        let name = path.path.segments.last()?.ident.to_string();
-        match name.as_str() {
-            "bool" | "f32" | "f64" | "usize" | "i8" | "i16" | "i32" | "i64" | "u8" | "u16" | "u32"
-            | "u64" => Some(quote!(const _: #of = #expression;)),
-            "String" | "Duration" => {
-                matches!(Literal::of(expression), Ok(Literal::Number(_) | Literal::Bool(_)))
-                    .then(|| quote!(const _: &str = #expression;))
+    /// Constants that do not compile when the default or a bound is not of the field's type.
+    fn checks(&self) -> TokenStream {
+        const NUMBERS: [&str; 12] =
+            ["bool", "f32", "f64", "usize", "i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"];
+        let (of, name) = (self.of, &self.name);
+        let plain = matches!(of, Type::Path(path) if NUMBERS.iter().any(|number| path.path.is_ident(number)));
+        let bounds = self.range.iter().flat_map(|range| &range.bounds);
+        let literals: Vec<_> = self.default.iter().map(|(default, _)| default).chain(bounds).collect();
+        if plain {
+            return quote!(#(const _: #of = #literals;)*);
+        }
+        let default = self.default.iter().map(|(default, text)| {
+            let message = format!("the default of property `{name}` is no value that the property allows");
+            quote_spanned! {default.span()=>
+                ::core::assert!(::saoms_api::generated::default_fits(&RULE, #text), #message);
             }
-            _ => {
-                let message =
-                    format!("the default `{text}` is not among the values of property `{}`", self.name);
-                Some(quote! {
-                    const _: () = ::core::assert!(<#of as ::saoms_api::PropertyField>::TYPE.allows(#text), #message);
-                })
-            }
+        });
+        let mut checks: Vec<_> = default.collect();
+        if let Some(bound) = self.range.as_ref().and_then(|range| range.bounds.first()) {
+            let message = format!(
+                "the range of property `{name}` does not suit its type: expected numbers or durations"
+            );
+            checks.push(quote_spanned! {bound.span()=>
+                ::core::assert!(::saoms_api::generated::bounds_fit(&RULE), #message);
+            });
+        }
+        if self.required_text || !self.allowed.is_empty() {
+            let message = format!(
+                "property `{name}` is not a string: `allowed` and `required_text` do not suit its type"
+            );
+            checks.push(quote_spanned! {self.field.span()=>
+                ::core::assert!(::core::matches!(RULE.kind, ::saoms_api::declaration::PropertyKind::String), #message);
+            });
+        }
+        if checks.is_empty() {
+            return TokenStream::new();
+        }
+        let rule = self.rule();
+        quote! {
+            const _: () = {
+                const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
+                #(#checks)*
+            };
         }
     }
 

@@ -8,6 +8,8 @@ pub(crate) struct Range {
     pub(crate) min: Option<String>,
     pub(crate) max: Option<String>,
     pub(crate) exclusive_max: Option<String>,
+    /// The bounds as they stand.
+    pub(crate) bounds: Vec<Expr>,
 }
 
 impl Range {
@@ -28,9 +30,11 @@ impl Range {
         {
             return Err(Error::new_spanned(expression, "this range holds no value"));
         }
+        let bounds =
+            [&range.start, &range.end].into_iter().flatten().map(|bound| (**bound).clone()).collect();
         Ok(match range.limits {
-            RangeLimits::Closed(_) => Range { min, max: end, exclusive_max: None },
-            RangeLimits::HalfOpen(_) => Range { min, max: None, exclusive_max: end },
+            RangeLimits::Closed(_) => Range { min, max: end, exclusive_max: None, bounds },
+            RangeLimits::HalfOpen(_) => Range { min, max: None, exclusive_max: end, bounds },
         })
     }
 

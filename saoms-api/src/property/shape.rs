@@ -1,5 +1,6 @@
 use crate::PropertyValue;
 use crate::declaration::{PropertyKind, Rule, Text};
+use crate::time::read_duration;
 
 /// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `Duration`, enums (derive it), other
 /// [`Properties`](crate::Properties) structs, `Option` of these (need not be given) and `Vec` of these (any number of values).
@@ -46,11 +47,6 @@ impl PropertyShape {
         PropertyShape { details, ..self }
     }
 
-    /// Whether a text is among the allowed ones; for checks of defaults while compiling.
-    pub const fn allows(&self, text: &str) -> bool {
-        self.rule.allowed.is_empty() || contains(self.rule.allowed, text)
-    }
-
     /// `"name":bound` with a comma before it, or nothing.
     pub const fn bound(kind: PropertyKind, label: &'static str, bound: Option<&'static str>) -> [Text; 2] {
         match (bound, kind) {
@@ -58,6 +54,46 @@ impl PropertyShape {
             (Some(bound), PropertyKind::Duration) => [Text::Plain(label), Text::Quoted(bound)],
             (Some(bound), _) => [Text::Plain(label), Text::Plain(bound)],
         }
+    }
+}
+
+/// Whether a default is allowed by the rule; while compiling, for what the macro itself cannot see. Numbers are checked by their Rust type.
+pub const fn default_fits(rule: &Rule<'_>, default: &str) -> bool {
+    match rule.kind {
+        PropertyKind::Enumeration => contains(rule.allowed, default),
+        PropertyKind::Duration => {
+            let Ok(default) = read_duration(default) else { return false };
+            let default = default.as_nanos();
+            !(matches!(nanos(rule.min), Some(min) if default < min)
+                || matches!(nanos(rule.max), Some(max) if default > max)
+                || matches!(nanos(rule.exclusive_max), Some(max) if default >= max))
+        }
+        PropertyKind::Complex => false,
+        _ => true,
+    }
+}
+
+/// Whether the bounds of the rule are values of its type; while compiling.
+pub const fn bounds_fit(rule: &Rule<'_>) -> bool {
+    let some = rule.min.is_some() || rule.max.is_some() || rule.exclusive_max.is_some();
+    match rule.kind {
+        PropertyKind::Integer | PropertyKind::Float => true,
+        PropertyKind::Duration => {
+            (rule.min.is_none() || nanos(rule.min).is_some())
+                && (rule.max.is_none() || nanos(rule.max).is_some())
+                && (rule.exclusive_max.is_none() || nanos(rule.exclusive_max).is_some())
+        }
+        _ => !some,
+    }
+}
+
+const fn nanos(bound: Option<&str>) -> Option<u128> {
+    match bound {
+        Some(bound) => match read_duration(bound) {
+            Ok(duration) => Some(duration.as_nanos()),
+            Err(_) => None,
+        },
+        None => None,
     }
 }
 
