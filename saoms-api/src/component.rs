@@ -74,6 +74,19 @@ pub trait Component: Send + Sized + 'static {
 }
 
 /// The declaration of a component, which `#[derive(Class)]` writes.
+///
+/// The doc of the struct becomes that of the class. `#[class(...)]` takes, in any order and in one or several attributes:
+///
+/// | attribute | meaning |
+/// | --- | --- |
+/// | `name = "saoms.Robot"` | the name that composite files use |
+/// | `periodic` or `passive` | whether it is executed in each period; a passive one cannot subscribe |
+/// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
+/// | `service("move": Robot)` | a service with this [interface](crate::Interface), which the component implements |
+/// | `reference("gps": Gps)`, `reference("gps": Gps, optional)` | a service of another component that this one calls |
+/// | `also("robot.Robot001", number = 1)` | a further name, with properties preset to literals |
+///
+/// Linked classes register themselves: [`Registration::linked`](crate::Registration::linked) lists them.
 pub trait Class: Component {
     /// Name, properties, topics, services and references as one JSON text; its shape is described in [`crate::declaration`].
     const DECLARATION: &'static str;

@@ -4,6 +4,70 @@ use crate::cdr::{Reader, Writer};
 use crate::{Arguments, CallError, Component, Context, Failure, Field};
 
 /// A service interface: `#[interface(name = "...")]` on a trait makes `dyn Trait` one.
+///
+/// Each method is an operation, named like the method in lowerCamelCase. It takes `&mut self`, the context, and up to six arguments that are
+/// [`Field`]s, and returns a [`Field`] or a [`Failure`]. A component offers the interface by implementing the trait and saying
+/// `service("name": Trait)` in `#[class(...)]`; another one says `reference("name": Trait)` and calls through the generated
+/// `TraitReference`, whose methods return [`CallError`] instead of [`Failure`]. The composite wires the two.
+///
+/// ```
+/// use saoms_api::{Class, Component, Context, Failure, interface};
+///
+/// /// Lends its numbers.
+/// #[interface(name = "example.Counter")]
+/// pub trait Counter {
+///     /// The next number, in steps.
+///     fn next_number(&mut self, context: &mut Context<'_>, step: u32) -> Result<u32, Failure>;
+/// }
+///
+/// /// Counts.
+/// #[derive(Class)]
+/// #[class(name = "example.CounterImpl", passive, service("numbers": Counter))]
+/// struct CounterImpl {
+///     number: u32,
+/// }
+///
+/// impl Component for CounterImpl {
+///     type Properties = ();
+///
+///     fn new((): ()) -> Result<Self, Failure> {
+///         Ok(CounterImpl { number: 0 })
+///     }
+/// }
+///
+/// impl Counter for CounterImpl {
+///     fn next_number(&mut self, _: &mut Context<'_>, step: u32) -> Result<u32, Failure> {
+///         self.number = self.number.checked_add(step).ok_or("no numbers left")?;
+///         Ok(self.number)
+///     }
+/// }
+///
+/// /// Shows a number in each period.
+/// #[derive(Class)]
+/// #[class(name = "example.Display", periodic, reference("source": Counter))]
+/// struct Display {
+///     source: CounterReference,
+/// }
+///
+/// impl Component for Display {
+///     type Properties = ();
+///
+///     fn new((): ()) -> Result<Self, Failure> {
+///         Ok(Display { source: CounterReference::default() })
+///     }
+///
+///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+///         self.source = context.reference("source")?;
+///         Ok(())
+///     }
+///
+///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+///         let number = self.source.next_number(context, 1)?;
+///         context.info(format_args!("{number}"));
+///         Ok(())
+///     }
+/// }
+/// ```
 pub trait Interface {
     /// The name that composite files use in `interface.java` and `interface.rust`.
     const NAME: &'static str;

@@ -43,6 +43,8 @@ pub(crate) fn interface(arguments: TokenStream, item: &ItemTrait) -> Result<Toke
     let arms = operations.iter().enumerate().map(|(number, operation)| operation.arm(number));
     let reference = reference(item, &name, &operations);
     Ok(quote! {
+        // Its provider may be in another crate.
+        #[allow(dead_code)]
         #item
 
         impl ::saoms_api::Interface for dyn #ident {
@@ -213,6 +215,7 @@ impl<'a> Operation<'a> {
             ///
             /// # Errors
             /// The reference is not wired, or the provider cannot be called, or failed.
+            #[allow(clippy::too_many_arguments)]
             #visibility fn #ident(
                 &self,
                 #own: #context,

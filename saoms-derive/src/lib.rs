@@ -52,5 +52,10 @@ pub fn class(input: TokenStream) -> TokenStream {
 #[proc_macro_attribute]
 pub fn interface(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let item = parse_macro_input!(item as ItemTrait);
-    finish(interface::interface(arguments.into(), &item))
+    let result = interface::interface(arguments.into(), &item);
+    // The trait stays, so that what uses it does not fail as well.
+    finish(result.or_else(|error| {
+        let error = error.into_compile_error();
+        Ok(quote::quote!(#item #error))
+    }))
 }

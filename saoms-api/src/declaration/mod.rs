@@ -1,8 +1,66 @@
-//! What a class says about itself, as text.
+//! What a class says about itself: one JSON text, made while it is compiled.
+//!
+//! The registry, the checker, editors and documentation know a component by this text alone, whether it is linked in or lies in a library
+//! that nobody has loaded yet. `#[derive(Class)]` writes it; this is its shape, in the words of the derives.
+//!
+//! # A class
+//! ```json
+//! {
+//!   "contract": 1,
+//!   "class": "saoms.Robot",
+//!   "doc": "A robot that carries luggage.",
+//!   "kind": "periodic",
+//!   "also": [{"class": "robot.Robot001", "preset": {"number": "1"}}],
+//!   "properties": [],
+//!   "publishes": [{"topic": "POSTOPIC", "kind": "state", "message": "Position", "schema": {"name": "Position", "fields": []}}],
+//!   "subscribes": [],
+//!   "services": [{"name": "move", "interface": {"name": "resources.robotEnvironment.Robot", "operations": []}}],
+//!   "references": [{"name": "world", "interface": {"name": "saoms.World", "operations": []}, "optional": true}]
+//! }
+//! ```
+//! - `contract` is the version of this shape.
+//! - `kind` is `periodic` or `passive`. A periodic class has the properties of a task beside its own, which are not listed.
+//! - `also` are further names of the class; the properties in `preset` have these texts, as if the composite had set them.
+//! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`.
+//! - `doc`, here and below, is absent where the author wrote none.
+//!
+//! # A property
+//! | member | meaning |
+//! | --- | --- |
+//! | `name` | as the composite writes it |
+//! | `type` | the name of a [`PropertyKind`] |
+//! | `doc`, `unit` | for people |
+//! | `min`, `max`, `exclusiveMax` | numbers, or texts where the type is `duration`; integers without a range have the bounds of their Rust type |
+//! | `default` | the text that counts when the composite gives none |
+//! | `required` | `true`: it has to be given |
+//! | `allowed` | the only texts, for enumerations and some strings |
+//! | `nonEmpty` | `true`: the text must not be empty or blank |
+//! | `many` | `true`: any number of values; everything else is said of each |
+//! | `unique` | a word: no two components have the same value for properties with this word |
+//! | `properties` | those of a `complex` one |
+//!
+//! What does not apply is absent. [`Rule`] says exactly which texts a scalar property accepts, for the checker and the component alike.
+//!
+//! # A schema
+//! The schema of a message is `{"name", "fields": [{"name", "type"}]}`, with `"key"`, the name of a field, where a state topic keeps one
+//! message for each value of that field. A type is one of
+//!
+//! | type | meaning |
+//! | --- | --- |
+//! | `"bool"`, `"int8"` to `"int64"`, `"uint8"` to `"uint64"`, `"float32"`, `"float64"`, `"string"` | the types of ROS 2 interfaces |
+//! | `{"sequence": type}` | any number of these |
+//! | `{"enumeration": "uint8", "values": {"LANDING": 0}}` | an integer with named constants |
+//! | `{"name", "fields"}` | a nested message |
+//!
+//! Schemas carry no docs, so that equal text means equal encoding: see [`crate::cdr`].
+//!
+//! # An interface
+//! `{"name", "operations": [{"name", "arguments": [{"name", "type"}], "reply": type}]}`; the reply is `null` where there is none. The number of
+//! an operation is its place. Arguments are encoded like the fields of a message.
+
 mod rule;
 mod text;
 
+pub use crate::property::PropertyShape;
 pub use rule::{PropertyKind, Rule, Scalar, parse_scalar};
 pub use text::{Text, text};
-
-pub use crate::property::PropertyShape;

@@ -172,10 +172,9 @@ fn why_not(kind: PropertyKind, text: &str) -> &'static str {
         PropertyKind::Integer => {
             let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
             // Digits alone were refused, so there are too many.
-            if digits.bytes().all(|byte| byte.is_ascii_digit()) {
-                "out of range"
-            } else {
-                "not a whole number"
+            match digits.is_empty() || digits.bytes().any(|byte| !byte.is_ascii_digit()) {
+                false => "out of range",
+                true => "not a whole number",
             }
         }
         PropertyKind::Float => match text.parse::<f64>() {

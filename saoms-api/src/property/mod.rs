@@ -80,6 +80,16 @@ impl From<&str> for PropertyValue {
 /// | `required_text` | for strings: not empty, not blank |
 ///
 /// A property without a default is required, unless its type is an `Option` or a `Vec`.
+///
+/// A default or a bound that is no value of its property does not compile:
+///
+/// ```compile_fail
+/// #[derive(saoms_api::Properties)]
+/// struct Wrong {
+///     #[property(default = "5 parsecs")]
+///     wait_time: std::time::Duration,
+/// }
+/// ```
 pub trait Properties: Sized {
     /// The properties as a JSON array, in the shape of [`crate::declaration`].
     const DECLARATION: &'static str;

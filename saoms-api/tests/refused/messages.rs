@@ -1,0 +1,33 @@
+use saoms_api::{Field, Message};
+
+#[derive(Clone, Debug, Message)]
+struct Tuple(u8);
+
+#[derive(Clone, Debug, Message)]
+#[message(key = "robot")]
+struct NoSuchKey {
+    number: u8,
+}
+
+#[derive(Clone, Debug, Message)]
+struct Generic<T> {
+    value: T,
+}
+
+#[derive(Clone, Debug, Message)]
+enum Choice {
+    One,
+}
+
+#[derive(Field)]
+enum Loaded {
+    One(u8),
+}
+
+#[derive(Field)]
+#[field(repr = "usize")]
+enum Wide {
+    One,
+}
+
+fn main() {}
