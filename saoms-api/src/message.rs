@@ -49,48 +49,83 @@ pub struct Header {
 
 /// A message on its way: one value, shared by all its readers, encoded at most once and only where it leaves this build of the program.
 #[derive(Clone)]
-pub struct SharedMessage(Arc<dyn Payload>);
+pub struct SharedMessage(Arc<Shared<dyn Payload>>);
+
+/// What every message has stands before its value, where it is found without knowing the type.
+struct Shared<P: ?Sized> {
+    header: Header,
+    key: Option<u64>,
+    bytes: OnceLock<Vec<u8>>,
+    forms: OnceLock<Box<Form>>,
+    payload: P,
+}
 
 impl SharedMessage {
     /// Shares a value.
     pub fn new<M: Message>(header: Header, value: M) -> SharedMessage {
-        let key = value.key();
-        SharedMessage(Arc::new(Typed { header, key, value, bytes: OnceLock::new(), others: OnceLock::new() }))
+        let (bytes, forms) = (OnceLock::new(), OnceLock::new());
+        SharedMessage(Arc::new(Shared { header, key: value.key(), bytes, forms, payload: Typed(value) }))
     }
 
     /// Takes over a message that arrived as bytes (see [`cdr`]). The schema must have been checked against the topic's.
     pub fn from_bytes(header: Header, key: Option<u64>, bytes: Vec<u8>) -> SharedMessage {
-        SharedMessage(Arc::new(Encoded { header, key, bytes, forms: OnceLock::new() }))
+        let (bytes, forms) = (OnceLock::from(bytes), OnceLock::new());
+        SharedMessage(Arc::new(Shared { header, key, bytes, forms, payload: Arrived }))
     }
 
     /// Who sent it, and when.
     pub fn header(&self) -> Header {
-        self.0.header()
+        self.0.header
     }
 
     /// Its key on a state topic, if the message type has one.
     pub fn key(&self) -> Option<u64> {
-        self.0.key()
+        self.0.key
     }
 
     /// The value as this Rust type. A message that arrived as bytes, or was sent by code built with another copy of the type, is
     /// decoded once, however many readers there are. `None` when its bytes are not such a message.
+    #[inline]
     pub fn get<M: Message>(&self) -> Option<&M> {
-        match self.0.value().downcast_ref::<M>() {
-            Some(value) => Some(value),
-            None => decoded(self.0.others(), self.0.bytes()),
+        let payload: &dyn Any = &self.0.payload;
+        match payload.downcast_ref::<Typed<M>>() {
+            Some(typed) => Some(&typed.0),
+            None => decoded(&self.0.forms, self.bytes()),
         }
     }
 
     /// The CDR form, encoded at the first call.
     pub fn bytes(&self) -> &[u8] {
-        self.0.bytes()
+        self.0.bytes.get_or_init(|| self.0.payload.encode())
     }
 }
 
 impl fmt::Debug for SharedMessage {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "SharedMessage({:?})", self.header())
+    }
+}
+
+/// The value of a message, whatever its type.
+trait Payload: Any + Send + Sync {
+    fn encode(&self) -> Vec<u8>;
+}
+
+/// A value of this build of the program.
+struct Typed<M>(M);
+
+impl<M: Message> Payload for Typed<M> {
+    fn encode(&self) -> Vec<u8> {
+        cdr::encode(&self.0)
+    }
+}
+
+/// A value that is there as bytes alone.
+struct Arrived;
+
+impl Payload for Arrived {
+    fn encode(&self) -> Vec<u8> {
+        Vec::new()
     }
 }
 
@@ -101,90 +136,20 @@ struct Form {
 }
 
 fn decoded<'a, M: Message>(mut forms: &'a OnceLock<Box<Form>>, bytes: &[u8]) -> Option<&'a M> {
-    while let Some(form) = forms.get() {
-        if let Some(value) = form.value.downcast_ref::<M>() {
-            return Some(value);
-        }
-        forms = &form.next;
-    }
-    let value: M = cdr::decode(bytes).ok()?;
-    // Another thread may have added a form meanwhile: walk on until ours has its place.
-    let mut form = Box::new(Form { value: Box::new(value), next: OnceLock::new() });
+    let mut own: Option<Box<Form>> = None;
     loop {
-        match forms.set(form) {
-            Ok(()) => return forms.get()?.value.downcast_ref(),
-            Err(ours) => {
-                form = ours;
-                forms = &forms.get()?.next;
+        // Another thread may add a form at any time, of this type or another: the first one of a type is everybody's.
+        while let Some(form) = forms.get() {
+            match form.value.downcast_ref::<M>() {
+                Some(value) => return Some(value),
+                None => forms = &form.next,
             }
         }
-    }
-}
-
-trait Payload: Send + Sync {
-    fn header(&self) -> Header;
-    fn key(&self) -> Option<u64>;
-    fn value(&self) -> &dyn Any;
-    fn others(&self) -> &OnceLock<Box<Form>>;
-    fn bytes(&self) -> &[u8];
-}
-
-struct Typed<M> {
-    header: Header,
-    key: Option<u64>,
-    value: M,
-    bytes: OnceLock<Vec<u8>>,
-    others: OnceLock<Box<Form>>,
-}
-
-impl<M: Message> Payload for Typed<M> {
-    fn header(&self) -> Header {
-        self.header
-    }
-
-    fn key(&self) -> Option<u64> {
-        self.key
-    }
-
-    fn value(&self) -> &dyn Any {
-        &self.value
-    }
-
-    fn others(&self) -> &OnceLock<Box<Form>> {
-        &self.others
-    }
-
-    fn bytes(&self) -> &[u8] {
-        self.bytes.get_or_init(|| cdr::encode(&self.value))
-    }
-}
-
-struct Encoded {
-    header: Header,
-    key: Option<u64>,
-    bytes: Vec<u8>,
-    forms: OnceLock<Box<Form>>,
-}
-
-impl Payload for Encoded {
-    fn header(&self) -> Header {
-        self.header
-    }
-
-    fn key(&self) -> Option<u64> {
-        self.key
-    }
-
-    fn value(&self) -> &dyn Any {
-        &()
-    }
-
-    fn others(&self) -> &OnceLock<Box<Form>> {
-        &self.forms
-    }
-
-    fn bytes(&self) -> &[u8] {
-        &self.bytes
+        let form = match own.take() {
+            Some(form) => form,
+            None => Box::new(Form { value: Box::new(cdr::decode::<M>(bytes).ok()?), next: OnceLock::new() }),
+        };
+        own = forms.set(form).err();
     }
 }
 

@@ -3,31 +3,36 @@ use std::fmt;
 
 /// Why bytes are no such message.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct DecodeError {
+pub struct DecodeError(Box<Fault>);
+
+/// Boxed, because every field that is read returns a result, and large ones are slow.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Fault {
     what: Cow<'static, str>,
     offset: usize,
 }
 
 impl DecodeError {
     /// Something wrong at this byte of the message.
+    #[cold]
     pub fn new(what: impl Into<Cow<'static, str>>, offset: usize) -> DecodeError {
-        DecodeError { what: what.into(), offset }
+        DecodeError(Box::new(Fault { what: what.into(), offset }))
     }
 
     /// What was found and what was expected.
     pub fn what(&self) -> &str {
-        &self.what
+        &self.0.what
     }
 
     /// Where: the number of the byte, from 0, the header included.
-    pub const fn offset(&self) -> usize {
-        self.offset
+    pub fn offset(&self) -> usize {
+        self.0.offset
     }
 }
 
 impl fmt::Display for DecodeError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "byte {}: {}", self.offset, self.what)
+        write!(formatter, "byte {}: {}", self.0.offset, self.0.what)
     }
 }
 
