@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod diagnostic;
+pub mod load;
 pub mod model;
 pub mod registry;
 pub mod source;

@@ -63,4 +63,17 @@ codes! {
     XML_DOCTYPE = "S0110" Error "xml-doctype": "Document type declarations are refused.";
     XML_DECLARATION = "S0111" Error "xml-declaration": "The XML declaration is malformed or not at the very start.";
     XML_PREFIX = "S0112" Error "xml-prefix": "A prefix is bound to no namespace, or a binding is not allowed.";
+    // S10: the vocabulary of SCA.
+    ROOT = "S1001" Error "root": "The root element is no composite.";
+    NAMESPACE = "S1002" Error "namespace" ("ASM13001"): "The root element is in none of the namespaces of SCA.";
+    OTHER_VERSION = "S1003" Error "other-version" ("ASM13001"): "An element is of another version of SCA than the composite it is in.";
+    UNKNOWN_ELEMENT = "S1004" Error "unknown-element" ("ASM13001"): "An element of SCA, or of SAOMS, that does not exist.";
+    MISPLACED_ELEMENT = "S1005" Error "misplaced-element" ("ASM13001"): "An element that cannot stand where it stands.";
+    REPEATED_ELEMENT = "S1006" Error "repeated-element" ("ASM13001"): "An element that can be given once is given again.";
+    UNKNOWN_ATTRIBUTE = "S1007" Error "unknown-attribute" ("ASM13001"): "An attribute that the element does not have.";
+    MISSING_ATTRIBUTE = "S1008" Error "missing-attribute" ("ASM13001"): "An attribute that the element has to have is not given.";
+    MISSING_TARGET_NAMESPACE = "S1009" Error "missing-target-namespace" ("ASM13001"): "A composite has no target namespace.";
+    MISSING_IMPLEMENTATION = "S1010" Error "missing-implementation" ("ASM13001"): "A component has no implementation.";
+    ATTRIBUTE_VALUE = "S1011" Error "attribute-value" ("ASM13001"): "The value of an attribute is of the wrong form.";
+    MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001"): "There is text where none belongs.";
 }

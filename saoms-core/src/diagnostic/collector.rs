@@ -37,22 +37,30 @@ impl Diagnostics {
 
     /// Adds one.
     pub fn push(&mut self, diagnostic: Diagnostic) {
-        match diagnostic.severity {
+        self.push_with(diagnostic.code, diagnostic.severity, diagnostic.location, || diagnostic);
+    }
+
+    /// Adds one of this code, severity and place, made only when it is kept. For places where a file can have a
+    /// million faults.
+    pub fn push_with(
+        &mut self,
+        code: &'static Code,
+        severity: Severity,
+        location: Location,
+        make: impl FnOnce() -> Diagnostic,
+    ) {
+        match severity {
             Severity::Error => self.errors += 1,
             Severity::Warning => self.warnings += 1,
             Severity::Note => {}
         }
-        let code = diagnostic.code;
-        let count = self.counts.entry((diagnostic.location.file, code.id)).or_insert(Count {
-            code,
-            number: 0,
-            beyond: None,
-        });
+        let new = Count { code, number: 0, beyond: None };
+        let count = self.counts.entry((location.file, code.id)).or_insert(new);
         count.number += 1;
         if count.number <= LIMIT {
-            self.items.push(diagnostic);
+            self.items.push(make());
         } else {
-            count.beyond.get_or_insert(diagnostic.location);
+            count.beyond.get_or_insert(location);
         }
     }
 

@@ -1,5 +1,7 @@
 //! Components and their implementations.
 
+use smol_str::SmolStr;
+
 use super::origin::parts;
 use super::{Origin, Policy, Property, Reference, Service};
 use crate::source::{Located, Text};
@@ -14,7 +16,7 @@ pub struct Component {
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
     /// `constrainingType` (1.0).
-    pub constraining_type: Option<Text>,
+    pub constraining_type: Option<Box<Text>>,
     /// Its implementation.
     pub implementation: Option<Implementation>,
     /// Its properties in order.
@@ -81,12 +83,12 @@ pub enum ImplementationKind {
         /// `class`: a name in the registry.
         class: Option<Text>,
         /// `library`: the plugin that has the class.
-        library: Option<Text>,
+        library: Option<Box<Text>>,
     },
     /// Any other, of SCA or foreign; its element has the attributes.
     Other {
         /// What follows `implementation.` in its name, as `script`.
-        kind: Text,
+        kind: SmolStr,
         /// Whether its element is of an SCA namespace.
         is_sca: bool,
     },

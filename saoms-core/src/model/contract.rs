@@ -1,5 +1,7 @@
 //! Services and references, with their interfaces, callbacks and bindings.
 
+use smol_str::SmolStr;
+
 use super::origin::parts;
 use super::{Origin, Policy};
 use crate::source::{Located, Text};
@@ -14,11 +16,11 @@ pub struct Service {
     /// `promote`, of a composite's service: `component` or `component/service`.
     pub promote: Option<Text>,
     /// Its interface.
-    pub interface: Option<Interface>,
+    pub interface: Option<Box<Interface>>,
     /// Its bindings in order.
     pub bindings: Vec<Binding>,
     /// Its callback.
-    pub callback: Option<Callback>,
+    pub callback: Option<Box<Callback>>,
     /// Intents and policy sets.
     pub policy: Policy,
 }
@@ -32,24 +34,53 @@ pub struct Reference {
     pub name: Text,
     /// `target`: each URI, `component`, `component/service` or `component/service/binding`, with its own place.
     pub targets: Vec<Text>,
-    /// `promote`, of a composite's reference: each URI with its own place.
-    pub promote: Vec<Text>,
     /// `multiplicity`.
     pub multiplicity: Option<Located<Multiplicity>>,
+    /// What few references have; the methods give it.
+    pub details: Option<Box<ReferenceDetails>>,
+    /// Its interface.
+    pub interface: Option<Box<Interface>>,
+    /// Its bindings in order.
+    pub bindings: Vec<Binding>,
+    /// Its callback.
+    pub callback: Option<Box<Callback>>,
+    /// Intents and policy sets.
+    pub policy: Policy,
+}
+
+/// What few references have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReferenceDetails {
+    /// `promote`, of a composite's reference: each URI with its own place.
+    pub promote: Vec<Text>,
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
     /// `wiredByImpl`.
     pub wired_by_impl: Option<Located<bool>>,
     /// `nonOverridable` (1.1).
     pub non_overridable: Option<Located<bool>>,
-    /// Its interface.
-    pub interface: Option<Interface>,
-    /// Its bindings in order.
-    pub bindings: Vec<Binding>,
-    /// Its callback.
-    pub callback: Option<Callback>,
-    /// Intents and policy sets.
-    pub policy: Policy,
+}
+
+impl Reference {
+    /// `promote`, of a composite's reference: each URI with its own place.
+    pub fn promote(&self) -> &[Text] {
+        self.details.as_ref().map_or(&[], |details| &details.promote)
+    }
+
+    /// `autowire`.
+    pub fn autowire(&self) -> Option<Located<bool>> {
+        self.details.as_ref()?.autowire
+    }
+
+    /// `wiredByImpl`.
+    pub fn wired_by_impl(&self) -> Option<Located<bool>> {
+        self.details.as_ref()?.wired_by_impl
+    }
+
+    /// `nonOverridable` (1.1).
+    pub fn non_overridable(&self) -> Option<Located<bool>> {
+        self.details.as_ref()?.non_overridable
+    }
 }
 
 /// How many targets a reference can have.
@@ -140,11 +171,11 @@ pub struct Binding {
     /// Where it comes from.
     pub origin: Origin,
     /// What follows `binding.` in its name, as `ws`.
-    pub kind: Text,
+    pub kind: SmolStr,
     /// Whether its element is of an SCA namespace.
     pub is_sca: bool,
     /// `name`.
-    pub name: Option<Text>,
+    pub name: Option<Box<Text>>,
     /// `uri`.
     pub uri: Option<Text>,
     /// Intents and policy sets.

@@ -15,8 +15,10 @@ mod version;
 
 pub use component::{Component, Implementation, ImplementationKind};
 pub use composite::{Composite, Include, Wire};
-pub use contract::{Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, Service};
+pub use contract::{
+    Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
+};
 pub use origin::{Origin, Part};
 pub use policy::Policy;
-pub use property::{Property, PropertyValue};
+pub use property::{Property, PropertyDetails, PropertyValue};
 pub use version::{SAOMS_NAMESPACE, Version};

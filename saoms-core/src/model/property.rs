@@ -1,7 +1,7 @@
 //! Properties of components and composites.
 
+use super::Origin;
 use super::origin::parts;
-use super::{Origin, Policy};
 use crate::source::{Located, Location, Text};
 use crate::xml::ElementId;
 
@@ -14,6 +14,17 @@ pub struct Property {
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
+    /// `value`: the value as an attribute.
+    pub value: Option<Text>,
+    /// The text inside, trimmed; `None` when there is none but white space.
+    pub text: Option<Text>,
+    /// What few properties have; the methods give it.
+    pub details: Option<Box<PropertyDetails>>,
+}
+
+/// What few properties have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PropertyDetails {
     /// `type`: the QName of an XML Schema type.
     pub r#type: Option<Text>,
     /// `element`: the QName of a global XML Schema element.
@@ -26,16 +37,10 @@ pub struct Property {
     pub source: Option<Text>,
     /// `file`: a file that holds the value.
     pub file: Option<Text>,
-    /// `value`: the value as an attribute.
-    pub value: Option<Text>,
-    /// The text inside, trimmed; `None` when there is none but white space.
-    pub text: Option<Text>,
     /// Its `<value>` elements.
     pub values: Vec<PropertyValue>,
     /// Other elements inside: a complex value.
     pub content: Vec<ElementId>,
-    /// Intents and policy sets.
-    pub policy: Policy,
 }
 
 /// A `<value>` of a property.
@@ -52,9 +57,49 @@ pub struct PropertyValue {
 parts!(Property, PropertyValue);
 
 impl Property {
+    /// `type`: the QName of an XML Schema type.
+    pub fn r#type(&self) -> Option<&Text> {
+        self.details.as_ref()?.r#type.as_ref()
+    }
+
+    /// `element`: the QName of a global XML Schema element.
+    pub fn element(&self) -> Option<&Text> {
+        self.details.as_ref()?.element.as_ref()
+    }
+
+    /// `many`: whether it can have several values.
+    pub fn many(&self) -> Option<Located<bool>> {
+        self.details.as_ref()?.many
+    }
+
+    /// `mustSupply`, of a composite's property.
+    pub fn must_supply(&self) -> Option<Located<bool>> {
+        self.details.as_ref()?.must_supply
+    }
+
+    /// `source`: where in a composite's property the value comes from, as `$currency` or `$order/total`.
+    pub fn source(&self) -> Option<&Text> {
+        self.details.as_ref()?.source.as_ref()
+    }
+
+    /// `file`: a file that holds the value.
+    pub fn file(&self) -> Option<&Text> {
+        self.details.as_ref()?.file.as_ref()
+    }
+
+    /// Its `<value>` elements.
+    pub fn values(&self) -> &[PropertyValue] {
+        self.details.as_ref().map_or(&[], |details| &details.values)
+    }
+
+    /// Other elements inside: a complex value.
+    pub fn content(&self) -> &[ElementId] {
+        self.details.as_ref().map_or(&[], |details| &details.content)
+    }
+
     /// Every simple value that is given, in the order attribute, text, `<value>` elements.
     pub fn simple_values(&self) -> impl Iterator<Item = &Text> {
-        let listed = self.values.iter().filter(|value| value.content.is_empty()).map(|value| &value.text);
+        let listed = self.values().iter().filter(|value| value.content.is_empty()).map(|value| &value.text);
         self.value.iter().chain(&self.text).chain(listed)
     }
 
@@ -62,22 +107,22 @@ impl Property {
     pub fn simple_value(&self) -> Option<&Text> {
         let mut all = self.simple_values();
         let first = all.next()?;
-        (all.next().is_none() && self.content.is_empty()).then_some(first)
+        (all.next().is_none() && self.content().is_empty()).then_some(first)
     }
 
     /// Whether the property gives a value in any way: directly, by `source`, or by `file`.
     pub fn has_value(&self) -> bool {
         self.value.is_some()
             || self.text.is_some()
-            || !self.values.is_empty()
-            || !self.content.is_empty()
-            || self.source.is_some()
-            || self.file.is_some()
+            || !self.values().is_empty()
+            || !self.content().is_empty()
+            || self.source().is_some()
+            || self.file().is_some()
     }
 
     /// Where its value is, for a diagnostic about it; its tag when it has none.
     pub fn value_location(&self) -> Location {
-        let first = self.simple_values().next().or(self.source.as_ref()).or(self.file.as_ref());
+        let first = self.simple_values().next().or(self.source()).or(self.file());
         first.map_or(self.origin.tag, |text| text.location)
     }
 }

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::ops::Deref;
 
+use smol_str::SmolStr;
+
 use super::{FileId, Location, Span};
 
 /// A value and the place where it is written.
@@ -14,8 +16,9 @@ pub struct Located<T> {
     pub location: Location,
 }
 
-/// A text as the user means it (entities resolved, white space normalised) and the place where it is written.
-pub type Text = Located<Box<str>>;
+/// A text as the user means it (entities resolved, white space normalised) and the place where it is written. Texts up to
+/// 23 bytes, as most names and values are, are stored in place; longer ones are shared by their clones.
+pub type Text = Located<SmolStr>;
 
 impl<T> Located<T> {
     /// A value at a place.
@@ -57,12 +60,12 @@ impl<T: fmt::Display> fmt::Display for Located<T> {
 
 impl PartialEq<str> for Text {
     fn eq(&self, other: &str) -> bool {
-        &*self.value == other
+        self.value == other
     }
 }
 
 impl PartialEq<&str> for Text {
     fn eq(&self, other: &&str) -> bool {
-        &*self.value == *other
+        self.value == *other
     }
 }

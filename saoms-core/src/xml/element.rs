@@ -44,7 +44,7 @@ impl<'a> Element<'a> {
 
     /// The name without its prefix.
     pub fn local_name(self) -> &'a str {
-        split(self.name()).1
+        if self.node().has_prefix { split(self.name()).1 } else { self.name() }
     }
 
     /// The prefix as written.
@@ -171,6 +171,13 @@ impl<'a> Element<'a> {
         None
     }
 
+    /// The name in the end tag; `None` for `<a/>` and where the end tag was not read.
+    pub fn end_name_span(self) -> Option<Span> {
+        let Node { tag_end, end, is_closed, name_len, .. } = *self.node();
+        let start = self.content_span().end + 2;
+        (is_closed && tag_end < end).then(|| Span::new(start, start + name_len))
+    }
+
     /// Whether text other than white space is directly inside.
     pub fn has_text(self) -> bool {
         self.node().has_text
@@ -217,6 +224,23 @@ impl<'a> Element<'a> {
             })
         };
         Some(Span::new(pieces().next()?.start, pieces().last()?.end))
+    }
+
+    /// The text directly inside without white space at its ends, and where it is; `None` when there is none.
+    pub fn trimmed_text(self) -> Option<Text> {
+        if !self.has_text() {
+            return None;
+        }
+        let content = self.content_span();
+        let whole = slice(self.document, content);
+        let (text, span) = if value::is_literal(whole) {
+            let text = value::trim(whole);
+            let start = content.start + offset(whole, text);
+            (text.into(), Span::new(start, start + text.len() as u32))
+        } else {
+            (value::trim(&self.text()).into(), self.text_span()?)
+        };
+        Some(Located::new(text, span.in_file(self.document.file)))
     }
 }
 
@@ -273,14 +297,40 @@ impl<'a> Attribute<'a> {
         self.raw.value
     }
 
-    /// The value and where it is.
-    pub fn located(self) -> Text {
-        Located::new(self.value().into(), self.raw.value.in_file(self.document.file))
+    /// Where the whole attribute is.
+    pub fn location(self) -> Location {
+        self.span().in_file(self.document.file)
+    }
+
+    /// The value and where it is, white space at its ends left out.
+    pub fn trimmed(self) -> Text {
+        self.located(value::trim(self.raw_value()))
+    }
+
+    /// The words of a value that is a list, each with its own place.
+    pub fn words(self) -> impl Iterator<Item = Text> + use<'a> {
+        self.raw_value()
+            .split(value::is_space)
+            .filter(|word| !word.is_empty())
+            .map(move |word| self.located(word))
+    }
+
+    /// A part of the value as written, resolved.
+    fn located(self, part: &str) -> Text {
+        let whole = self.raw_value();
+        let start = self.raw.value.start + offset(whole, part);
+        let span = Span::new(start, start + part.len() as u32);
+        Located::new(value::attribute_value(part).into(), span.in_file(self.document.file))
     }
 }
 
 fn slice(document: &Document, span: Span) -> &str {
     &document.text[span.start as usize..span.end as usize]
+}
+
+/// Where in `whole` its part `part` starts.
+fn offset(whole: &str, part: &str) -> u32 {
+    (part.as_ptr() as usize - whole.as_ptr() as usize) as u32
 }
 
 /// A name into its prefix and its local part.

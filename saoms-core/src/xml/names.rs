@@ -1,20 +1,54 @@
 //! XML names.
 
-/// Whether a byte can stand in a name; all of a longer character do until [`is_name`] has looked.
-const NAME_BYTE: [bool; 256] = {
-    let mut table = [false; 256];
+/// The byte can stand in a name; all bytes of a longer character do until [`is_qualified_name`] has looked.
+const NAME: u8 = 1;
+/// The byte is a colon, or part of a character beyond ASCII: the name needs a closer look.
+const ODD: u8 = 2;
+/// The byte cannot start a name.
+const INNER: u8 = 4;
+
+const CLASS: [u8; 256] = {
+    let mut table = [0; 256];
     let mut byte = 0;
     while byte < 256 {
-        let b = byte as u8;
-        table[byte] = b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'.' | b':') || b >= 0x80;
+        table[byte] = match byte as u8 {
+            b'a'..=b'z' | b'A'..=b'Z' | b'_' => NAME,
+            b'0'..=b'9' | b'-' | b'.' => NAME | INNER,
+            b':' | 0x80.. => NAME | ODD,
+            _ => 0,
+        };
         byte += 1;
     }
     table
 };
 
+/// Bytes that look like a name.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Name {
+    /// How many there are.
+    pub(super) len: u32,
+    /// Whether they certainly are a name without a colon; most are.
+    pub(super) is_plain: bool,
+}
+
+/// The name at the start of `bytes`.
+pub(super) fn scan(bytes: &[u8]) -> Name {
+    let mut seen = bytes.first().map_or(0, |&first| CLASS[first as usize] & INNER);
+    let mut len = 0;
+    for &byte in bytes {
+        let class = CLASS[byte as usize];
+        if class & NAME == 0 {
+            break;
+        }
+        seen |= class & ODD;
+        len += 1;
+    }
+    Name { len, is_plain: seen == 0 && len > 0 }
+}
+
 /// How many bytes at the start of `bytes` look like a name.
 pub(super) fn name_length(bytes: &[u8]) -> usize {
-    bytes.iter().position(|&byte| !NAME_BYTE[byte as usize]).unwrap_or(bytes.len())
+    scan(bytes).len as usize
 }
 
 /// Whether it is a Name without a colon (NCName of Namespaces in XML 1.0).

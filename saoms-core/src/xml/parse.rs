@@ -132,9 +132,11 @@ impl<'a> Parser<'a> {
         if tag.has_prefixes {
             self.declare(first)?;
         }
-        let namespace = match self.input.slice(name.start, name.end).split_once(':') {
+        let prefix = || self.input.slice(name.start, name.end).split_once(':').map(|(prefix, _)| prefix);
+        let prefix = if tag.is_plain { None } else { prefix() };
+        let namespace = match prefix {
             None => self.namespaces.default(),
-            Some((prefix, _)) => self.resolve(prefix, name)?,
+            Some(prefix) => self.resolve(prefix, name)?,
         };
         if tag.has_prefixes {
             self.resolve_attributes(first)?;
@@ -158,6 +160,7 @@ impl<'a> Parser<'a> {
             next: NONE,
             attributes: first as u32,
             has_text: false,
+            has_prefix: prefix.is_some(),
             is_closed: tag.is_empty,
         });
         if tag.is_empty {

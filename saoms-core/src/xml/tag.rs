@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::fault::{Checked, Input};
-use super::names::{is_qualified_name, name_length};
+use super::names::{is_qualified_name, name_length, scan};
 use super::reference;
 use super::tree::{NO_NAMESPACE, RawAttribute, XMLNS};
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -20,6 +20,8 @@ pub(super) struct StartTag {
     pub(super) name_len: u32,
     /// `<a/>`
     pub(super) is_empty: bool,
+    /// Whether the name has no colon for certain.
+    pub(super) is_plain: bool,
     /// Whether an attribute is named `xmlns` or `xmlns:...`, or has another prefix.
     pub(super) has_prefixes: bool,
 }
@@ -32,12 +34,21 @@ pub(super) fn start_tag(
 ) -> Checked<StartTag> {
     let bytes = input.bytes();
     let first = attributes.len();
-    let name_end = start + 1 + name_length(&bytes[start as usize + 1..]) as u32;
-    if name_end == start + 1 {
+    let name = scan(&bytes[start as usize + 1..]);
+    let name_end = start + 1 + name.len;
+    if name.len == 0 {
         return Err(nameless(input, start).into());
     }
-    check_name(input, start + 1, name_end, "element")?;
-    let mut tag = StartTag { end: 0, name_len: name_end - start - 1, is_empty: false, has_prefixes: false };
+    if !name.is_plain {
+        check_name(input, start + 1, name_end, "element")?;
+    }
+    let mut tag = StartTag {
+        end: 0,
+        name_len: name.len,
+        is_plain: name.is_plain,
+        is_empty: false,
+        has_prefixes: false,
+    };
     let mut at = name_end;
     loop {
         let space_start = at;
@@ -94,8 +105,9 @@ pub(super) fn end_tag(input: Input<'_>, start: u32) -> Checked<Span> {
 
 fn attribute(input: Input<'_>, tag: u32, tag_name_end: u32, start: u32) -> Checked<RawAttribute> {
     let bytes = input.bytes();
-    let name_end = start + name_length(&bytes[start as usize..]) as u32;
-    if name_end == start {
+    let name = scan(&bytes[start as usize..]);
+    let name_end = start + name.len;
+    if name.len == 0 {
         return Err(misplaced(input, tag, tag_name_end, start, true).into());
     }
     let equals = skip_space(bytes, name_end);
@@ -112,7 +124,9 @@ fn attribute(input: Input<'_>, tag: u32, tag_name_end: u32, start: u32) -> Check
                 .into());
         }
     }
-    check_name(input, start, name_end, "attribute")?;
+    if !name.is_plain {
+        check_name(input, start, name_end, "attribute")?;
+    }
     let quote_at = skip_space(bytes, equals + 1);
     let quote = match bytes.get(quote_at as usize) {
         Some(&quote @ (b'"' | b'\'')) => quote,
@@ -121,10 +135,10 @@ fn attribute(input: Input<'_>, tag: u32, tag_name_end: u32, start: u32) -> Check
     };
     let end = value_end(input, start, name_end, quote_at, quote)?;
     let value = Span::new(quote_at + 1, end);
-    let name = &bytes[start as usize..name_end as usize];
-    let namespace = if name.starts_with(b"xmlns") && matches!(name.get(5), None | Some(b':')) {
+    let bytes = &bytes[start as usize..name_end as usize];
+    let namespace = if bytes.starts_with(b"xmlns") && matches!(bytes.get(5), None | Some(b':')) {
         XMLNS
-    } else if name.contains(&b':') {
+    } else if !name.is_plain && bytes.contains(&b':') {
         // The namespace is looked up when all declarations of the tag are known.
         u32::MAX
     } else {

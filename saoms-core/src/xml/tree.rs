@@ -39,6 +39,8 @@ pub(super) struct Node {
     pub(super) attributes: u32,
     /// Whether text other than white space is directly inside.
     pub(super) has_text: bool,
+    /// Whether its name has a prefix.
+    pub(super) has_prefix: bool,
     /// Whether its end tag was read; only those around a fault are not.
     pub(super) is_closed: bool,
 }

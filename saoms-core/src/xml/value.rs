@@ -32,9 +32,14 @@ pub(super) fn attribute_value(raw: &str) -> Cow<'_, str> {
     Cow::Owned(value)
 }
 
+/// Whether character data means itself: no markup, references or line ends to resolve.
+pub(super) fn is_literal(text: &str) -> bool {
+    !text.bytes().any(|byte| matches!(byte, b'<' | b'&' | b'\r'))
+}
+
 /// The text of a stretch without elements: comments and instructions out, CDATA and references resolved.
 pub(super) fn character_data(stretch: &str) -> Cow<'_, str> {
-    if !stretch.bytes().any(|byte| matches!(byte, b'<' | b'&' | b'\r')) {
+    if is_literal(stretch) {
         return Cow::Borrowed(stretch);
     }
     let mut text = String::with_capacity(stretch.len());
@@ -67,8 +72,14 @@ pub(super) fn text_pieces(stretch: &str) -> impl Iterator<Item = Range<u32>> {
     })
 }
 
-fn is_space(character: char) -> bool {
+/// Whether XML counts it as white space.
+pub(super) fn is_space(character: char) -> bool {
     matches!(character, ' ' | '\t' | '\r' | '\n')
+}
+
+/// Without XML's white space at both ends.
+pub(super) fn trim(text: &str) -> &str {
+    text.trim_matches(is_space)
 }
 
 /// The pieces of text between comments and instructions; the flag says that a piece is a CDATA section's inside.

@@ -1,0 +1,174 @@
+//! Attributes: which there are, and what their values say.
+
+use super::Loader;
+use super::vocabulary::Kind;
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
+use crate::model::{Multiplicity, Policy, SAOMS_NAMESPACE, Version};
+use crate::source::{Located, Text};
+use crate::xml::{Attribute, Element};
+
+impl Loader<'_> {
+    /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
+    pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
+        for attribute in element.attributes() {
+            match attribute.namespace() {
+                "" if kind.has(attribute.name(), self.version) => {}
+                "" => self.unknown(element, attribute, kind),
+                namespace if namespace == self.namespace => self.prefixed(element, attribute, kind),
+                SAOMS_NAMESPACE => self.unknown(element, attribute, kind),
+                namespace if Version::from_namespace(namespace).is_some() => {
+                    self.prefixed(element, attribute, kind);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn unknown(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind) {
+        let name = attribute.name();
+        let location = attribute.name_span().in_file(element.document().file());
+        let message = format!("{} has no attribute {}", quoted(element.name()), quoted(name));
+        let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message);
+        let free: Vec<&str> =
+            kind.names(self.version).filter(|known| element.attribute(known).is_none()).collect();
+        let meant = nearest(name, free.iter().copied()).or_else(|| nearest(name, kind.names(self.version)));
+        match meant {
+            Some(meant) => {
+                let description = format!("replace {} with {}", quoted(name), quoted(meant));
+                one = one.suggest(description, location, meant);
+            }
+            // The schema of SCA 1.0 lets any attribute pass; tools put some of their own there.
+            None if attribute.namespace().is_empty() && !self.version.is_1_1() => {
+                one = one.severity(Severity::Warning);
+            }
+            None => {}
+        }
+        let names: Vec<String> = kind.names(self.version).map(quoted).collect();
+        self.report(one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", "))));
+    }
+
+    /// An attribute of SCA with a prefix: SCA's attributes have none.
+    fn prefixed(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind) {
+        if !kind.has(attribute.local_name(), self.version) {
+            return self.unknown(element, attribute, kind);
+        }
+        let location = attribute.name_span().in_file(element.document().file());
+        let message = format!("{} has a prefix; attributes of SCA have none", quoted(attribute.name()));
+        let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message);
+        if element.attribute(attribute.local_name()).is_none() {
+            one = one.suggest("remove the prefix", location, attribute.local_name());
+        }
+        self.report(one);
+    }
+
+    /// The value of an attribute, white space at its ends left out.
+    pub(super) fn optional(&self, element: Element<'_>, name: &str) -> Option<Text> {
+        element.attribute(name).map(Attribute::trimmed)
+    }
+
+    /// The value of an attribute that has to be there, and not be empty.
+    pub(super) fn required(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
+        let Some(attribute) = element.attribute(name) else {
+            let shown = element.name();
+            let message =
+                format!("{} has no attribute {}, which it has to have", quoted(shown), quoted(name));
+            let one = Diagnostic::new(&codes::MISSING_ATTRIBUTE, element.name_location(), message);
+            // A misspelt one is reported already, with the right name as suggestion.
+            if !has_near_miss(element, name) {
+                let help = format!("write {}", quoted(&format!("<{shown} {name}=\"...\"")));
+                self.report(one.help(help));
+            }
+            return None;
+        };
+        let value = attribute.trimmed();
+        if value.is_empty() {
+            self.value_fault(attribute, format!("the attribute {} is empty", quoted(name)), None);
+            return None;
+        }
+        Some(value)
+    }
+
+    /// The name of a part; empty, at the tag, when there is none.
+    pub(super) fn name(&mut self, element: Element<'_>) -> Text {
+        let Some(name) = self.required(element, "name") else {
+            return Located::new("".into(), element.name_location());
+        };
+        if let Some(bad) = name.chars().find(|c| c.is_whitespace() || *c == '/') {
+            let shown = quoted(bad.encode_utf8(&mut [0; 4]));
+            let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));
+            let help = "names are used in targets as `component/service`, and in lists between blanks";
+            self.report(Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message).help(help));
+        }
+        name
+    }
+
+    /// The value of a boolean attribute.
+    pub(super) fn boolean(&mut self, element: Element<'_>, name: &str) -> Option<Located<bool>> {
+        let attribute = element.attribute(name)?;
+        let text = attribute.trimmed();
+        let value = match text.as_str() {
+            "true" | "1" => true,
+            "false" | "0" => false,
+            other => {
+                let meant = match other.to_ascii_lowercase().as_str() {
+                    "yes" | "on" | "y" | "t" => Some("true"),
+                    "no" | "off" | "n" | "f" => Some("false"),
+                    _ => nearest(other, ["true", "false"]),
+                };
+                let message =
+                    format!("{} is {} and has to be `true` or `false`", quoted(name), quoted(other));
+                self.value_fault(attribute, message, meant);
+                return None;
+            }
+        };
+        Some(Located::new(value, text.location))
+    }
+
+    /// The value of `multiplicity`.
+    pub(super) fn multiplicity(&mut self, element: Element<'_>) -> Option<Located<Multiplicity>> {
+        let attribute = element.attribute("multiplicity")?;
+        let text = attribute.trimmed();
+        if let Some(value) = Multiplicity::from_name(&text) {
+            return Some(Located::new(value, text.location));
+        }
+        let meant = text.to_ascii_lowercase().replace(['*', 'm'], "n").replace("unbounded", "n");
+        let names = Multiplicity::ALL.map(Multiplicity::name);
+        let meant = match meant.as_str() {
+            "1" => Some("1..1"),
+            "n" => Some("0..n"),
+            other => names.into_iter().find(|name| *name == other),
+        };
+        let message =
+            format!("`multiplicity` is {} and has to be `0..1`, `1..1`, `0..n` or `1..n`", quoted(&text));
+        self.value_fault(attribute, message, meant);
+        None
+    }
+
+    /// The words of an attribute that is a list.
+    pub(super) fn list(&self, element: Element<'_>, name: &str) -> Vec<Text> {
+        element.attribute(name).map(|attribute| attribute.words().collect()).unwrap_or_default()
+    }
+
+    /// `requires` and `policySets`.
+    pub(super) fn policy(&self, element: Element<'_>) -> Policy {
+        Policy::new(self.list(element, "requires"), self.list(element, "policySets"))
+    }
+
+    fn value_fault(&mut self, attribute: Attribute<'_>, message: String, meant: Option<&str>) {
+        let whole = attribute.location();
+        let value = attribute.value_span().in_file(whole.file);
+        // Nothing can be seen between two quotes.
+        let location = if attribute.trimmed().is_empty() { whole } else { value };
+        let mut one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, location, message);
+        if let Some(meant) = meant {
+            one = one.suggest(format!("replace it with {}", quoted(meant)), value, meant);
+        }
+        self.report(one);
+    }
+}
+
+/// Whether an attribute of the element could be a misspelt `name`.
+fn has_near_miss(element: Element<'_>, name: &str) -> bool {
+    let mut own = element.attributes().filter(|attribute| attribute.namespace().is_empty());
+    own.any(|attribute| nearest(attribute.name(), [name]).is_some())
+}

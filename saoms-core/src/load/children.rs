@@ -1,0 +1,164 @@
+//! Elements: whose they are, and those that are none of anybody.
+
+use smol_str::SmolStr;
+
+use super::Loader;
+use super::vocabulary::{self, Kind, OWN_ELEMENTS};
+use crate::diagnostic::{Diagnostic, Edit, codes, nearest, quoted};
+use crate::model::{SAOMS_NAMESPACE, Version};
+use crate::source::{Location, Span};
+use crate::xml::Element;
+
+/// Whose vocabulary an element belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Family {
+    /// That of SCA.
+    Sca,
+    /// That of SAOMS.
+    Own,
+    /// Another one: an extension.
+    Foreign,
+    /// None; reported.
+    Nobody,
+}
+
+impl Loader<'_> {
+    /// Whose an element is. One of no namespace, or of another version of SCA than the root, is reported.
+    pub(super) fn family(&mut self, element: Element<'_>) -> Family {
+        let root = element.document().root();
+        match element.namespace() {
+            namespace if namespace == self.namespace => Family::Sca,
+            SAOMS_NAMESPACE => Family::Own,
+            "" => {
+                self.without_namespace(element, root);
+                Family::Nobody
+            }
+            namespace => match Version::from_namespace(namespace) {
+                None => Family::Foreign,
+                Some(version) => {
+                    let message = format!(
+                        "{} is of {}, and the composite is of {}",
+                        quoted(element.name()),
+                        version.label(),
+                        self.version.label()
+                    );
+                    let one = Diagnostic::new(&codes::OTHER_VERSION, element.name_location(), message);
+                    let help = "a composite and all of SCA inside it are of one namespace";
+                    self.report(one.label(root.name_location(), "the composite").help(help));
+                    Family::Sca
+                }
+            },
+        }
+    }
+
+    /// Reports an element of SCA, or of SAOMS, that cannot be where it is.
+    pub(super) fn unexpected(&mut self, element: Element<'_>, parent: &'static Kind, family: Family) {
+        let name = element.local_name();
+        let known: Vec<&str> = match family {
+            Family::Own => OWN_ELEMENTS.to_vec(),
+            _ => vocabulary::children(parent).collect(),
+        };
+        let is_own = family == Family::Own && OWN_ELEMENTS.contains(&name);
+        let place = quoted(parent.name);
+        let holds = || {
+            let names = parent.children.iter().map(|child| match child.strip_suffix('.') {
+                Some(prefix) => quoted(&format!("{prefix}.*")),
+                None => quoted(child),
+            });
+            format!("{place} can hold {}", names.collect::<Vec<_>>().join(", "))
+        };
+        if is_own || (family == Family::Sca && vocabulary::is_known(name)) {
+            let message = format!("{} cannot stand in {place}", quoted(element.name()));
+            let one = Diagnostic::new(&codes::MISPLACED_ELEMENT, element.name_location(), message);
+            return self.report(one.help(holds()));
+        }
+        let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
+        let message = format!("{whose} has no element {}", quoted(name));
+        let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        match nearest(name, known) {
+            Some(meant) => {
+                let description = format!("replace {} with {}", quoted(name), quoted(meant));
+                one = one.suggest_edits(description, renaming(element, element.prefix(), meant));
+            }
+            None if name.contains('.') => {
+                one = one.help("an extension is written in the namespace of the one who defined it");
+            }
+            None => {}
+        }
+        self.report(one.help(holds()));
+    }
+
+    /// Checks the children of an element none of whose children the model holds.
+    pub(super) fn leaf(&mut self, element: Element<'_>, kind: &'static Kind) {
+        for child in element.children() {
+            let family = self.family(child);
+            let name = child.local_name();
+            let is_known = vocabulary::children(kind).any(|known| known == name);
+            if matches!(family, Family::Sca | Family::Own) && !(family == Family::Sca && is_known) {
+                self.unexpected(child, kind, family);
+            }
+        }
+    }
+
+    /// Reports the second of two elements of which there can be one.
+    pub(super) fn repeated(
+        &mut self,
+        element: Element<'_>,
+        first: Location,
+        parent: &'static Kind,
+        what: &str,
+    ) {
+        let message = format!("{} has a second {what}", quoted(parent.name));
+        let one = Diagnostic::new(&codes::REPEATED_ELEMENT, element.name_location(), message);
+        self.report(one.label(first, format!("the first {what}")));
+    }
+
+    /// Reports text in an element that holds elements alone.
+    pub(super) fn no_text(&mut self, element: Element<'_>) {
+        let Some(span) = element.text_span() else { return };
+        let location = span.in_file(element.document().file());
+        let message = format!("text in {}, which holds no text", quoted(element.name()));
+        let mut one = Diagnostic::new(&codes::MISPLACED_TEXT, location, message);
+        if element.local_name().starts_with("implementation.") && element.attribute("class").is_none() {
+            one = one.help("the class is named by the attribute `class`");
+        }
+        self.report(one);
+    }
+
+    fn without_namespace(&mut self, element: Element<'_>, root: Element<'_>) {
+        let name = element.local_name();
+        let message = format!("{} is in no namespace", quoted(name));
+        let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        if vocabulary::is_known(name)
+            && let Some(prefix) = root.prefix()
+        {
+            let whole = format!("{prefix}:{name}");
+            let description = format!("replace {} with {}", quoted(name), quoted(&whole));
+            one = one.suggest_edits(description, renaming(element, Some(prefix), name));
+        } else {
+            one = one.help(
+                "elements of SCA are in the namespace of the composite, extensions in one of their own",
+            );
+        }
+        self.report(one);
+    }
+}
+
+/// The edits that give an element another name, in its end tag too.
+fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -> Vec<Edit> {
+    let whole = prefix.map_or_else(|| name.to_owned(), |prefix| format!("{prefix}:{name}"));
+    let file = element.document().file();
+    let spans = [Some(element.name_span()), element.end_name_span()];
+    let edit = |span: Span| Edit { location: span.in_file(file), replacement: whole.clone() };
+    spans.into_iter().flatten().map(edit).collect()
+}
+
+/// What follows `prefix` in the local name of an element.
+pub(super) fn variant(element: Element<'_>, prefix: &str) -> SmolStr {
+    element.local_name().strip_prefix(prefix).unwrap_or_default().into()
+}
+
+/// Whether SCA defines this variant of an implementation, an interface or a binding.
+pub(super) fn is_defined(element: Element<'_>) -> bool {
+    vocabulary::VARIANTS.iter().any(|(_, variants)| variants.contains(&element.local_name()))
+}

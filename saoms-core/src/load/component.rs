@@ -1,0 +1,131 @@
+//! Components and their implementations.
+
+use super::Loader;
+use super::children::{Family, is_defined, variant};
+use super::vocabulary::{
+    COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
+    IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
+};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::model::{Component, Implementation, ImplementationKind, Origin};
+use crate::source::Text;
+use crate::xml::Element;
+
+impl Loader<'_> {
+    pub(super) fn component(&mut self, element: Element<'_>) -> Component {
+        self.check_attributes(element, &COMPONENT);
+        self.no_text(element);
+        let mut component = Component {
+            origin: Origin::of(element),
+            name: self.name(element),
+            autowire: self.boolean(element, "autowire"),
+            constraining_type: self.optional(element, "constrainingType").map(Box::new),
+            implementation: None,
+            properties: Vec::new(),
+            services: Vec::new(),
+            references: Vec::new(),
+            policy: self.policy(element),
+        };
+        let mut has_faulty = false;
+        for child in element.children() {
+            let family = self.family(child);
+            match (family, child.local_name()) {
+                (Family::Sca, "property") => {
+                    let property = self.property(child, &COMPONENT_PROPERTY);
+                    self.gathered.properties.push(property);
+                }
+                (Family::Sca, "service") => {
+                    let service = self.service(child, &COMPONENT_SERVICE);
+                    self.gathered.services.push(service);
+                }
+                (Family::Sca, "reference") => {
+                    let reference = self.reference(child, &COMPONENT_REFERENCE);
+                    self.gathered.references.push(reference);
+                }
+                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+                (Family::Sca | Family::Own | Family::Foreign, name)
+                    if name.starts_with("implementation.") =>
+                {
+                    let made = self.implementation(child, family);
+                    match (&component.implementation, made) {
+                        (Some(first), _) => {
+                            self.repeated(child, first.origin.tag, &COMPONENT, "implementation");
+                        }
+                        (None, made) => {
+                            has_faulty |= made.is_none();
+                            component.implementation = made;
+                        }
+                    }
+                }
+                (Family::Foreign, _) => {}
+                (Family::Nobody, name) => has_faulty |= name.starts_with("implementation"),
+                (_, name) => {
+                    has_faulty |= name.starts_with("impl");
+                    self.unexpected(child, &COMPONENT, family);
+                }
+            }
+        }
+        component.properties = self.gathered.properties.drain(..).collect();
+        component.services = self.gathered.services.drain(..).collect();
+        component.references = self.gathered.references.drain(..).collect();
+        // An element that was not read to its end may have had one.
+        if component.implementation.is_none() && !has_faulty && element.is_closed() {
+            self.missing_implementation(element, &component.name);
+        }
+        component
+    }
+
+    /// `None` for an implementation of SCA, or of SAOMS, that does not exist; it is reported.
+    fn implementation(&mut self, element: Element<'_>, family: Family) -> Option<Implementation> {
+        let kind = match (family, element.local_name()) {
+            (Family::Sca, "implementation.java") => {
+                self.parts_of(element, &IMPLEMENTATION_JAVA);
+                ImplementationKind::Java { class: self.required(element, "class") }
+            }
+            (Family::Sca, "implementation.composite") => {
+                self.parts_of(element, &IMPLEMENTATION_COMPOSITE);
+                ImplementationKind::Composite { name: self.required(element, "name") }
+            }
+            (Family::Sca | Family::Own, "implementation.rust") => {
+                self.parts_of(element, &IMPLEMENTATION_RUST);
+                let class = self.required(element, "class");
+                ImplementationKind::Rust { class, library: self.optional(element, "library").map(Box::new) }
+            }
+            (Family::Own, _) => {
+                self.unexpected(element, &COMPONENT, family);
+                return None;
+            }
+            (Family::Sca, _) if !is_defined(element) => {
+                self.unexpected(element, &COMPONENT, family);
+                return None;
+            }
+            _ => ImplementationKind::Other {
+                kind: variant(element, "implementation."),
+                is_sca: family == Family::Sca,
+            },
+        };
+        Some(Implementation { origin: Origin::of(element), kind, policy: self.policy(element) })
+    }
+
+    /// Checks attributes, text and children of an element that the model keeps without its children.
+    pub(super) fn parts_of(&mut self, element: Element<'_>, kind: &'static Kind) {
+        self.check_attributes(element, kind);
+        self.no_text(element);
+        self.leaf(element, kind);
+    }
+
+    fn missing_implementation(&mut self, element: Element<'_>, name: &Text) {
+        let severity = if self.version.is_1_1() { Severity::Error } else { Severity::Warning };
+        let location = element.name_location();
+        self.diagnostics.push_with(&codes::MISSING_IMPLEMENTATION, severity, location, || {
+            let message = if name.is_empty() {
+                "a component has no implementation".to_owned()
+            } else {
+                format!("the component {} has no implementation", quoted(name))
+            };
+            Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message).severity(severity).help(
+                "write `<implementation.java class=\"...\"/>` or `<implementation.rust class=\"...\"/>` in it",
+            )
+        });
+    }
+}

@@ -1,0 +1,99 @@
+//! Composites, includes and wires.
+
+use std::sync::Arc;
+
+use super::Loader;
+use super::children::Family;
+use super::vocabulary::{
+    COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INCLUDE, WIRE,
+};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::model::{Composite, Include, Origin, Wire};
+use crate::source::{Located, Text};
+use crate::xml::{Document, Element};
+
+impl Loader<'_> {
+    /// Reads the whole composite.
+    pub(super) fn composite(mut self, document: &Arc<Document>) -> Composite {
+        let root = document.root();
+        self.check_attributes(root, &COMPOSITE);
+        self.no_text(root);
+        let name = self.name(root);
+        let mut composite = Composite {
+            origin: Origin::of(root),
+            document: Arc::clone(document),
+            version: self.version,
+            target_namespace: self.target_namespace(root),
+            local: self.boolean(root, "local"),
+            autowire: self.boolean(root, "autowire"),
+            constraining_type: self.optional(root, "constrainingType"),
+            includes: Vec::new(),
+            properties: Vec::new(),
+            services: Vec::new(),
+            references: Vec::new(),
+            components: Vec::new(),
+            wires: Vec::new(),
+            policy: self.policy(root),
+            name,
+        };
+        for child in root.children() {
+            let family = self.family(child);
+            match (family, child.local_name()) {
+                (Family::Foreign | Family::Nobody, _) => {}
+                (Family::Sca, "component") => composite.components.push(self.component(child)),
+                (Family::Sca, "include") => composite.includes.push(self.include(child)),
+                (Family::Sca, "wire") => composite.wires.push(self.wire(child)),
+                (Family::Sca, "property") => {
+                    composite.properties.push(self.property(child, &COMPOSITE_PROPERTY));
+                }
+                (Family::Sca, "service") => {
+                    composite.services.push(self.service(child, &COMPOSITE_SERVICE));
+                }
+                (Family::Sca, "reference") => {
+                    composite.references.push(self.reference(child, &COMPOSITE_REFERENCE));
+                }
+                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+                _ => self.unexpected(child, &COMPOSITE, family),
+            }
+        }
+        composite
+    }
+
+    fn target_namespace(&mut self, root: Element<'_>) -> Option<Text> {
+        let found = self.optional(root, "targetNamespace").filter(|uri| !uri.is_empty());
+        let misspelt = root.attributes().any(|one| one.name().eq_ignore_ascii_case("targetNamespace"));
+        if found.is_none() && (!misspelt || root.attribute("targetNamespace").is_some()) {
+            let message = format!("{} has no `targetNamespace`", quoted(root.name()));
+            let one = Diagnostic::new(&codes::MISSING_TARGET_NAMESPACE, root.name_location(), message)
+                .help("other composites refer to this one by its namespace and name");
+            // SCA 1.0 does not ask for it.
+            let severity = if self.version.is_1_1() { Severity::Error } else { Severity::Warning };
+            self.report(one.severity(severity));
+        }
+        found
+    }
+
+    fn include(&mut self, element: Element<'_>) -> Include {
+        self.check_attributes(element, &INCLUDE);
+        self.no_text(element);
+        self.leaf(element, &INCLUDE);
+        let name = self.required(element, "name");
+        Include {
+            origin: Origin::of(element),
+            name: name.unwrap_or_else(|| Located::new("".into(), element.name_location())),
+            uri: self.optional(element, "uri"),
+        }
+    }
+
+    fn wire(&mut self, element: Element<'_>) -> Wire {
+        self.check_attributes(element, &WIRE);
+        self.no_text(element);
+        self.leaf(element, &WIRE);
+        Wire {
+            origin: Origin::of(element),
+            source: self.required(element, "source"),
+            target: self.required(element, "target"),
+            replace: self.boolean(element, "replace"),
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Services and references, their interfaces, callbacks and bindings.
+
+use super::Loader;
+use super::children::{Family, is_defined, variant};
+use super::vocabulary::{
+    BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_WSDL, Kind,
+};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::model::{
+    Binding, Callback, Interface, InterfaceKind, Origin, Reference, ReferenceDetails, Service,
+};
+use crate::source::Text;
+use crate::xml::Element;
+
+/// What services and references hold alike.
+#[derive(Default)]
+struct Contract {
+    interface: Option<Box<Interface>>,
+    bindings: Vec<Binding>,
+    callback: Option<Box<Callback>>,
+}
+
+impl Loader<'_> {
+    pub(super) fn service(&mut self, element: Element<'_>, kind: &'static Kind) -> Service {
+        self.check_attributes(element, kind);
+        let name = self.name(element);
+        let is_promoting = std::ptr::eq(kind, &COMPOSITE_SERVICE);
+        let promote = if is_promoting { self.required(element, "promote") } else { None };
+        let Contract { interface, bindings, callback } = self.contract(element, kind);
+        let policy = self.policy(element);
+        Service { origin: Origin::of(element), name, promote, interface, bindings, callback, policy }
+    }
+
+    pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> Reference {
+        self.check_attributes(element, kind);
+        let name = self.name(element);
+        let is_promoting = std::ptr::eq(kind, &COMPOSITE_REFERENCE);
+        let promote = if is_promoting { self.promoted(element) } else { Vec::new() };
+        let Contract { interface, bindings, callback } = self.contract(element, kind);
+        Reference {
+            origin: Origin::of(element),
+            name,
+            targets: self.list(element, "target"),
+            multiplicity: self.multiplicity(element),
+            details: self.reference_details(element, promote),
+            interface,
+            bindings,
+            callback,
+            policy: self.policy(element),
+        }
+    }
+
+    /// What few references have; `None` for the others.
+    fn reference_details(
+        &mut self,
+        element: Element<'_>,
+        promote: Vec<Text>,
+    ) -> Option<Box<ReferenceDetails>> {
+        let details = ReferenceDetails {
+            promote,
+            autowire: self.boolean(element, "autowire"),
+            wired_by_impl: self.boolean(element, "wiredByImpl"),
+            non_overridable: self.boolean(element, "nonOverridable"),
+        };
+        (details != ReferenceDetails::default()).then(|| Box::new(details))
+    }
+
+    /// What a composite's reference promotes. The schema lets the list be empty.
+    fn promoted(&mut self, element: Element<'_>) -> Vec<Text> {
+        let list = self.list(element, "promote");
+        if !list.is_empty() {
+            return list;
+        }
+        match element.attribute("promote") {
+            None => _ = self.required(element, "promote"),
+            Some(attribute) => {
+                let message = format!("{} promotes nothing", quoted(element.name()));
+                let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), message);
+                self.report(one.severity(Severity::Warning));
+            }
+        }
+        list
+    }
+
+    fn contract(&mut self, element: Element<'_>, kind: &'static Kind) -> Contract {
+        self.no_text(element);
+        let mut contract = Contract::default();
+        for child in element.children() {
+            let family = self.family(child);
+            match (family, child.local_name()) {
+                (Family::Nobody, _) => {}
+                (Family::Sca, "callback") => match &contract.callback {
+                    Some(first) => self.repeated(child, first.origin.tag, kind, "callback"),
+                    None => contract.callback = Some(Box::new(self.callback(child))),
+                },
+                (
+                    Family::Sca,
+                    "operation" | "requires" | "policySetAttachment" | "documentation" | "extensions",
+                ) => {}
+                (Family::Sca, name) if name.starts_with("interface.") && is_defined(child) => {
+                    self.interface(child, family, kind, &mut contract);
+                }
+                (Family::Foreign, name) if name.starts_with("interface.") => {
+                    self.interface(child, family, kind, &mut contract);
+                }
+                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
+                    contract.bindings.push(self.binding(child, family));
+                }
+                (Family::Foreign, name) if name.starts_with("binding.") => {
+                    contract.bindings.push(self.binding(child, family));
+                }
+                (Family::Foreign, _) => {}
+                _ => self.unexpected(child, kind, family),
+            }
+        }
+        contract.bindings.shrink_to_fit();
+        contract
+    }
+
+    fn interface(
+        &mut self,
+        element: Element<'_>,
+        family: Family,
+        parent: &'static Kind,
+        contract: &mut Contract,
+    ) {
+        if let Some(first) = &contract.interface {
+            return self.repeated(element, first.origin.tag, parent, "interface");
+        }
+        let mut names = ("interface", "callbackInterface");
+        let mut required = false;
+        let kind = match (family, element.local_name()) {
+            (Family::Sca, "interface.java") => {
+                self.parts_of(element, &INTERFACE_JAVA);
+                required = true;
+                InterfaceKind::Java
+            }
+            (Family::Sca, "interface.wsdl") => {
+                self.parts_of(element, &INTERFACE_WSDL);
+                required = true;
+                InterfaceKind::Wsdl
+            }
+            (Family::Sca, "interface.c" | "interface.cpp") => {
+                names = ("header", "callbackHeader");
+                if element.local_name() == "interface.c" { InterfaceKind::C } else { InterfaceKind::Cpp }
+            }
+            (Family::Sca, "interface.partnerLinkType") => InterfaceKind::PartnerLinkType,
+            _ => InterfaceKind::Other,
+        };
+        contract.interface = Some(Box::new(Interface {
+            origin: Origin::of(element),
+            kind,
+            interface: if required {
+                self.required(element, names.0)
+            } else {
+                self.optional(element, names.0)
+            },
+            callback_interface: self.optional(element, names.1),
+            remotable: if family == Family::Sca { self.boolean(element, "remotable") } else { None },
+            policy: self.policy(element),
+        }));
+    }
+
+    fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {
+        // What other bindings hold is theirs.
+        if family == Family::Sca && element.local_name() == BINDING_SCA.name {
+            self.parts_of(element, &BINDING_SCA);
+        }
+        Binding {
+            origin: Origin::of(element),
+            kind: variant(element, "binding."),
+            is_sca: family == Family::Sca,
+            name: self.optional(element, "name").map(Box::new),
+            uri: self.optional(element, "uri"),
+            policy: self.policy(element),
+        }
+    }
+
+    fn callback(&mut self, element: Element<'_>) -> Callback {
+        self.check_attributes(element, &CALLBACK);
+        self.no_text(element);
+        let mut bindings = Vec::new();
+        for child in element.children() {
+            let family = self.family(child);
+            match (family, child.local_name()) {
+                (Family::Nobody, _) => {}
+                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
+                    bindings.push(self.binding(child, family));
+                }
+                (Family::Foreign, name) if name.starts_with("binding.") => {
+                    bindings.push(self.binding(child, family));
+                }
+                (Family::Foreign, _) => {}
+                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+                _ => self.unexpected(child, &CALLBACK, family),
+            }
+        }
+        let (name, policy) = (self.optional(element, "name"), self.policy(element));
+        Callback { origin: Origin::of(element), name, bindings, policy }
+    }
+}

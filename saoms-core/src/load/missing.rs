@@ -1,0 +1,63 @@
+//! Files that are not there, and what could have been meant.
+
+use std::fs;
+use std::path::Path;
+
+use crate::diagnostic::{nearest_few, quoted};
+
+/// Entries of a folder that are looked at.
+const MOST: usize = 10_000;
+/// Names that are offered.
+const OFFERED: usize = 3;
+
+/// Help for a path that does not exist.
+pub(super) fn help(path: &Path) -> Option<String> {
+    let parent = path.parent()?;
+    let folder = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
+    if !folder.is_dir() {
+        let shown = quoted(&folder.display().to_string());
+        return Some(match folder.exists() {
+            true => format!("{shown} is no directory"),
+            false => format!("there is no directory {shown} either"),
+        });
+    }
+    let wanted = path.file_name()?.to_string_lossy();
+    let names = names(folder);
+    let all = names.iter().map(String::as_str);
+    let near = nearest_few(&wanted, all.clone(), OFFERED);
+    let near = if near.is_empty() {
+        // Many forget the ending.
+        let stem = |name: &&str| Path::new(name).file_stem().is_some_and(|stem| stem == &*wanted);
+        all.clone().filter(stem).take(OFFERED).collect()
+    } else {
+        near
+    };
+    if !near.is_empty() {
+        return Some(format!("there is {}", listed(&near, parent)));
+    }
+    let composites: Vec<&str> = all.filter(|name| name.ends_with(".composite")).take(OFFERED).collect();
+    (!composites.is_empty()).then(|| format!("the folder has {}", listed(&composites, parent)))
+}
+
+/// The composites in a directory that was given in place of a file.
+pub(super) fn inside(directory: &Path) -> Option<String> {
+    let names = names(directory);
+    let composites: Vec<&str> =
+        names.iter().map(String::as_str).filter(|name| name.ends_with(".composite")).take(OFFERED).collect();
+    (!composites.is_empty()).then(|| format!("it has {}", listed(&composites, directory)))
+}
+
+fn listed(names: &[&str], shown_as: &Path) -> String {
+    let paths: Vec<String> =
+        names.iter().map(|name| quoted(&shown_as.join(name).display().to_string())).collect();
+    paths.join(", ")
+}
+
+/// The names in a folder, in order; empty when it cannot be read.
+fn names(folder: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let mut names: Vec<String> =
+        entries.take(MOST).flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort_unstable();
+    names
+}

@@ -1,0 +1,101 @@
+//! From text to the model, with everything that is wrong in it.
+//!
+//! [`load`] reads a file and makes a [`Composite`] of it. All faults of the file are reported in one run; those behind
+//! the first that makes it ill-formed XML are not, since what is meant there cannot be known. Nothing beyond the one
+//! file is looked at.
+
+mod attributes;
+mod children;
+mod component;
+mod composite;
+mod contract;
+mod encoding;
+mod missing;
+mod property;
+mod read;
+mod root;
+#[cfg(test)]
+mod tests;
+mod vocabulary;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub use read::{MAX_SIZE, read};
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Composite, Property, Reference, Service, Version};
+use crate::source::{FileId, Sources};
+use crate::xml;
+
+/// Reads the composite in the file `path`, of at most [`MAX_SIZE`] bytes; see [`load_file`].
+pub fn load(path: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
+    let file = read(path, MAX_SIZE, sources, diagnostics)?;
+    load_file(file, sources, diagnostics)
+}
+
+/// Makes the model of a text that was read before. `None` when the text is no well-formed XML with a `composite` as its
+/// root; otherwise the model of all that could be understood, also when there are errors.
+///
+/// ```
+/// use saoms_core::{diagnostic::Diagnostics, load::load_file, source::Sources};
+///
+/// let text = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="fleet" targetNamespace="urn:fleet">
+///     <component name="Robot001"><implementation.java class="robot.Robot001"/></component>
+/// </composite>"#;
+/// let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+/// let file = sources.add("fleet.composite", text);
+/// let fleet = load_file(file, &sources, &mut diagnostics).unwrap();
+/// assert!(diagnostics.is_empty());
+/// assert_eq!(fleet.components[0].class().unwrap(), &"robot.Robot001");
+/// ```
+pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
+    let text = sources.get(file).text();
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        diagnostics.push(read::empty(file));
+        return None;
+    }
+    let xml::Parsed { document, fault } = xml::parse(file, text);
+    let mut composite = None;
+    if let Some(document) = document {
+        let mut loader = Loader {
+            version: Version::Osoa10,
+            namespace: String::new(),
+            diagnostics,
+            gathered: Gathered::default(),
+        };
+        if loader.root(document.root()) {
+            composite = Some(loader.composite(&Arc::new(document)));
+        }
+    }
+    match fault {
+        None => composite,
+        Some(fault) => {
+            diagnostics.push(fault);
+            None
+        }
+    }
+}
+
+/// What the parts of the loader share.
+struct Loader<'d> {
+    version: Version,
+    /// The namespace that counts as that of SCA: that of the version, but for a root in an unknown one.
+    namespace: String,
+    diagnostics: &'d mut Diagnostics,
+    /// Where parts of the component at hand are gathered, so that each list is allocated once and in its size.
+    gathered: Gathered,
+}
+
+#[derive(Default)]
+struct Gathered {
+    properties: Vec<Property>,
+    services: Vec<Service>,
+    references: Vec<Reference>,
+}
+
+impl Loader<'_> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+}

@@ -1,0 +1,76 @@
+//! Properties.
+
+use super::Loader;
+use super::children::Family;
+use super::vocabulary::{COMPONENT, COMPOSITE, Kind};
+use crate::diagnostic::nearest;
+use crate::model::{Origin, Property, PropertyDetails, PropertyValue};
+use crate::source::{Located, Span, Text};
+use crate::xml::{Element, ElementId};
+
+impl Loader<'_> {
+    pub(super) fn property(&mut self, element: Element<'_>, kind: &'static Kind) -> Property {
+        self.check_attributes(element, kind);
+        let name = self.name(element);
+        let mut values = Vec::new();
+        let mut content = Vec::new();
+        for child in element.children() {
+            let is_sca = child.namespace() == self.namespace;
+            match child.local_name() {
+                "value" if is_sca => values.push(value(child)),
+                other if is_sca && self.is_slip(other) => self.unexpected(child, kind, Family::Sca),
+                _ => content.push(child.id()),
+            }
+        }
+        if !values.is_empty() {
+            self.no_text(element);
+        }
+        Property {
+            origin: Origin::of(element),
+            name,
+            value: element.attribute("value").map(crate::xml::Attribute::trimmed),
+            text: element.trimmed_text(),
+            details: self.details(element, values, content),
+        }
+    }
+
+    /// What few properties have; `None` for the others.
+    fn details(
+        &mut self,
+        element: Element<'_>,
+        values: Vec<PropertyValue>,
+        content: Vec<ElementId>,
+    ) -> Option<Box<PropertyDetails>> {
+        let is_usual = |name| matches!(name, "name" | "value");
+        let has_usual = element.attributes().all(|attribute| is_usual(attribute.name()));
+        if has_usual && values.is_empty() && content.is_empty() {
+            return None;
+        }
+        Some(Box::new(PropertyDetails {
+            r#type: self.optional(element, "type"),
+            element: self.optional(element, "element"),
+            many: self.boolean(element, "many"),
+            must_supply: self.boolean(element, "mustSupply"),
+            source: self.optional(element, "source"),
+            file: self.optional(element, "file"),
+            values,
+            content,
+        }))
+    }
+
+    /// Whether an element of SCA in a property is a mistake. Any other is a value of the user's own, since a default
+    /// namespace makes those elements of SCA too.
+    fn is_slip(&self, name: &str) -> bool {
+        let structural = [&COMPOSITE, &COMPONENT].into_iter().flat_map(|kind| kind.children);
+        let is_structural = |known: &&str| *known == name || known.ends_with('.') && name.starts_with(known);
+        structural.into_iter().any(is_structural)
+            || (self.version.is_1_1() && nearest(name, ["value"]).is_some())
+    }
+}
+
+fn value(element: Element<'_>) -> PropertyValue {
+    let at = Span::empty(element.start_tag_span().end).in_file(element.document().file());
+    let text = element.trimmed_text().unwrap_or_else(|| -> Text { Located::new("".into(), at) });
+    let content = element.children().map(Element::id).collect();
+    PropertyValue { origin: Origin::of(element), text, content }
+}

@@ -1,0 +1,181 @@
+//! Reading files.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::{encoding, missing};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
+use crate::source::{FileId, Location, Sources, Span};
+
+/// The size in bytes above which a file is refused unless something else is set: 256 MB.
+pub const MAX_SIZE: u64 = 256_000_000;
+
+/// Sources name bytes with 32 bits, and a byte behind the end must have a name.
+const LIMIT: u64 = u32::MAX as u64 - 1;
+
+/// Reads the text of a file of at most `max_size` bytes. `None`, and a diagnostic that says why, when there is no such
+/// file or it is no text in UTF-8.
+///
+/// The file is in `sources` in either case: diagnostics have to name it.
+pub fn read(
+    path: &Path,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<FileId> {
+    let name = path.display().to_string();
+    let max_size = max_size.min(LIMIT);
+    let bytes = match bytes(path, max_size) {
+        Ok(bytes) => bytes,
+        Err(failure) => {
+            let file = sources.add(name, "");
+            diagnostics.push(failure.diagnostic(path, max_size, start_of(file)));
+            return None;
+        }
+    };
+    match text(path, bytes) {
+        Ok(text) => {
+            let is_empty = text.trim_start_matches('\u{feff}').trim().is_empty();
+            let file = sources.add(name, text);
+            if is_empty {
+                diagnostics.push(empty(file));
+                return None;
+            }
+            Some(file)
+        }
+        Err(wrong) => {
+            let file = sources.add(name, wrong.shown);
+            let location = Span::new(wrong.at, wrong.at + wrong.len).in_file(file);
+            let one = Diagnostic::new(wrong.code, location, wrong.message);
+            diagnostics.push(one.help(wrong.help));
+            None
+        }
+    }
+}
+
+/// The diagnostic for a file of nothing, or of nothing but white space.
+pub(super) fn empty(file: FileId) -> Diagnostic {
+    Diagnostic::new(&codes::FILE_EMPTY, start_of(file), "the file is empty")
+        .help("a composite is at least `<composite xmlns=\"...\" name=\"...\" targetNamespace=\"...\"/>`")
+}
+
+fn start_of(file: FileId) -> Location {
+    Span::empty(0).in_file(file)
+}
+
+/// Why there are no bytes.
+enum Failure {
+    Directory,
+    /// With the size, where it is known.
+    TooLarge(Option<u64>),
+    Io(io::Error),
+}
+
+impl Failure {
+    fn diagnostic(self, path: &Path, max_size: u64, location: Location) -> Diagnostic {
+        match self {
+            Self::Directory => {
+                let one = Diagnostic::new(
+                    &codes::FILE_IS_DIRECTORY,
+                    location,
+                    "a directory, where a file is expected",
+                );
+                with_help(one, missing::inside(path))
+            }
+            Self::TooLarge(size) => {
+                let size = size.map_or_else(|| "more".to_owned(), |size| format!("{size} bytes"));
+                let message = format!("the file has {size}, and the limit is {max_size} bytes");
+                Diagnostic::new(&codes::FILE_TOO_LARGE, location, message)
+                    .help("the limit is set with `--max-size`")
+            }
+            Self::Io(error) if error.kind() == io::ErrorKind::NotFound => {
+                let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
+                with_help(one, missing::help(path))
+            }
+            Self::Io(error) if error.kind() == io::ErrorKind::NotADirectory => {
+                let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
+                one.help("a part of its path is a file and no directory")
+            }
+            Self::Io(error) => {
+                let message = format!("the file cannot be read: {error}");
+                Diagnostic::new(&codes::FILE_UNREADABLE, location, message)
+            }
+        }
+    }
+}
+
+fn with_help(diagnostic: Diagnostic, help: Option<String>) -> Diagnostic {
+    match help {
+        Some(help) => diagnostic.help(help),
+        None => diagnostic,
+    }
+}
+
+fn bytes(path: &Path, max_size: u64) -> Result<Vec<u8>, Failure> {
+    let about = fs::metadata(path).map_err(Failure::Io)?;
+    if about.is_dir() {
+        return Err(Failure::Directory);
+    }
+    if about.len() > max_size {
+        return Err(Failure::TooLarge(Some(about.len())));
+    }
+    let mut file = File::open(path).map_err(Failure::Io)?;
+    let mut bytes = Vec::with_capacity(about.len() as usize + 1);
+    // A file can grow meanwhile, and devices and pipes have no length.
+    (&mut file).take(max_size + 1).read_to_end(&mut bytes).map_err(Failure::Io)?;
+    if bytes.len() as u64 > max_size {
+        return Err(Failure::TooLarge(None));
+    }
+    Ok(bytes)
+}
+
+/// Bytes that are no text.
+struct Wrong {
+    code: &'static crate::diagnostic::Code,
+    /// What can be shown of the file.
+    shown: String,
+    /// Where in it the fault is.
+    at: u32,
+    len: u32,
+    message: String,
+    help: String,
+}
+
+fn text(path: &Path, bytes: Vec<u8>) -> Result<String, Box<Wrong>> {
+    let whole = |code, message: String, help: String| {
+        Box::new(Wrong { code, shown: String::new(), at: 0, len: 0, message, help })
+    };
+    let convert = |name: &str| format!("convert it: `iconv -f {name} -t UTF-8 {}`", path.display());
+    if let Some(name) = encoding::by_its_bytes(&bytes) {
+        let message = format!("the file is in {name}, and UTF-8 is expected");
+        return Err(whole(&codes::FILE_ENCODING, message, convert(name)));
+    }
+    if let Some(what) = encoding::of_another_kind(&bytes) {
+        let message = format!("the file is {what}, and no XML text");
+        return Err(whole(&codes::FILE_BINARY, message, "a composite is an XML text".to_owned()));
+    }
+    if let Some(at) = bytes.iter().position(|&byte| byte == 0) {
+        let message = format!("the file is binary: byte {at} is zero");
+        return Err(whole(&codes::FILE_BINARY, message, "a composite is an XML text in UTF-8".to_owned()));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let bytes = error.into_bytes();
+        let declared = encoding::declared(&bytes).filter(|name| !name.eq_ignore_ascii_case("UTF-8"));
+        let byte = bytes.get(at).copied().unwrap_or_default();
+        let (message, help) = match declared {
+            Some(name) => (
+                format!("the file is declared to be in {}, and UTF-8 is expected", quoted(&name)),
+                convert(&name),
+            ),
+            None => (
+                format!("the byte 0x{byte:02X} here is no UTF-8"),
+                format!("if the file is in Windows-1252 or Latin-1, {}", convert("WINDOWS-1252")),
+            ),
+        };
+        let shown = String::from_utf8_lossy(&bytes).into_owned();
+        let len = '\u{fffd}'.len_utf8() as u32;
+        Box::new(Wrong { code: &codes::FILE_ENCODING, shown, at: at as u32, len, message, help })
+    })
+}

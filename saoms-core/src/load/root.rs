@@ -1,0 +1,98 @@
+//! The root element: is it a composite, and of which version of SCA?
+
+use super::Loader;
+use crate::diagnostic::{Diagnostic, Edit, codes, nearest, quoted};
+use crate::model::Version;
+use crate::source::{Location, Span};
+use crate::xml::Element;
+
+impl Loader<'_> {
+    /// Whether the root is a composite; finds out of which version of SCA.
+    pub(super) fn root(&mut self, root: Element<'_>) -> bool {
+        let namespace = root.namespace();
+        namespace.clone_into(&mut self.namespace);
+        let version = Version::from_namespace(namespace);
+        if root.local_name() != "composite" {
+            self.report(wrong_root(root, version));
+            return false;
+        }
+        // Behind a wrong namespace the rest is read as if it were the right one, so that other faults are found too.
+        self.version = version.or_else(|| meant(namespace)).unwrap_or(Version::Osoa10);
+        if version.is_none() {
+            self.report(wrong_namespace(root));
+        }
+        true
+    }
+}
+
+fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
+    let message = format!("the root element is {} and has to be `composite`", quoted(root.name()));
+    let location = root.name_location();
+    let one =
+        Diagnostic::new(&codes::ROOT, location, message).help(format!("of the namespace {}", namespaces()));
+    let local = root.local_name();
+    let meant = nearest(local, ["composite"]).filter(|_| version.is_some() || root.namespace().is_empty());
+    if let Some(meant) = meant {
+        let replacement =
+            root.prefix().map_or_else(|| meant.to_owned(), |prefix| format!("{prefix}:{meant}"));
+        let file = location.file;
+        let spans = [Some(root.name_span()), root.end_name_span()].into_iter().flatten();
+        let edits = spans
+            .map(|span| Edit { location: span.in_file(file), replacement: replacement.clone() })
+            .collect();
+        return one.suggest_edits(format!("replace {} with {}", quoted(local), quoted(meant)), edits);
+    }
+    let hint = match (version.is_some(), local) {
+        (true, "componentType") => "this describes an implementation; name the composite that uses it",
+        (true, "contribution") => "this describes a contribution; name a composite in it",
+        (true, "definitions") => "this holds policies; name a composite",
+        (true, "component") => "a component stands in a `composite`",
+        _ => return one,
+    };
+    one.help(hint)
+}
+
+fn wrong_namespace(root: Element<'_>) -> Diagnostic {
+    let namespace = root.namespace();
+    if namespace.is_empty() {
+        let version = Version::Oasis200912;
+        let message = "`composite` is in no namespace, and so it is no composite of SCA";
+        let place = Span::empty(root.name_span().end).in_file(root.document().file());
+        let declaration = format!("xmlns=\"{}\"", version.namespace());
+        return Diagnostic::new(&codes::NAMESPACE, root.name_location(), message)
+            .help(format!("it has to be in {}", namespaces()))
+            .suggest(format!("insert {}", quoted(&declaration)), place, format!(" {declaration}"));
+    }
+    let message = format!("{} is no namespace of SCA", quoted(namespace));
+    let location = declaration(root).unwrap_or_else(|| root.name_location());
+    let one = Diagnostic::new(&codes::NAMESPACE, location, message)
+        .help(format!("the namespace of a composite is {}", namespaces()));
+    match meant(namespace) {
+        Some(version) if location != root.name_location() => {
+            let description = format!("replace it with {}", quoted(version.namespace()));
+            one.suggest(description, location, version.namespace())
+        }
+        _ => one,
+    }
+}
+
+/// The version whose namespace is meant, when what is written is near enough.
+fn meant(namespace: &str) -> Option<Version> {
+    let near = nearest(namespace, Version::ALL.map(Version::namespace));
+    near.and_then(Version::from_namespace)
+}
+
+/// Where the namespace of the root is written.
+fn declaration(root: Element<'_>) -> Option<Location> {
+    let wanted = root.prefix();
+    let found = root.namespace_declarations().find(|one| match one.prefix() {
+        Some(_) => Some(one.local_name()) == wanted,
+        None => wanted.is_none(),
+    })?;
+    Some(found.value_span().in_file(root.document().file()))
+}
+
+fn namespaces() -> String {
+    let all = Version::ALL.map(|version| format!("`{}` ({})", version.namespace(), version.label()));
+    format!("{}, {} or {}", all[0], all[1], all[2])
+}
