@@ -20,20 +20,39 @@ use crate::{CallError, Context, Failure, Invocation, Properties};
 /// `execute` must not wait for anything. An execution beyond the watchdog's budget is reported, and from then on the component runs on
 /// a worker thread, where it is less punctual:
 ///
-/// ```ignore
+/// ```
+/// # use std::time::Duration;
+/// # use saoms_api::{Component, Context, Failure, Message, Publisher};
+/// # #[derive(Clone, Debug, Message)]
+/// # struct Arrived;
+/// # struct Wheels { arrived: Publisher<Arrived>, drive_time: Duration }
+/// # impl Component for Wheels {
+/// # type Properties = ();
+/// # fn new((): ()) -> Result<Self, Failure> { Err("only an example".into()) }
 /// fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-///     std::thread::sleep(self.drive_time);            // wrong: nobody else can run, or this component loses its punctuality
-///     context.send(&self.arrived, Arrived {})
+///     std::thread::sleep(self.drive_time); // wrong: nobody else can run, or this component loses its punctuality
+///     context.send(&self.arrived, Arrived)
 /// }
+/// # }
 /// ```
 ///
 /// Remember the state instead, and look again in the next period:
 ///
-/// ```ignore
+/// ```
+/// # use saoms_api::{Component, Context, Failure, Message, Publisher, Time};
+/// # #[derive(Clone, Debug, Message)]
+/// # struct Arrived;
+/// # struct Wheels { arrived: Publisher<Arrived>, arrival: Time }
+/// # impl Component for Wheels {
+/// # type Properties = ();
+/// # fn new((): ()) -> Result<Self, Failure> { Err("only an example".into()) }
 /// fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-///     if context.now() < self.arrival { return Ok(()) }
-///     context.send(&self.arrived, Arrived {})
+///     if context.now() < self.arrival {
+///         return Ok(());
+///     }
+///     context.send(&self.arrived, Arrived)
 /// }
+/// # }
 /// ```
 pub trait Component: Send + Sized + 'static {
     /// What the composite can set.

@@ -205,6 +205,14 @@ fn a_class_declares_everything() {
 }
 
 #[test]
+fn declarations_are_json() {
+    let json: serde_json::Value = serde_json::from_str(Robot::DECLARATION).unwrap();
+    assert_eq!(json["doc"], "A robot with \\ and \"quotes\".");
+    assert_eq!(json["publishes"][0]["topic"], "POS\"TOPIC");
+    assert_eq!(json["properties"][0]["doc"], "The robot's number.\nNot twice.");
+}
+
+#[test]
 fn linked_classes_register_themselves() {
     let mut linked: Vec<_> = Registration::linked().map(Registration::declaration).collect();
     linked.sort_unstable_by_key(|declaration| declaration.len());

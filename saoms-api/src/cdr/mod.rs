@@ -48,7 +48,8 @@ const HEADER: [u8; 4] = [0, 1, 0, 0];
 /// # Panics
 /// As [`Writer::length`]: a string or sequence has 2^32 elements or more.
 pub fn encode<F: Field>(value: &F) -> Vec<u8> {
-    let mut writer = Writer::new();
+    // Enough for whatever holds no strings and sequences, and for short ones.
+    let mut writer = Writer::reusing(Vec::with_capacity(F::LEAST_SIZE + 64));
     value.write(&mut writer);
     writer.into_bytes()
 }

@@ -57,10 +57,20 @@ impl PropertyShape {
     }
 }
 
-/// Whether a default is allowed by the rule; while compiling, for what the macro itself cannot see. Numbers are checked by their Rust type.
+/// Whether a default is allowed by the rule; while compiling, for what the macro itself cannot see: the compiler checks the literals of plain
+/// `bool`s and numbers.
 pub const fn default_fits(rule: &Rule<'_>, default: &str) -> bool {
     match rule.kind {
+        PropertyKind::Boolean => contains(&["true", "false"], default),
         PropertyKind::Enumeration => contains(rule.allowed, default),
+        PropertyKind::Integer => match integer(default) {
+            Some(default) => {
+                !(matches!(bound(rule.min), Some(min) if default < min)
+                    || matches!(bound(rule.max), Some(max) if default > max)
+                    || matches!(bound(rule.exclusive_max), Some(max) if default >= max))
+            }
+            None => false,
+        },
         PropertyKind::Duration => {
             let Ok(default) = read_duration(default) else { return false };
             let default = default.as_nanos();
@@ -68,8 +78,23 @@ pub const fn default_fits(rule: &Rule<'_>, default: &str) -> bool {
                 || matches!(nanos(rule.max), Some(max) if default > max)
                 || matches!(nanos(rule.exclusive_max), Some(max) if default >= max))
         }
+        PropertyKind::Float => matches!(default.as_bytes(), [b'0'..=b'9', ..] | [b'-', b'0'..=b'9', ..]),
+        PropertyKind::String => true,
         PropertyKind::Complex => false,
-        _ => true,
+    }
+}
+
+const fn bound(bound: Option<&str>) -> Option<i128> {
+    match bound {
+        Some(bound) => integer(bound),
+        None => None,
+    }
+}
+
+const fn integer(text: &str) -> Option<i128> {
+    match i128::from_str_radix(text, 10) {
+        Ok(number) => Some(number),
+        Err(_) => None,
     }
 }
 

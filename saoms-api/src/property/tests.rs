@@ -97,6 +97,16 @@ fn defaults_and_bounds_are_checked_while_compiling() {
         (choice, "dropp", false),
         (choice, "dro", false),
         (text, "anything", true),
+        (u8::TYPE.rule, "255", true),
+        (u8::TYPE.rule, "256", false),
+        (u8::TYPE.rule, "-1", false),
+        (Option::<i64>::TYPE.rule, "-1", true),
+        (Rule { exclusive_max: Some("9"), ..Rule::of(PropertyKind::Integer) }, "9", false),
+        (Rule::of(PropertyKind::Integer), "1.0", false),
+        (Rule::of(PropertyKind::Float), "-1.5", true),
+        (Rule::of(PropertyKind::Float), "wide", false),
+        (Rule::of(PropertyKind::Boolean), "true", true),
+        (Rule::of(PropertyKind::Boolean), "5", false),
         (Rule::of(PropertyKind::Complex), "anything", false),
     ];
     for (rule, default, fits) in cases {
