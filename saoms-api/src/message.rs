@@ -96,7 +96,20 @@ impl SharedMessage {
 
     /// The CDR form, encoded at the first call.
     pub fn bytes(&self) -> &[u8] {
-        self.0.bytes.get_or_init(|| self.0.payload.encode())
+        self.0.bytes.get_or_init(|| {
+            let mut bytes = Vec::with_capacity(64);
+            self.0.payload.encode(&mut bytes);
+            bytes
+        })
+    }
+
+    /// The CDR form in a buffer that is used again and again: what it held is replaced, its memory is kept. For those who need the bytes only
+    /// in passing.
+    pub fn encode_into(&self, bytes: &mut Vec<u8>) {
+        match self.0.bytes.get() {
+            Some(encoded) => bytes.clone_from(encoded),
+            None => self.0.payload.encode(bytes),
+        }
     }
 }
 
@@ -108,15 +121,15 @@ impl fmt::Debug for SharedMessage {
 
 /// The value of a message, whatever its type.
 trait Payload: Any + Send + Sync {
-    fn encode(&self) -> Vec<u8>;
+    fn encode(&self, bytes: &mut Vec<u8>);
 }
 
 /// A value of this build of the program.
 struct Typed<M>(M);
 
 impl<M: Message> Payload for Typed<M> {
-    fn encode(&self) -> Vec<u8> {
-        cdr::encode(&self.0)
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        cdr::encode_into(&self.0, bytes);
     }
 }
 
@@ -124,8 +137,8 @@ impl<M: Message> Payload for Typed<M> {
 struct Arrived;
 
 impl Payload for Arrived {
-    fn encode(&self) -> Vec<u8> {
-        Vec::new()
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        bytes.clear();
     }
 }
 

@@ -1,9 +1,13 @@
 //! The machine of SAOMS: model, load, check, assemble, bus and schedule.
 
+pub mod assemble;
 pub mod assembly;
+pub mod bus;
 pub mod diagnostic;
 pub mod load;
 pub mod model;
 pub mod registry;
+pub mod report;
+pub mod schedule;
 pub mod source;
 pub mod xml;

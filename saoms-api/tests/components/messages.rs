@@ -140,3 +140,16 @@ fn threads_that_decode_at_once_see_one_value() {
         assert!(places.iter().all(|place| *place == places[0]), "{places:?}");
     }
 }
+
+#[test]
+fn bytes_for_passing_use_are_those_that_are_kept() {
+    let mut bytes = vec![9; 100];
+    let shared = SharedMessage::new(HEADER, position(4, "four"));
+    shared.encode_into(&mut bytes);
+    assert_eq!(bytes, cdr::encode(&position(4, "four")));
+    assert_eq!(shared.bytes(), bytes);
+    shared.encode_into(&mut bytes);
+    assert_eq!(shared.bytes(), bytes);
+    SharedMessage::from_bytes(HEADER, None, vec![1, 2]).encode_into(&mut bytes);
+    assert_eq!(bytes, [1, 2]);
+}

@@ -1,0 +1,40 @@
+use crate::assembly::Assembly;
+
+/// The components of an assembly, each after those whose services it calls, in document order otherwise.
+///
+/// A component may call its references from `initialize` and `shutdown` on: its providers have to be there before it and go after it.
+/// Depth-first search over the wires, without recursion because a chain of wires may be as long as the fleet. In a cycle, which the
+/// checker refuses, the order is some order.
+pub(super) fn providers_first(assembly: &Assembly) -> Vec<usize> {
+    let components = &assembly.components;
+    let mut order = Vec::with_capacity(components.len());
+    let mut seen = vec![false; components.len()];
+    let mut path: Vec<(usize, usize)> = Vec::new();
+    for root in 0..components.len() {
+        visit(root, &mut seen, &mut path);
+        while let Some((component, next)) = path.last_mut() {
+            let component = *component;
+            match components[component].references.get(*next) {
+                None => {
+                    order.push(component);
+                    path.pop();
+                }
+                Some(wire) => {
+                    *next += 1;
+                    if let Some(target) =
+                        wire.target.as_ref().filter(|target| target.component < components.len())
+                    {
+                        visit(target.component, &mut seen, &mut path);
+                    }
+                }
+            }
+        }
+    }
+    order
+}
+
+fn visit(component: usize, seen: &mut [bool], path: &mut Vec<(usize, usize)>) {
+    if !std::mem::replace(&mut seen[component], true) {
+        path.push((component, 0));
+    }
+}

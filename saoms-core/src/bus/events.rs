@@ -1,0 +1,111 @@
+use std::collections::VecDeque;
+
+use saoms_api::SharedMessage;
+
+/// What an event topic holds: each message once, until the slowest reader has it, and where each reader stands.
+///
+/// Messages are numbered from 0. What all readers have is let go now and then, so that neither publishing nor reading looks at other readers.
+#[derive(Default)]
+pub(super) struct EventLog {
+    /// The number of the first message held.
+    first: u64,
+    pub(super) messages: VecDeque<SharedMessage>,
+    readers: Vec<Reader>,
+    free: Vec<u32>,
+    /// The length at which to look for messages that nobody needs any more.
+    tidy_at: usize,
+}
+
+struct Reader {
+    /// The number of the next message to read.
+    next: u64,
+    /// How many messages may wait; 0 marks a free place.
+    queue: u64,
+    lost: u64,
+}
+
+impl Reader {
+    /// Gives up the oldest messages that do not fit into the queue.
+    #[inline]
+    fn overflow(&mut self, end: u64) {
+        let oldest = end.saturating_sub(self.queue);
+        if self.next < oldest {
+            self.lost += oldest - self.next;
+            self.next = oldest;
+        }
+    }
+}
+
+impl EventLog {
+    fn end(&self) -> u64 {
+        self.first + self.messages.len() as u64
+    }
+
+    pub(super) fn join(&mut self, queue: usize) -> u32 {
+        let reader = Reader { next: self.end(), queue: queue.max(1) as u64, lost: 0 };
+        match self.free.pop() {
+            Some(place) => {
+                self.readers[place as usize] = reader;
+                place
+            }
+            None => {
+                self.readers.push(reader);
+                (self.readers.len() - 1) as u32
+            }
+        }
+    }
+
+    /// Frees a reader's place, and returns what it has lost since it last read.
+    pub(super) fn leave(&mut self, place: u32) -> u64 {
+        let end = self.end();
+        let reader = &mut self.readers[place as usize];
+        reader.overflow(end);
+        let lost = reader.lost;
+        reader.queue = 0;
+        self.free.push(place);
+        self.tidy();
+        lost
+    }
+
+    #[inline]
+    pub(super) fn publish(&mut self, message: SharedMessage) {
+        if self.readers.len() == self.free.len() {
+            self.first += 1;
+            return;
+        }
+        if self.messages.len() >= self.tidy_at {
+            self.tidy();
+        }
+        self.messages.push_back(message);
+    }
+
+    /// Lets go what every reader has. A tidying costs as much as there are readers and comes once in so many messages.
+    fn tidy(&mut self) {
+        let end = self.end();
+        let mut needed = end;
+        for reader in self.readers.iter_mut().filter(|reader| reader.queue > 0) {
+            reader.overflow(end);
+            needed = needed.min(reader.next);
+        }
+        let done = (needed - self.first) as usize;
+        self.messages.drain(..done);
+        self.first = needed;
+        self.tidy_at = self.messages.len() + 16 + self.readers.len() / 4;
+    }
+
+    /// Appends what is new to a reader, and returns how much it has lost since it last did.
+    #[inline]
+    pub(super) fn collect(&mut self, place: u32, inbox: &mut Vec<SharedMessage>) -> u64 {
+        let end = self.end();
+        let reader = &mut self.readers[place as usize];
+        if reader.next == end {
+            return std::mem::take(&mut reader.lost);
+        }
+        reader.overflow(end);
+        let start = (reader.next - self.first) as usize;
+        reader.next = end;
+        let lost = std::mem::take(&mut reader.lost);
+        inbox.extend(self.messages.range(start..).cloned());
+        lost
+    }
+}

@@ -1,0 +1,163 @@
+//! Topics inside one process: typed, shared not copied, delivered without waiting.
+//!
+//! Publishing puts a message into its topic once, however many readers there are; a reader collects what is new to it when its own
+//! execution starts. A [state topic](saoms_api::TopicKind::State) keeps the newest message of each key, so that a reader that comes later
+//! gets the present state, and one that comes seldom gets each key once. An [event topic](saoms_api::TopicKind::Event) keeps each message until
+//! every reader has it; a reader that falls behind by more than its queue loses the oldest, and is told how many.
+//!
+//! A [`Bus`] has no lock of its own: it belongs to one scheduler, which delivers in batches. It knows neither clock nor components.
+
+mod events;
+mod hash;
+mod state;
+#[cfg(test)]
+mod tests;
+mod topic;
+
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::Arc;
+
+use saoms_api::{SharedMessage, TopicDeclaration};
+
+pub(crate) use hash::fold;
+use topic::{Reader, Topic};
+
+/// All topics of a fleet, by the names that they have after renaming.
+#[derive(Default)]
+pub struct Bus {
+    topics: Vec<Topic>,
+    names: HashMap<Arc<str>, TopicId>,
+}
+
+/// A topic of a [`Bus`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TopicId(u32);
+
+/// One reader's place in a topic. Give it back with [`Bus::unsubscribe`].
+#[derive(Debug)]
+pub struct Subscription {
+    topic: TopicId,
+    reader: Reader,
+}
+
+/// Two ends of a topic that do not fit together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mismatch {
+    topic: Arc<str>,
+    other: Arc<str>,
+    found: String,
+    expected: String,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Mismatch { topic, other, found, expected } = self;
+        write!(
+            formatter,
+            "topic `{topic}` carries {expected} since component `{other}` uses it so, but here it would carry {found}: rename one \
+             of the two with `topicRename`, or let both use the same message"
+        )
+    }
+}
+
+impl Bus {
+    /// Registers a publisher of the topic, which comes to be with its first user. `by` is the component, for messages.
+    ///
+    /// # Errors
+    /// The topic carries other messages, or is of the other kind.
+    pub fn publisher(
+        &mut self,
+        name: &str,
+        declared: &TopicDeclaration<'_>,
+        by: &Arc<str>,
+    ) -> Result<TopicId, Mismatch> {
+        self.user(name, declared, by)
+    }
+
+    /// Takes a publisher off the topic. Retained messages stay.
+    pub fn unpublish(&mut self, topic: TopicId) {
+        self.topics[topic.0 as usize].users -= 1;
+    }
+
+    /// Registers a reader. It gets what a state topic retains, and the messages of an event topic from now on; of the latter, at most
+    /// `queue` wait for it.
+    ///
+    /// # Errors
+    /// The topic carries other messages, or is of the other kind.
+    pub fn subscribe(
+        &mut self,
+        name: &str,
+        declared: &TopicDeclaration<'_>,
+        by: &Arc<str>,
+        queue: usize,
+    ) -> Result<Subscription, Mismatch> {
+        let topic = self.user(name, declared, by)?;
+        let reader = self.topics[topic.0 as usize].reader(queue);
+        Ok(Subscription { topic, reader })
+    }
+
+    /// Takes a reader off its topic. Returns how many messages it has lost since it last collected.
+    pub fn unsubscribe(&mut self, subscription: Subscription) -> u64 {
+        let topic = &mut self.topics[subscription.topic.0 as usize];
+        topic.users -= 1;
+        topic.leave(subscription.reader)
+    }
+
+    /// Puts a message into a topic.
+    #[inline]
+    pub fn publish(&mut self, topic: TopicId, message: SharedMessage) {
+        self.topics[topic.0 as usize].publish(message);
+    }
+
+    /// Appends the messages that are new to a reader, oldest first. Returns how many it has lost since it last collected.
+    #[inline]
+    pub fn collect(&mut self, subscription: &mut Subscription, inbox: &mut Vec<SharedMessage>) -> u64 {
+        self.topics[subscription.topic.0 as usize].collect(&mut subscription.reader, inbox)
+    }
+
+    /// Lets a reader start over: of a state topic it gets everything that is retained again, of an event topic it has missed nothing.
+    pub fn rewind(&mut self, subscription: &mut Subscription) {
+        subscription.reader.rewind();
+    }
+
+    /// The topic that a subscription reads.
+    pub fn topic_of(&self, subscription: &Subscription) -> TopicId {
+        subscription.topic
+    }
+
+    /// The name of a topic.
+    pub fn name(&self, topic: TopicId) -> &Arc<str> {
+        &self.topics[topic.0 as usize].name
+    }
+
+    /// A hash of a topic's name, the same on every machine.
+    #[inline]
+    pub fn name_hash(&self, topic: TopicId) -> u64 {
+        self.topics[topic.0 as usize].name_hash
+    }
+
+    fn user(
+        &mut self,
+        name: &str,
+        declared: &TopicDeclaration<'_>,
+        by: &Arc<str>,
+    ) -> Result<TopicId, Mismatch> {
+        if let Some(&id) = self.names.get(name) {
+            let topic = &mut self.topics[id.0 as usize];
+            topic.join(declared, by)?;
+            return Ok(id);
+        }
+        let id = TopicId(u32::try_from(self.topics.len()).unwrap_or(u32::MAX));
+        let name: Arc<str> = Arc::from(name);
+        self.topics.push(Topic::new(Arc::clone(&name), declared, by));
+        self.names.insert(name, id);
+        Ok(id)
+    }
+}
+
+impl fmt::Debug for Bus {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_list().entries(self.topics.iter().map(|topic| &topic.name)).finish()
+    }
+}

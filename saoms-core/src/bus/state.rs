@@ -1,0 +1,91 @@
+use std::collections::HashMap;
+
+use saoms_api::SharedMessage;
+
+use super::hash::KeyHashing;
+
+const NONE: u32 = u32::MAX;
+
+/// What a state topic retains: the newest message of each key, linked in the order in which they changed.
+///
+/// A change moves its entry to the end, whatever the number of readers. A reader walks back from the end to the last change it knows.
+pub(super) struct StateTable {
+    entries: Vec<Entry>,
+    places: HashMap<Key, u32, KeyHashing>,
+    newest: u32,
+    changes: u64,
+}
+
+#[derive(PartialEq, Eq, Hash)]
+enum Key {
+    Message(u64),
+    Publisher(u32),
+}
+
+struct Entry {
+    message: SharedMessage,
+    change: u64,
+    older: u32,
+    newer: u32,
+}
+
+impl Default for StateTable {
+    fn default() -> StateTable {
+        StateTable { entries: Vec::new(), places: HashMap::default(), newest: NONE, changes: 0 }
+    }
+}
+
+impl StateTable {
+    pub(super) fn publish(&mut self, message: SharedMessage) {
+        self.changes += 1;
+        let key = message.key().map_or_else(|| Key::Publisher(message.header().sender), Key::Message);
+        if let Some(&place) = self.places.get(&key) {
+            self.unlink(place);
+            let entry = &mut self.entries[place as usize];
+            entry.message = message;
+            entry.change = self.changes;
+            self.link(place);
+            return;
+        }
+        let place = u32::try_from(self.entries.len()).unwrap_or(NONE);
+        self.entries.push(Entry { message, change: self.changes, older: NONE, newer: NONE });
+        self.places.insert(key, place);
+        self.link(place);
+    }
+
+    fn unlink(&mut self, place: u32) {
+        let Entry { older, newer, .. } = self.entries[place as usize];
+        match newer {
+            NONE => self.newest = older,
+            newer => self.entries[newer as usize].older = older,
+        }
+        if older != NONE {
+            self.entries[older as usize].newer = newer;
+        }
+    }
+
+    fn link(&mut self, place: u32) {
+        let newest = std::mem::replace(&mut self.newest, place);
+        if newest != NONE {
+            self.entries[newest as usize].newer = place;
+        }
+        let entry = &mut self.entries[place as usize];
+        entry.older = newest;
+        entry.newer = NONE;
+    }
+
+    /// Appends what changed after the `read`-th change, oldest first.
+    pub(super) fn collect(&self, read: &mut u64, inbox: &mut Vec<SharedMessage>) {
+        if *read == self.changes {
+            return;
+        }
+        let before = inbox.len();
+        let mut place = self.newest;
+        while let Some(entry) = self.entries.get(place as usize).filter(|entry| entry.change > *read) {
+            inbox.push(entry.message.clone());
+            place = entry.older;
+        }
+        inbox[before..].reverse();
+        *read = self.changes;
+    }
+}

@@ -1,0 +1,195 @@
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use saoms_api::{Header, Message, SharedMessage, Time, Topic};
+
+use super::{Bus, Subscription};
+
+#[derive(Clone, Debug, PartialEq, Message)]
+#[message(key = "key")]
+struct Keyed {
+    key: u8,
+    value: u32,
+}
+
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Plain {
+    value: u32,
+}
+
+const STATE: Topic<Keyed> = Topic::state("T");
+const OWN: Topic<Plain> = Topic::state("T");
+const EVENT: Topic<Plain> = Topic::event("T");
+
+fn who() -> Arc<str> {
+    Arc::from("somebody")
+}
+
+fn header(sender: u32) -> Header {
+    Header { sender, sent: Time::START }
+}
+
+fn collect(bus: &mut Bus, subscription: &mut Subscription) -> (Vec<SharedMessage>, u64) {
+    let mut inbox = Vec::new();
+    let lost = bus.collect(subscription, &mut inbox);
+    (inbox, lost)
+}
+
+#[derive(Clone, Debug)]
+enum Step {
+    Publish(u8),
+    Join(usize),
+    Leave(usize),
+    Read(usize),
+}
+
+fn steps() -> impl Strategy<Value = Vec<Step>> {
+    let step = prop_oneof![
+        6 => any::<u8>().prop_map(Step::Publish),
+        1 => (1..6_usize).prop_map(Step::Join),
+        1 => (0..8_usize).prop_map(Step::Leave),
+        3 => (0..8_usize).prop_map(Step::Read),
+    ];
+    prop::collection::vec(step, 0..300)
+}
+
+proptest! {
+    /// Against queues that are kept one by one.
+    #[test]
+    fn each_reader_of_events_has_a_queue_of_its_own(steps in steps()) {
+        let mut bus = Bus::default();
+        let topic = bus.publisher("T", &EVENT.declaration(), &who()).unwrap();
+        let mut readers: Vec<(Subscription, usize, VecDeque<u32>, u64)> = Vec::new();
+        let mut number = 0;
+        for step in steps {
+            match step {
+                Step::Publish(_) => {
+                    number += 1;
+                    bus.publish(topic, SharedMessage::new(header(0), Plain { value: number }));
+                    for (_, length, queue, lost) in &mut readers {
+                        queue.push_back(number);
+                        if queue.len() > *length {
+                            queue.pop_front();
+                            *lost += 1;
+                        }
+                    }
+                }
+                Step::Join(length) => {
+                    let subscription = bus.subscribe("T", &EVENT.declaration(), &who(), length).unwrap();
+                    readers.push((subscription, length, VecDeque::new(), 0));
+                }
+                Step::Leave(place) if place < readers.len() => {
+                    let (subscription, _, _, lost) = readers.swap_remove(place);
+                    prop_assert_eq!(bus.unsubscribe(subscription), lost);
+                }
+                Step::Read(place) if place < readers.len() => {
+                    let (subscription, _, queue, lost) = &mut readers[place];
+                    let (inbox, missing) = collect(&mut bus, subscription);
+                    let values: Vec<u32> = inbox.iter().map(|shared| shared.get::<Plain>().unwrap().value).collect();
+                    prop_assert_eq!(std::mem::take(queue), values);
+                    prop_assert_eq!(missing, std::mem::take(lost));
+                }
+                Step::Leave(_) | Step::Read(_) => {}
+            }
+        }
+    }
+
+    /// Against a list of all changes, of which the newest of each key counts.
+    #[test]
+    fn each_reader_of_a_state_gets_what_changed(steps in steps()) {
+        let mut bus = Bus::default();
+        let topic = bus.publisher("T", &STATE.declaration(), &who()).unwrap();
+        let mut all: Vec<Keyed> = Vec::new();
+        let mut readers: Vec<(Subscription, usize)> = Vec::new();
+        for step in steps {
+            match step {
+                Step::Publish(key) => {
+                    let message = Keyed { key: key % 5, value: all.len() as u32 };
+                    all.push(message.clone());
+                    bus.publish(topic, SharedMessage::new(header(0), message));
+                }
+                Step::Join(length) => {
+                    readers.push((bus.subscribe("T", &STATE.declaration(), &who(), length).unwrap(), 0));
+                }
+                Step::Leave(place) if place < readers.len() => {
+                    prop_assert_eq!(bus.unsubscribe(readers.swap_remove(place).0), 0);
+                }
+                Step::Read(place) if place < readers.len() => {
+                    let (subscription, read) = &mut readers[place];
+                    let (inbox, lost) = collect(&mut bus, subscription);
+                    let values: Vec<Keyed> = inbox.iter().map(|shared| shared.get::<Keyed>().unwrap().clone()).collect();
+                    let newest = |(place, entry): &(usize, &Keyed)| all[place + 1..].iter().all(|later| later.key != entry.key);
+                    let expected: Vec<Keyed> =
+                        all.iter().enumerate().skip(*read).filter(newest).map(|(_, entry)| entry.clone()).collect();
+                    prop_assert_eq!(values, expected);
+                    prop_assert_eq!(lost, 0);
+                    *read = all.len();
+                }
+                Step::Leave(_) | Step::Read(_) => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_key_each_publisher_has_its_own() {
+    let mut bus = Bus::default();
+    let topic = bus.publisher("T", &OWN.declaration(), &who()).unwrap();
+    for (sender, value) in [(1, 10), (2, 20), (1, 11)] {
+        bus.publish(topic, SharedMessage::new(header(sender), Plain { value }));
+    }
+    let mut reader = bus.subscribe("T", &OWN.declaration(), &who(), 1).unwrap();
+    let (inbox, _) = collect(&mut bus, &mut reader);
+    let values: Vec<u32> = inbox.iter().map(|shared| shared.get::<Plain>().unwrap().value).collect();
+    assert_eq!(values, [20, 11]);
+    bus.rewind(&mut reader);
+    assert_eq!(collect(&mut bus, &mut reader).0.len(), 2);
+    assert_eq!(collect(&mut bus, &mut reader).0.len(), 0);
+}
+
+#[test]
+fn messages_that_all_have_read_are_let_go() {
+    let mut bus = Bus::default();
+    let topic = bus.publisher("T", &EVENT.declaration(), &who()).unwrap();
+    let mut reader = bus.subscribe("T", &EVENT.declaration(), &who(), 1_000_000).unwrap();
+    let mut peak = 0;
+    for value in 0..10_000 {
+        bus.publish(topic, SharedMessage::new(header(0), Plain { value }));
+        assert_eq!(collect(&mut bus, &mut reader).0.len(), 1);
+        peak = peak.max(bus.topics[topic.0 as usize].held());
+    }
+    assert!(peak <= 32, "{peak}");
+}
+
+#[test]
+fn a_topic_that_nobody_uses_may_carry_something_else() {
+    let mut bus = Bus::default();
+    let topic = bus.publisher("T", &STATE.declaration(), &who()).unwrap();
+    assert!(bus.publisher("T", &OWN.declaration(), &who()).is_err());
+    bus.unpublish(topic);
+    let reader = bus.subscribe("T", &EVENT.declaration(), &who(), 1).unwrap();
+    let refused = bus.publisher("T", &OWN.declaration(), &who()).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "topic `T` carries event messages `Plain` since component `somebody` uses it so, but here it would carry state messages \
+         `Plain`: rename one of the two with `topicRename`, or let both use the same message"
+    );
+    bus.unsubscribe(reader);
+    bus.publisher("T", &OWN.declaration(), &who()).unwrap();
+}
+
+#[test]
+fn two_messages_of_one_name_show_what_differs() {
+    mod other {
+        #[derive(Clone, Debug, PartialEq, saoms_api::Message)]
+        pub(super) struct Plain {
+            pub(super) other: u32,
+        }
+    }
+    const OTHER: Topic<other::Plain> = Topic::event("T");
+    let mut bus = Bus::default();
+    bus.publisher("T", &EVENT.declaration(), &who()).unwrap();
+    let refused = bus.publisher("T", &OTHER.declaration(), &who()).unwrap_err().to_string();
+    assert!(refused.contains("value") && refused.contains("other"), "{refused}");
+}

@@ -1,0 +1,152 @@
+use std::sync::Arc;
+
+use saoms_api::{SharedMessage, TopicDeclaration, TopicKind};
+
+use super::Mismatch;
+use super::events::EventLog;
+use super::hash::fold;
+use super::state::StateTable;
+
+/// One topic: what it carries, and what it holds at present.
+pub(super) struct Topic {
+    pub(super) name: Arc<str>,
+    pub(super) name_hash: u64,
+    /// Publishers and subscribers together. A topic without any may change its type.
+    pub(super) users: usize,
+    message: String,
+    schema: String,
+    first_user: Arc<str>,
+    store: Store,
+}
+
+enum Store {
+    State(StateTable),
+    Event(EventLog),
+}
+
+/// A reader's place in a topic.
+#[derive(Debug)]
+pub(super) enum Reader {
+    /// In a state topic: up to which change it has read.
+    State(u64),
+    /// In an event topic: its place among the readers.
+    Event(u32),
+}
+
+impl Reader {
+    pub(super) fn rewind(&mut self) {
+        if let Reader::State(read) = self {
+            *read = 0;
+        }
+    }
+}
+
+impl Topic {
+    pub(super) fn new(name: Arc<str>, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> Topic {
+        Topic {
+            name_hash: name.bytes().fold(0, |hash, byte| fold(hash, u64::from(byte))),
+            name,
+            users: 1,
+            message: declared.message.to_owned(),
+            schema: declared.schema.to_owned(),
+            first_user: Arc::clone(by),
+            store: store(declared.kind),
+        }
+    }
+
+    fn kind(&self) -> TopicKind {
+        match self.store {
+            Store::State(_) => TopicKind::State,
+            Store::Event(_) => TopicKind::Event,
+        }
+    }
+
+    /// Counts another user, if it means the same messages.
+    pub(super) fn join(&mut self, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> Result<(), Mismatch> {
+        let same = self.kind() == declared.kind && self.schema == declared.schema;
+        if !same && self.users > 0 {
+            return Err(self.mismatch(declared));
+        }
+        if self.users == 0 {
+            self.first_user = Arc::clone(by);
+        }
+        if !same {
+            self.message = declared.message.to_owned();
+            self.schema = declared.schema.to_owned();
+            self.store = store(declared.kind);
+        }
+        self.users += 1;
+        Ok(())
+    }
+
+    fn mismatch(&self, declared: &TopicDeclaration<'_>) -> Mismatch {
+        let describe = |message: &str, kind: TopicKind, schema: &str| {
+            if self.message == declared.message && self.schema != declared.schema {
+                format!(
+                    "{} messages `{message}` with the fields {}",
+                    kind.name(),
+                    schema.trim().replace('\n', ", ")
+                )
+            } else {
+                format!("{} messages `{message}`", kind.name())
+            }
+        };
+        Mismatch {
+            topic: Arc::clone(&self.name),
+            other: Arc::clone(&self.first_user),
+            found: describe(declared.message, declared.kind, declared.schema),
+            expected: describe(&self.message, self.kind(), &self.schema),
+        }
+    }
+
+    pub(super) fn reader(&mut self, queue: usize) -> Reader {
+        match &mut self.store {
+            Store::State(_) => Reader::State(0),
+            Store::Event(log) => Reader::Event(log.join(queue)),
+        }
+    }
+
+    pub(super) fn leave(&mut self, reader: Reader) -> u64 {
+        match (&mut self.store, reader) {
+            (Store::Event(log), Reader::Event(place)) => log.leave(place),
+            _ => 0,
+        }
+    }
+
+    /// How many events it holds.
+    #[cfg(test)]
+    pub(super) fn held(&self) -> usize {
+        match &self.store {
+            Store::State(_) => 0,
+            Store::Event(log) => log.messages.len(),
+        }
+    }
+
+    #[inline]
+    pub(super) fn publish(&mut self, message: SharedMessage) {
+        match &mut self.store {
+            Store::State(table) => table.publish(message),
+            Store::Event(log) => log.publish(message),
+        }
+    }
+
+    #[inline]
+    pub(super) fn collect(&mut self, reader: &mut Reader, inbox: &mut Vec<SharedMessage>) -> u64 {
+        match (&mut self.store, reader) {
+            (Store::State(table), Reader::State(read)) => {
+                table.collect(read, inbox);
+                0
+            }
+            (Store::Event(log), Reader::Event(place)) => log.collect(*place, inbox),
+            // A reader keeps its topic's kind: the kind changes only when nobody uses the topic.
+            _ => 0,
+        }
+    }
+}
+
+fn store(kind: TopicKind) -> Store {
+    match kind {
+        TopicKind::State => Store::State(StateTable::default()),
+        TopicKind::Event => Store::Event(EventLog::default()),
+    }
+}

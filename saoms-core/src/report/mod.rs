@@ -1,0 +1,11 @@
+//! What a run leaves behind: one [`RunReport`], and the small statistics that it is made from.
+
+mod lateness;
+mod run;
+mod sections;
+#[cfg(test)]
+mod tests;
+
+pub use lateness::{Lateness, LatenessSummary};
+pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, Status, Votes};
+pub use sections::Sections;

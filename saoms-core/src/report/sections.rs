@@ -1,0 +1,111 @@
+use std::collections::BTreeMap;
+
+use saoms_api::ReportValue;
+use serde_json::{Map, Value};
+
+/// The parts of a report that components contribute: values and counts under dotted paths such as `luggage.delivered`.
+#[derive(Clone, Debug, Default)]
+pub struct Sections {
+    entries: BTreeMap<String, Entry>,
+}
+
+#[derive(Clone, Debug)]
+enum Entry {
+    Count(i64),
+    Value(ReportValue),
+}
+
+/// What every report shows, counted or not.
+const STANDARD: [&str; 5] =
+    ["luggage.requested", "luggage.delivered", "collisions.vertex", "collisions.swap", "stranded"];
+
+/// The fields of a report that are not for components to write.
+const RESERVED: [&str; 7] = ["seed", "time_s", "periods", "components", "votes", "outcome", "trace_hash"];
+
+impl Sections {
+    /// Whether a path would write over what the program itself reports.
+    pub fn is_reserved(path: &str) -> bool {
+        RESERVED.contains(&path.split_once('.').map_or(path, |(first, _)| first))
+    }
+
+    /// The standard sections, all at zero.
+    pub fn standard() -> Sections {
+        Sections { entries: STANDARD.iter().map(|path| ((*path).to_owned(), Entry::Count(0))).collect() }
+    }
+
+    /// Sets a value; the last one counts.
+    pub fn set(&mut self, path: &str, value: ReportValue) {
+        match self.entries.get_mut(path) {
+            Some(entry) => *entry = Entry::Value(value),
+            None => {
+                self.entries.insert(path.to_owned(), Entry::Value(value));
+            }
+        }
+    }
+
+    /// Adds to a count. A whole number that was [`set`](Sections::set) is counted on from; any other value gives way to the count.
+    pub fn add(&mut self, path: &str, more: i64) {
+        let Some(entry) = self.entries.get_mut(path) else {
+            self.entries.insert(path.to_owned(), Entry::Count(more));
+            return;
+        };
+        let before = match entry {
+            Entry::Count(count) | Entry::Value(ReportValue::Integer(count)) => *count,
+            Entry::Value(_) => 0,
+        };
+        *entry = Entry::Count(before.saturating_add(more));
+    }
+
+    /// The whole number at a path, if there is one.
+    pub fn integer(&self, path: &str) -> Option<i64> {
+        match self.entries.get(path)? {
+            Entry::Count(count) | Entry::Value(ReportValue::Integer(count)) => Some(*count),
+            Entry::Value(_) => None,
+        }
+    }
+
+    /// Everything as nested objects. Where a path has a value and leads further too, the value stands beside the rest as `value`.
+    pub fn to_json(&self) -> Map<String, Value> {
+        let mut root = Map::new();
+        for (path, entry) in &self.entries {
+            let value = match entry {
+                Entry::Count(count) => Value::from(*count),
+                Entry::Value(value) => json(value),
+            };
+            insert(&mut root, path, value);
+        }
+        root
+    }
+}
+
+fn insert(object: &mut Map<String, Value>, path: &str, value: Value) {
+    let Some((first, rest)) = path.split_once('.') else {
+        match object.get_mut(path) {
+            Some(Value::Object(inner)) => inner.insert("value".to_owned(), value),
+            _ => object.insert(path.to_owned(), value),
+        };
+        return;
+    };
+    let inner = object.entry(first).or_insert_with(|| Value::Object(Map::new()));
+    if !inner.is_object() {
+        let plain = inner.take();
+        *inner = Value::Object(Map::from_iter([("value".to_owned(), plain)]));
+    }
+    if let Value::Object(inner) = inner {
+        insert(inner, rest, value);
+    }
+}
+
+fn json(value: &ReportValue) -> Value {
+    match value {
+        ReportValue::Null => Value::Null,
+        ReportValue::Bool(value) => Value::from(*value),
+        ReportValue::Integer(value) => Value::from(*value),
+        ReportValue::Float(value) => Value::from(*value),
+        ReportValue::Text(value) => Value::from(value.as_str()),
+        ReportValue::List(values) => values.iter().map(json).collect(),
+        ReportValue::Map(values) => {
+            Value::Object(values.iter().map(|(name, value)| (name.clone(), json(value))).collect())
+        }
+    }
+}

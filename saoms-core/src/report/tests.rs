@@ -1,0 +1,70 @@
+use saoms_api::ReportValue;
+use serde_json::json;
+
+use super::{Lateness, Sections};
+
+#[test]
+fn quantiles_are_within_a_sixteenth() {
+    let mut lateness = Lateness::default();
+    let mut values: Vec<u64> = (0..10_000u64).map(|n| n * n % 70_001 * (1 + n % 13)).collect();
+    for value in &values {
+        lateness.record(value * 1_000 + 999);
+    }
+    values.sort_unstable();
+    for share in [0.01, 0.25, 0.5, 0.9, 0.99, 0.999, 1.0] {
+        let exact = values[(values.len() as f64 * share).ceil() as usize - 1];
+        let estimate = lateness.quantile(share);
+        assert!(estimate.abs_diff(exact) <= exact / 16 + 1, "{share}: {estimate} instead of {exact}");
+    }
+    assert_eq!(lateness.summary().max, *values.last().unwrap());
+}
+
+#[test]
+fn lateness_beyond_the_histogram_keeps_its_maximum() {
+    let mut lateness = Lateness::default();
+    lateness.record(3_600_000_000_000);
+    assert_eq!(lateness.summary().max, 3_600_000_000);
+    assert!(lateness.summary().p50 > 60_000_000);
+}
+
+#[test]
+fn nothing_late_is_zero() {
+    let mut lateness = Lateness::default();
+    assert_eq!(lateness.summary(), Default::default());
+    lateness.record(0);
+    lateness.record(999);
+    assert_eq!(lateness.summary(), Default::default());
+}
+
+#[test]
+fn merged_histograms_count_together() {
+    let (mut one, mut two, mut both) = (Lateness::default(), Lateness::default(), Lateness::default());
+    for value in 0..1_000 {
+        (if value % 3 == 0 { &mut one } else { &mut two }).record(value * 7_000);
+        both.record(value * 7_000);
+    }
+    one.merge(&two);
+    assert_eq!(one.summary(), both.summary());
+}
+
+#[test]
+fn sections_nest_by_dots() {
+    let mut sections = Sections::standard();
+    sections.add("luggage.delivered", 2);
+    sections.add("luggage.delivered", 1);
+    sections.set("map.blocks", ReportValue::Integer(121));
+    sections.set("map", ReportValue::Text("airport".to_owned()));
+    sections.set("stranded", ReportValue::Integer(1));
+    sections.add("stranded", 1);
+    assert_eq!(
+        serde_json::Value::Object(sections.to_json()),
+        json!({
+            "luggage": {"requested": 0, "delivered": 3},
+            "collisions": {"vertex": 0, "swap": 0},
+            "stranded": 2,
+            "map": {"value": "airport", "blocks": 121},
+        })
+    );
+    assert_eq!(sections.integer("luggage.delivered"), Some(3));
+    assert_eq!(sections.integer("map"), None);
+}

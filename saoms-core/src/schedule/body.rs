@@ -1,0 +1,141 @@
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use saoms_api::{CallError, Chance, Context, DynComponent, Failure, Invocation, SharedMessage, Work};
+
+use super::capture::contained;
+use super::host::ComponentHost;
+use super::shared::Shared;
+use crate::bus::{Subscription, TopicId};
+
+/// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for others.
+pub(super) struct Body {
+    pub(super) instance: Option<Box<dyn DynComponent>>,
+    /// The messages of the present period, one list for each subscription.
+    pub(super) inboxes: Vec<Vec<SharedMessage>>,
+    pub(super) part: Part,
+}
+
+/// What the component's context works with.
+pub(super) struct Part {
+    pub(super) index: u32,
+    pub(super) name: Arc<str>,
+    pub(super) publishers: Vec<TopicId>,
+    pub(super) subscriptions: Vec<Subscription>,
+    /// Subscriptions of a failed instance, for the one that takes its place.
+    pub(super) kept: Vec<Subscription>,
+    pub(super) outbox: Vec<(TopicId, SharedMessage)>,
+    pub(super) chance: Chance,
+    pub(super) cancelled: Arc<AtomicBool>,
+    pub(super) vote: Option<Work>,
+    /// In virtual time, the time at which the present code runs.
+    pub(super) now: u64,
+    pub(super) due: u64,
+    pub(super) execution: u64,
+    pub(super) period: u64,
+    pub(super) initializing: bool,
+}
+
+/// What can be asked of a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Job {
+    /// To come to be and initialize.
+    Start,
+    /// One execution.
+    Execute,
+    /// To shut down.
+    Shutdown,
+}
+
+impl Body {
+    pub(super) fn new(index: u32, name: Arc<str>, period: u64, cancelled: Arc<AtomicBool>) -> Body {
+        let part = Part {
+            index,
+            name,
+            publishers: Vec::new(),
+            subscriptions: Vec::new(),
+            kept: Vec::new(),
+            outbox: Vec::new(),
+            chance: Chance::new(0),
+            cancelled,
+            vote: None,
+            now: 0,
+            due: 0,
+            execution: 0,
+            period,
+            initializing: false,
+        };
+        Body { instance: None, inboxes: Vec::new(), part }
+    }
+
+    /// Does what is asked, whatever the component's code does. After a failure and after the shutdown there is no instance any more.
+    #[inline]
+    pub(super) fn perform(&mut self, shared: &Arc<Shared>, job: Job) -> Result<(), Failure> {
+        let result = match job {
+            Job::Execute => {
+                self.call(shared, |instance, context| instance.execute(context)).unwrap_or_else(Err)
+            }
+            Job::Start => self.start(shared),
+            Job::Shutdown => {
+                self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err)
+            }
+        };
+        for inbox in &mut self.inboxes {
+            inbox.clear();
+        }
+        if result.is_err() || job == Job::Shutdown {
+            self.discard();
+        }
+        result
+    }
+
+    fn start(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
+        let spec = shared.spec(self.part.index);
+        self.instance = Some(contained(|| spec.class.construct(&spec.values))??);
+        self.part.initializing = true;
+        let result = self.call(shared, |instance, context| instance.initialize(context));
+        self.part.initializing = false;
+        result?
+    }
+
+    /// Serves a call to one of the component's services. The outer error is a panic: then there is no instance any more.
+    pub(super) fn serve(
+        &mut self,
+        shared: &Arc<Shared>,
+        invocation: &mut Invocation<'_>,
+    ) -> Result<Result<(), CallError>, Failure> {
+        let result = self.call(shared, |instance, context| instance.serve(invocation, context));
+        if result.is_err() {
+            self.discard();
+        }
+        result
+    }
+
+    #[inline]
+    fn call<T>(
+        &mut self,
+        shared: &Arc<Shared>,
+        code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> T,
+    ) -> Result<T, Failure> {
+        let Some(instance) = &mut self.instance else {
+            return Err(Failure::new("there is no component to run"));
+        };
+        let mut host = ComponentHost { shared, part: &mut self.part };
+        let mut context = Context::new(&mut host, &self.inboxes);
+        contained(|| code(instance.as_mut(), &mut context))
+    }
+
+    /// Lets go of the instance. What its destructor does is contained, too.
+    fn discard(&mut self) {
+        if let Some(instance) = self.instance.take() {
+            // A panic here says nothing that the failure or the shutdown before has not said.
+            let _ = contained(|| drop(instance));
+        }
+    }
+}
+
+impl Part {
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,135 @@
+use std::sync::Arc;
+
+use saoms_api::{CallError, Failure, Invocation, ServiceCall, cdr};
+
+use super::body::{Body, Job, Part};
+use super::engine::{Engine, Phase};
+use super::lifecycle::Request;
+use super::shared::Shared;
+use super::slot::NEVER;
+
+/// Calls through a reference of a component whose code runs on this thread. The provider's code runs right here, as if the caller had called a
+/// function: it is taken out of the engine meanwhile, and is busy for everybody else.
+pub(super) fn call(
+    shared: &Arc<Shared>,
+    caller: &Part,
+    reference: u32,
+    call: &mut dyn ServiceCall,
+) -> Result<(), CallError> {
+    let Some(wire) = shared.spec(caller.index).references.get(reference as usize) else {
+        return Err(CallError::NotWired {
+            reference: "(a handle that `Context::reference` did not give)".to_owned(),
+        });
+    };
+    let Some(target) = &wire.target else {
+        return Err(CallError::NotWired { reference: wire.reference.clone() });
+    };
+    let provider = target.component as u32;
+    if is_task_service(shared, provider, &target.service) {
+        return task(shared, caller, provider, call);
+    }
+    let mut engine = shared.lock();
+    let mut body = engine.begin_call(provider)?;
+    shared.release(engine);
+    let own = (body.part.now, body.part.due);
+    (body.part.now, body.part.due) = (caller.now, caller.due);
+    let result = body.serve(shared, &mut Invocation { service: &target.service, call });
+    (body.part.now, body.part.due) = own;
+    let (result, panic) = match result {
+        Ok(result) => (result, None),
+        Err(panic) => (Err(CallError::from(panic.clone())), Some(panic)),
+    };
+    let now = shared.clock.now();
+    let mut engine = shared.lock();
+    let name = Arc::clone(&body.part.name);
+    engine.finish_call(provider, body, panic, now);
+    shared.release(engine);
+    result.map_err(|error| named(error, &name))
+}
+
+/// Says which component it was that failed, where the provider's own code could not.
+fn named(error: CallError, name: &str) -> CallError {
+    match error {
+        CallError::Failed { provider, failure } if provider.is_empty() => {
+            CallError::Failed { provider: name.to_owned(), failure }
+        }
+        other => other,
+    }
+}
+
+/// Whether it is the service that the host itself serves for every periodic component.
+fn is_task_service(shared: &Shared, provider: u32, service: &str) -> bool {
+    let declaration = shared.spec(provider).class.declaration();
+    declaration.offers().any(|offered| offered.name == service && offered.is_of_host())
+}
+
+/// Serves [`saoms_api::TaskInterface`], whose operations have the numbers of their places in the trait.
+fn task(shared: &Shared, caller: &Part, provider: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+    let operation = call.operation();
+    let request = match operation {
+        0 => Some(Request::Schedule { lasting: NEVER }),
+        1 => {
+            let milliseconds: u64 = cdr::decode(&call.arguments()).map_err(|error| CallError::Mismatch {
+                message: format!("the arguments of `schedule_for`: {error}"),
+            })?;
+            Some(Request::Schedule { lasting: milliseconds.saturating_mul(1_000_000) })
+        }
+        2 => Some(Request::Unschedule),
+        3 => None,
+        other => {
+            let message = format!(
+                "interface `unibg.robotics.tca.TaskInterface` has no operation with the number {other}"
+            );
+            return Err(CallError::Mismatch { message });
+        }
+    };
+    let now = if shared.clock.is_virtual() { caller.now } else { shared.clock.now() };
+    let mut engine = shared.lock();
+    let Some(request) = request else {
+        let scheduled = engine.slots[provider as usize].is_scheduled();
+        drop(engine);
+        return call.reply(&cdr::encode(&scheduled));
+    };
+    engine.request(provider, request, now);
+    shared.release(engine);
+    call.reply(&cdr::encode(&()))
+}
+
+impl Engine {
+    /// Takes a component's body to serve a call.
+    fn begin_call(&mut self, index: u32) -> Result<Box<Body>, CallError> {
+        let slot = &mut self.slots[index as usize];
+        let provider = || slot.name.to_string();
+        if !slot.is_alive() {
+            return Err(CallError::NotRunning { provider: provider() });
+        }
+        let Some(body) = slot.body.take() else {
+            return Err(CallError::Busy { provider: provider() });
+        };
+        self.out += 1;
+        Ok(body)
+    }
+
+    /// Gives the body back; what the component sent in the call leaves now.
+    fn finish_call(&mut self, index: u32, mut body: Box<Body>, panic: Option<Failure>, now: u64) {
+        if self.is_abandoned(index) {
+            std::mem::forget(body);
+            return;
+        }
+        self.out -= 1;
+        if let Some(failure) = panic {
+            self.fail(index, &mut body, Job::Execute, failure, now);
+            self.slots[index as usize].body = Some(body);
+            return;
+        }
+        if self.phase != Phase::Starting {
+            self.deliver(&mut body.part, now);
+        }
+        let vote = body.part.vote.take();
+        self.slots[index as usize].body = Some(body);
+        if let Some(vote) = vote {
+            self.vote(index, vote, now);
+        }
+        self.resume(index, now);
+    }
+}

@@ -1,0 +1,52 @@
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::sync::Once;
+
+use saoms_api::Failure;
+
+thread_local! {
+    /// Whether this thread is inside component code, where a panic is a failure of the component and not of the program.
+    static CAPTURING: Cell<bool> = const { Cell::new(false) };
+    /// Where the last captured panic happened.
+    static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Runs component code. A panic becomes a failure with its message and place, and writes nothing to standard error.
+///
+/// What the code has left half changed is only seen by itself: a component that panicked is never called again.
+#[inline]
+pub(super) fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
+    let outer = CAPTURING.replace(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(code));
+    CAPTURING.set(outer);
+    result.map_err(|payload| describe(payload.as_ref()))
+}
+
+#[cold]
+fn describe(payload: &(dyn Any + Send)) -> Failure {
+    let message = payload
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| payload.downcast_ref::<&str>().copied())
+        .unwrap_or("panicked without a message");
+    match PLACE.take() {
+        Some(place) => Failure::new(format!("panicked at {place}: {message}")),
+        None => Failure::new(format!("panicked: {message}")),
+    }
+}
+
+/// Makes panics inside [`contained`] silent, once in the life of the process. All others go to the hook that was there before.
+pub(super) fn install_hook() {
+    static INSTALLED: Once = Once::new();
+    INSTALLED.call_once(|| {
+        let before = panic::take_hook();
+        panic::set_hook(Box::new(move |info: &PanicHookInfo<'_>| {
+            if CAPTURING.get() {
+                PLACE.set(info.location().map(ToString::to_string));
+            } else {
+                before(info);
+            }
+        }));
+    });
+}

@@ -1,0 +1,56 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::sys;
+
+/// The time of a run in nanoseconds since its start, from the machine's clock or from a number that jumps.
+#[derive(Debug)]
+pub(super) enum Clock {
+    /// The machine's monotonic clock, and where the run started on it. Before the start time stands at zero.
+    Real { start: AtomicU64 },
+    /// From one due execution to the next.
+    Virtual { now: AtomicU64 },
+}
+
+impl Clock {
+    pub(super) fn real() -> Clock {
+        Clock::Real { start: AtomicU64::new(u64::MAX) }
+    }
+
+    pub(super) fn simulated() -> Clock {
+        Clock::Virtual { now: AtomicU64::new(0) }
+    }
+
+    pub(super) fn is_virtual(&self) -> bool {
+        matches!(self, Clock::Virtual { .. })
+    }
+
+    /// Starts the run: now is zero.
+    pub(super) fn start(&self) {
+        if let Clock::Real { start } = self {
+            start.store(sys::monotonic(), Ordering::Relaxed);
+        }
+    }
+
+    #[inline]
+    pub(super) fn now(&self) -> u64 {
+        match self {
+            Clock::Real { start } => sys::monotonic().saturating_sub(start.load(Ordering::Relaxed)),
+            Clock::Virtual { now } => now.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Where a time of the run lies on the machine's clock.
+    pub(super) fn on_machine(&self, time: u64) -> u64 {
+        match self {
+            Clock::Real { start } => start.load(Ordering::Relaxed).saturating_add(time),
+            Clock::Virtual { .. } => time,
+        }
+    }
+
+    /// Lets virtual time jump.
+    pub(super) fn jump(&self, time: u64) {
+        if let Clock::Virtual { now } = self {
+            now.store(time, Ordering::Relaxed);
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The threads that drive the engine: one does the timer's work, in real time a spare one watches it, and workers run what took too long.
+
+mod real;
+mod supervise;
+mod virtual_time;
+mod watchdog;
+mod workers;
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread;
+
+use saoms_api::Level;
+
+use super::ending::Cause;
+use super::engine::Engine;
+use super::settings::{ClockKind, nanos};
+use super::shared::Shared;
+use super::sys;
+
+pub(super) use supervise::wait_until;
+
+/// Starts the thread that does the timer's work, and in real time the one that watches it.
+pub(super) fn spawn(shared: &Arc<Shared>) -> io::Result<()> {
+    spawn_timer(shared, 0)?;
+    if shared.settings.clock == ClockKind::Real {
+        watchdog::spawn(shared)?;
+    }
+    Ok(())
+}
+
+/// Starts a thread that does the timer's work as long as the role's number is this.
+fn spawn_timer(shared: &Arc<Shared>, role: u64) -> io::Result<()> {
+    let drive = match shared.settings.clock {
+        ClockKind::Real => real::run,
+        ClockKind::Virtual => virtual_time::run,
+    };
+    spawn_thread(shared, "saoms-timer", move |shared| drive(shared, role))
+}
+
+fn spawn_thread(
+    shared: &Arc<Shared>,
+    name: &str,
+    run: impl FnOnce(&Arc<Shared>) + Send + 'static,
+) -> io::Result<()> {
+    let shared = Arc::clone(shared);
+    thread::Builder::new().name(name.to_owned()).spawn(move || run(&shared)).map(drop)
+}
+
+/// Gives the calling thread the sleep precision and the priority of its role.
+fn prepare_thread(shared: &Shared, priority: i32) {
+    sys::set_timer_slack(nanos(shared.settings.timer_slack));
+    if shared.settings.realtime
+        && let Err(error) = sys::set_fifo(sys::thread_id(), priority)
+    {
+        shared.note(Level::Warning, format!("a thread runs without real-time priority: {error}"));
+    }
+}
+
+/// Begins the end of the run if somebody asked for it.
+#[inline]
+fn heed_stop(shared: &Shared, engine: &mut Engine, now: u64) {
+    if shared.stop.load(Ordering::Relaxed) {
+        engine.begin_stop(Cause::Interrupted, now);
+    }
+}
+
+/// Lets every thread know that the run has ended.
+pub(super) fn announce_end(shared: &Shared) {
+    shared.ended.store(true, Ordering::Release);
+    shared.end.wake();
+    shared.spare.wake();
+    shared.timer.wake();
+    shared.work.notify_all();
+}

@@ -1,0 +1,93 @@
+use std::sync::Arc;
+
+use saoms_api::{Level, format_duration};
+
+use super::super::ending::Cause;
+use super::super::engine::{Engine, Phase};
+use super::super::settings::nanos;
+use super::super::shared::Shared;
+use super::super::sys;
+use super::{announce_end, heed_stop, spawn_timer};
+
+/// Waits until the run has got somewhere, or has ended. Sees to it that it does: gives up components that do not end in time, and in virtual time
+/// those that do not return at all.
+pub(in super::super) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engine) -> bool) {
+    let mut stuck = Stuck { piece: 0, since: sys::monotonic() };
+    loop {
+        let ticket = shared.end.ticket();
+        let mut engine = shared.lock();
+        if engine.phase == Phase::Ended || reached(&engine) {
+            return shared.release(engine);
+        }
+        heed_stop(shared, &mut engine, shared.clock.now());
+        let mut look_again = None;
+        let mut replaced = None;
+        if shared.clock.is_virtual() && engine.phase == Phase::Running {
+            let (until, culprit) = stuck.look(shared, &engine);
+            look_again = Some(until);
+            if let Some(index) = culprit {
+                let limit = format_duration(shared.settings.virtual_watchdog);
+                engine.abandon(Some(index), &format!("did not return within {limit}"), shared.clock.now());
+                engine.begin_stop(Cause::Lost, shared.clock.now());
+                replaced = engine.replace_timer();
+            }
+        }
+        if engine.phase == Phase::Stopping {
+            let grace = nanos(shared.settings.grace);
+            let now = sys::monotonic();
+            if now >= engine.ended.1.saturating_add(grace) {
+                let why = format!("did not end within {}", format_duration(shared.settings.grace));
+                engine.abandon(None, &why, shared.clock.now());
+                engine.ended.1 = now;
+                replaced = engine.replace_timer();
+            }
+            look_again = Some(engine.ended.1.saturating_add(grace));
+        }
+        shared.release(engine);
+        if let Some(role) = replaced
+            && let Err(error) = spawn_timer(shared, role)
+        {
+            // Without a thread nobody can shut down any more.
+            shared.note(
+                Level::Error,
+                format!("components could not shut down: the system gives no thread: {error}"),
+            );
+            shared.lock().phase = Phase::Ended;
+            return announce_end(shared);
+        }
+        shared.end.wait(ticket, look_again);
+    }
+}
+
+/// What is known about the code that runs in virtual time.
+struct Stuck {
+    piece: u64,
+    since: u64,
+}
+
+impl Stuck {
+    /// When to look again, and who runs since too long. Looks rarely enough to cost nothing, and often enough to be a quarter too late at most.
+    fn look(&mut self, shared: &Shared, engine: &Engine) -> (u64, Option<u32>) {
+        let now = sys::monotonic();
+        let allowed = nanos(shared.settings.virtual_watchdog);
+        let piece = shared.pulse.begun();
+        if piece != self.piece || engine.roles.running.is_none() {
+            *self = Stuck { piece, since: now };
+        }
+        let culprit = engine.roles.running.filter(|_| now - self.since >= allowed);
+        (now.saturating_add((allowed / 4).max(1_000_000)), culprit)
+    }
+}
+
+impl Engine {
+    /// Takes the timer's work from a thread whose code was given up; the number of the role for the next one.
+    fn replace_timer(&mut self) -> Option<u64> {
+        let index = self.roles.running?;
+        if !self.is_abandoned(index) {
+            return None;
+        }
+        self.roles.running = None;
+        self.roles.timer += 1;
+        Some(self.roles.timer)
+    }
+}

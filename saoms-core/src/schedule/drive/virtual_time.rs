@@ -1,0 +1,78 @@
+use std::sync::Arc;
+
+use super::super::ending::Cause;
+use super::super::engine::{Engine, Next, Phase};
+use super::super::shared::Shared;
+use super::super::slot::NEVER;
+use super::super::sys;
+use super::{announce_end, heed_stop};
+
+/// Drives the engine in virtual time, as long as the role's number is this: what is due runs in order, then time jumps to what is due next.
+pub(super) fn run(shared: &Arc<Shared>, role: u64) {
+    let mut engine = shared.lock();
+    engine.roles.thread = sys::thread_id();
+    let mut now = shared.clock.now();
+    loop {
+        if engine.roles.timer != role {
+            return shared.release(engine);
+        }
+        heed_stop(shared, &mut engine, now);
+        if engine.phase == Phase::Running && now >= engine.pause {
+            engine = sleep(shared, engine);
+            continue;
+        }
+        match engine.next(now) {
+            Next::Run(index, job) => {
+                let Some(mut body) = engine.begin(index, job, now) else { continue };
+                engine.roles.running = Some(index);
+                shared.pulse.begin(now);
+                shared.release(engine);
+                let result = body.perform(shared, job);
+                engine = shared.lock();
+                if engine.roles.timer == role {
+                    engine.roles.running = None;
+                }
+                engine.finish(index, body, job, result, now, now);
+            }
+            // Nothing runs apart in virtual time.
+            Next::HandOver => {}
+            Next::Wait(until) if engine.phase == Phase::Running && until.min(engine.pause) < NEVER => {
+                now = until.min(engine.pause);
+                shared.clock.jump(now);
+            }
+            Next::Wait(_) => {
+                if engine.phase == Phase::Running && engine.can_only_idle() {
+                    engine.begin_stop(Cause::Idle, now);
+                } else {
+                    engine = sleep(shared, engine);
+                }
+            }
+            Next::Ended => break,
+        }
+    }
+    shared.release(engine);
+    announce_end(shared);
+}
+
+/// Waits until somebody has something new.
+fn sleep<'a>(
+    shared: &'a Shared,
+    mut engine: std::sync::MutexGuard<'a, Engine>,
+) -> std::sync::MutexGuard<'a, Engine> {
+    let ticket = shared.timer.ticket();
+    engine.roles.asleep_until = NEVER;
+    shared.release(engine);
+    shared.end.wake();
+    shared.timer.wait(ticket, None);
+    let mut engine = shared.lock();
+    engine.roles.asleep_until = 0;
+    engine
+}
+
+impl Engine {
+    /// Whether there are components that could be scheduled, and nobody is left to do it. A fleet of passive components, on the other hand,
+    /// waits for its end.
+    fn can_only_idle(&self) -> bool {
+        self.slots.iter().any(|slot| slot.policy.periodic)
+    }
+}

@@ -1,0 +1,79 @@
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{Ordering, fence};
+
+use saoms_api::Level;
+
+use super::super::engine::Engine;
+use super::super::observe::Occurrence;
+use super::super::realtime::{SPARE_PRIORITY, TIMER_PRIORITY};
+use super::super::settings::nanos;
+use super::super::shared::Shared;
+use super::super::slot::NEVER;
+use super::super::sys;
+use super::{prepare_thread, real, spawn_thread};
+
+/// Starts the spare thread that watches whoever does the timer's work.
+pub(super) fn spawn(shared: &Arc<Shared>) -> io::Result<()> {
+    spawn_thread(shared, "saoms-spare", watch)
+}
+
+/// Sleeps until the code that runs has used up its budget, or the one that is due next could have. When it has, this thread takes over the timer's
+/// work. The timer only writes down what it does; it makes no system call for its watcher.
+fn watch(shared: &Arc<Shared>) {
+    prepare_thread(shared, SPARE_PRIORITY);
+    let budget = nanos(shared.settings.budget);
+    let mut least = 0;
+    while !shared.ended.load(Ordering::Acquire) {
+        let ticket = shared.spare.ticket();
+        let (piece, since) = shared.pulse.present();
+        let from = since.unwrap_or_else(|| shared.pulse.next());
+        let until = if from == NEVER { NEVER } else { from.saturating_add(budget).max(least) };
+        shared.pulse.watch_from(until);
+        fence(Ordering::SeqCst);
+        if shared.pulse.present() != (piece, since) {
+            continue;
+        }
+        let now = sys::monotonic();
+        if now < until {
+            shared.spare.wait(ticket, (until != NEVER).then_some(until));
+            continue;
+        }
+        if since.is_some() {
+            let engine = shared.lock();
+            if shared.pulse.present() == (piece, since) && engine.roles.running.is_some() {
+                return take_over(shared, engine);
+            }
+        }
+        // The timer itself is late; nothing can be done about that from here.
+        least = now.saturating_add(budget);
+    }
+}
+
+/// Makes the calling thread the timer. The former one ends its execution, and is a worker then.
+fn take_over(shared: &Arc<Shared>, mut engine: std::sync::MutexGuard<'_, Engine>) {
+    engine.roles.timer += 1;
+    let role = engine.roles.timer;
+    let slow = engine.roles.thread;
+    engine.roles.thread = sys::thread_id();
+    engine.roles.workers += 1;
+    shared.pulse.end();
+    if let Some(index) = engine.roles.running.take() {
+        engine.slots[index as usize].apart.send_away();
+        let now = shared.clock.now();
+        engine.tell(now, index, Occurrence::Slow { budget: shared.settings.budget });
+    }
+    shared.release(engine);
+    if shared.settings.realtime {
+        // Both only lower a priority, which is always allowed.
+        let _ = sys::set_normal(slow);
+        let _ = sys::set_fifo(sys::thread_id(), TIMER_PRIORITY);
+    }
+    if let Err(error) = spawn(shared) {
+        shared.note(
+            Level::Warning,
+            format!("nobody watches for slow executions any more: the system gives no thread: {error}"),
+        );
+    }
+    real::run(shared, role);
+}

@@ -1,0 +1,80 @@
+use std::sync::{Arc, MutexGuard};
+
+use saoms_api::Level;
+
+use super::super::engine::{Engine, Phase};
+use super::super::shared::{Shared, relock};
+use super::spawn_thread;
+
+/// How many worker threads may wait for work.
+const IDLE_WORKERS: usize = 4;
+/// How many worker threads there may be.
+const WORKERS: usize = 256;
+
+/// Runs components that took too long before, until there are enough idle workers. The caller is counted among the workers.
+pub(super) fn work(shared: &Arc<Shared>) {
+    let mut engine = shared.lock();
+    while engine.phase == Phase::Running {
+        let Some(index) = engine.roles.work.pop_front() else {
+            if engine.roles.idle_workers >= IDLE_WORKERS {
+                break;
+            }
+            engine.roles.idle_workers += 1;
+            engine = relock(&shared.work, engine);
+            engine.roles.idle_workers -= 1;
+            continue;
+        };
+        let started = shared.clock.now();
+        let slot = &mut engine.slots[index as usize];
+        slot.queued = false;
+        if slot.body.is_none() {
+            slot.waiting = true;
+            continue;
+        }
+        let Some(job) = engine.job(index, started) else { continue };
+        let Some(mut body) = engine.begin(index, job, started) else { continue };
+        shared.release(engine);
+        let result = body.perform(shared, job);
+        let ended = shared.clock.now();
+        engine = shared.lock();
+        engine.finish(index, body, job, result, started, ended);
+        // Tells the news, and wakes the timer where its time has become shorter.
+        shared.release(engine);
+        engine = shared.lock();
+    }
+    engine.roles.workers -= 1;
+    shared.release(engine);
+}
+
+/// Makes sure that a worker takes what was put into the line.
+pub(super) fn hand_over<'a>(
+    shared: &'a Arc<Shared>,
+    mut engine: MutexGuard<'a, Engine>,
+) -> MutexGuard<'a, Engine> {
+    let enough = engine.roles.work.len() <= engine.roles.idle_workers;
+    if enough || engine.roles.workers >= WORKERS {
+        shared.work.notify_one();
+        return engine;
+    }
+    engine.roles.workers += 1;
+    shared.release(engine);
+    let spawned = spawn_thread(shared, "saoms-worker", work);
+    let mut engine = shared.lock();
+    if let Err(error) = spawned {
+        engine.roles.workers -= 1;
+        if engine.roles.workers == 0 {
+            // Better late with everybody than never.
+            while let Some(index) = engine.roles.work.pop_front() {
+                let slot = &mut engine.slots[index as usize];
+                slot.queued = false;
+                slot.apart.now = false;
+                engine.enqueue(index, 0);
+            }
+        }
+        shared.note(
+            Level::Warning,
+            format!("slow components have to wait: the system gives no thread: {error}"),
+        );
+    }
+    engine
+}

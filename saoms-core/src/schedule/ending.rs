@@ -1,0 +1,134 @@
+use std::sync::atomic::Ordering;
+
+use super::engine::{Engine, Phase};
+use super::observe::Occurrence;
+use super::slot::State;
+use super::sys;
+use crate::assemble::Plan;
+use crate::assembly::Assembly;
+use crate::report::{
+    ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, Sections, Status, Votes,
+};
+
+/// What ended a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cause {
+    /// All who voted see no work left.
+    Done,
+    /// The time given for the run is over.
+    Elapsed,
+    /// Somebody asked for it.
+    Interrupted,
+    /// Nobody is left who could go on.
+    Lost,
+    /// Nobody is scheduled, and in virtual time nobody ever will be.
+    Idle,
+}
+
+impl Engine {
+    /// Begins the end of the run: every component that is alive is asked to end early and will shut down.
+    pub(super) fn begin_stop(&mut self, cause: Cause, now: u64) {
+        if self.phase != Phase::Running {
+            return;
+        }
+        self.phase = Phase::Stopping;
+        self.cause = Some(cause);
+        self.ended = (now, sys::monotonic());
+        self.queue.clear();
+        self.roles.work.clear();
+        self.wake = true;
+        for slot in &mut self.slots {
+            slot.queued = false;
+            slot.cancelled.store(true, Ordering::Relaxed);
+        }
+        // The end of a run is the change to a fleet without components.
+        self.ending = self.order_of_end.iter().copied().collect();
+    }
+
+    /// The order in which the components of an assembly end.
+    pub(super) fn order_of_end(assembly: &Assembly) -> Vec<u32> {
+        Plan::between(assembly, &Assembly::default()).remove.into_iter().map(|place| place as u32).collect()
+    }
+
+    /// The next component that has to shut down. Those whose code runs come when it returns.
+    pub(super) fn next_to_end(&mut self) -> Option<u32> {
+        while let Some(index) = self.ending.pop_front() {
+            let slot = &mut self.slots[index as usize];
+            if slot.body.is_some() && slot.is_alive() {
+                slot.state = State::Leaving;
+                return Some(index);
+            }
+        }
+        None
+    }
+
+    /// Gives up the components whose code does not return. `why` completes "component X".
+    pub(super) fn abandon(&mut self, only: Option<u32>, why: &str, now: u64) {
+        for index in 0..self.slots.len() as u32 {
+            let slot = &mut self.slots[index as usize];
+            let stuck = slot.body.is_none() && slot.state != State::Abandoned;
+            if stuck && only.is_none_or(|only| only == index) {
+                slot.state = State::Abandoned;
+                self.out -= 1;
+                self.reasons.push(format!("component `{}` {why}", slot.name));
+                self.tell(now, index, Occurrence::Abandoned);
+            }
+        }
+    }
+
+    /// The report of a run that has ended.
+    pub(super) fn report(&self, assembly: &Assembly, sections: &Sections) -> RunReport {
+        RunReport {
+            seed: self.seed,
+            time_s: self.ended.0 as f64 / 1e9,
+            periods: self.slots.iter().map(|slot| slot.statistics.executions).sum(),
+            sections: sections.to_json(),
+            components: self.components(assembly),
+            votes: self.votes_report(),
+            outcome: self.outcome(),
+            trace_hash: self.trace.as_ref().map(super::trace::Trace::digits),
+        }
+    }
+
+    fn components(&self, assembly: &Assembly) -> Vec<ComponentReport> {
+        let components = self.slots.iter().zip(&assembly.components);
+        components
+            .map(|(slot, spec)| {
+                let statistics = &slot.statistics;
+                ComponentReport {
+                    name: spec.path.clone(),
+                    class: spec.class.name().to_owned(),
+                    executions: statistics.executions,
+                    missed: statistics.missed,
+                    late_us: if self.real { statistics.late.summary() } else { LatenessSummary::default() },
+                    deadline_misses: statistics.deadline_misses,
+                    slow: statistics.slow,
+                    restarts: slot.restarts,
+                    failures: statistics.failures,
+                    dropped: statistics.dropped,
+                    messages: MessageCounts { sent: statistics.sent, received: statistics.received },
+                }
+            })
+            .collect()
+    }
+
+    fn votes_report(&self) -> Votes {
+        let open = self.slots.iter().filter(|slot| slot.vote == Some(saoms_api::Work::Open));
+        Votes { done: self.votes.done as u64, open: open.map(|slot| slot.name.to_string()).collect() }
+    }
+
+    fn outcome(&self) -> Outcome {
+        let mut reasons = self.reasons.clone();
+        let status = match self.cause {
+            Some(Cause::Interrupted) => Status::Interrupted,
+            _ if !reasons.is_empty() => Status::Failed,
+            Some(Cause::Elapsed) => Status::Elapsed,
+            Some(Cause::Idle) => {
+                reasons.push("no component is scheduled any more".to_owned());
+                Status::Done
+            }
+            Some(Cause::Done | Cause::Lost) | None => Status::Done,
+        };
+        Outcome { status, reasons }
+    }
+}

@@ -1,0 +1,408 @@
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use saoms_api::{Chance, Failure, Time, Work};
+
+use super::body::{Body, Job, Part};
+use super::ending::Cause;
+use super::observe::{Event, Occurrence};
+use super::queue::Queue;
+use super::settings::{ClockKind, Settings, nanos};
+use super::slot::{NEVER, Policy, Slot, State, Wish};
+use super::trace::{Step, Trace};
+use crate::assembly::{Assembly, Loss, Overrun};
+use crate::bus::{Bus, fold};
+
+/// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives
+/// it takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the body back with
+/// [`finish`](Engine::finish).
+pub(super) struct Engine {
+    pub(super) slots: Vec<Slot>,
+    pub(super) queue: Queue,
+    pub(super) bus: Bus,
+    pub(super) phase: Phase,
+    pub(super) roles: Roles,
+    /// Events for the program, told when the lock is free.
+    pub(super) news: Vec<Event>,
+    /// Somebody gave the sleeping timer something to do.
+    pub(super) wake: bool,
+    pub(super) trace: Option<Trace>,
+    /// Executions of all components.
+    pub(super) executions: Arc<AtomicU64>,
+    /// Bodies that are with code that runs.
+    pub(super) out: usize,
+    /// Components that still have to shut down, once the run ends.
+    pub(super) ending: VecDeque<u32>,
+    /// In which order components end.
+    pub(super) order_of_end: Vec<u32>,
+    pub(super) cause: Option<Cause>,
+    pub(super) reasons: Vec<String>,
+    /// When the end began, in the time of the run and on the machine's clock.
+    pub(super) ended: (u64, u64),
+    pub(super) votes: Votes,
+    /// When the run ends at the latest.
+    pub(super) limit: u64,
+    /// How far virtual time may go for now.
+    pub(super) pause: u64,
+    pub(super) real: bool,
+    pub(super) budget: u64,
+    pub(super) seed: u64,
+}
+
+/// Where a run is in its life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// Components initialize; what they send is held back.
+    Starting,
+    /// Time goes on.
+    Running,
+    /// Components shut down.
+    Stopping,
+    /// Nothing happens any more.
+    Ended,
+}
+
+/// Which threads do what.
+#[derive(Debug, Default)]
+pub(super) struct Roles {
+    /// The number of the thread that does the timer's work: it changes when another takes over.
+    pub(super) timer: u64,
+    /// The kernel's number of that thread.
+    pub(super) thread: i32,
+    /// Whose code that thread runs.
+    pub(super) running: Option<u32>,
+    /// Until when it sleeps; 0 while it is awake.
+    pub(super) asleep_until: u64,
+    /// Components for the worker threads.
+    pub(super) work: VecDeque<u32>,
+    pub(super) workers: usize,
+    pub(super) idle_workers: usize,
+}
+
+/// What components said about the work that is left.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Votes {
+    pub(super) voters: usize,
+    pub(super) done: usize,
+}
+
+/// What the timer has to do next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    /// This job of this component.
+    Run(u32, Job),
+    /// There is work for a worker thread.
+    HandOver,
+    /// Nothing until then.
+    Wait(u64),
+    /// Nothing ever again.
+    Ended,
+}
+
+impl Engine {
+    pub(super) fn new(assembly: &Assembly, settings: &Settings) -> Engine {
+        let components = assembly.components.iter().enumerate();
+        Engine {
+            slots: components.map(|(index, spec)| Slot::new(index as u32, spec)).collect(),
+            queue: Queue::default(),
+            bus: Bus::default(),
+            phase: Phase::Starting,
+            roles: Roles::default(),
+            news: Vec::new(),
+            wake: false,
+            trace: (settings.clock == ClockKind::Virtual).then(Trace::default),
+            executions: Arc::default(),
+            out: 0,
+            ending: VecDeque::new(),
+            order_of_end: Engine::order_of_end(assembly),
+            cause: None,
+            reasons: Vec::new(),
+            ended: (0, 0),
+            votes: Votes::default(),
+            limit: settings.limit.map_or(NEVER, nanos),
+            pause: 0,
+            real: settings.clock == ClockKind::Real,
+            budget: nanos(settings.budget),
+            seed: settings.seed,
+        }
+    }
+
+    /// What is to be done at this time.
+    pub(super) fn next(&mut self, now: u64) -> Next {
+        loop {
+            match self.phase {
+                Phase::Running => {
+                    if now >= self.limit {
+                        self.begin_stop(Cause::Elapsed, self.limit);
+                        continue;
+                    }
+                    let Some((when, index)) = self.queue.pop_due(now) else {
+                        return Next::Wait(self.queue.earliest().unwrap_or(NEVER).min(self.limit));
+                    };
+                    let slot = &mut self.slots[index as usize];
+                    if slot.entry != when {
+                        continue;
+                    }
+                    slot.entry = NEVER;
+                    if slot.body.is_none() {
+                        slot.waiting = true;
+                    } else if slot.apart.now {
+                        slot.queued = true;
+                        self.roles.work.push_back(index);
+                        return Next::HandOver;
+                    } else if let Some(job) = self.job(index, now) {
+                        return Next::Run(index, job);
+                    }
+                }
+                Phase::Stopping => match self.next_to_end() {
+                    Some(index) => return Next::Run(index, Job::Shutdown),
+                    None if self.out == 0 => self.phase = Phase::Ended,
+                    None => return Next::Wait(NEVER),
+                },
+                Phase::Starting => return Next::Wait(NEVER),
+                Phase::Ended => return Next::Ended,
+            }
+        }
+    }
+
+    /// What a component whose time has come has to do.
+    pub(super) fn job(&mut self, index: u32, now: u64) -> Option<Job> {
+        let slot = &mut self.slots[index as usize];
+        match slot.state {
+            State::Starting => Some(Job::Start),
+            State::Leaving => Some(Job::Shutdown),
+            State::Active if now >= slot.until => {
+                slot.state = State::Leaving;
+                Some(Job::Shutdown)
+            }
+            State::Active if now < slot.due => {
+                let when = slot.due.min(slot.until);
+                self.enqueue(index, when);
+                None
+            }
+            State::Active
+                if slot.policy.overrun == Overrun::Stop && now - slot.due.min(now) >= slot.policy.period =>
+            {
+                self.condemn(index, now);
+                Some(Job::Shutdown)
+            }
+            State::Active => Some(Job::Execute),
+            State::Idle | State::Failed | State::Abandoned => None,
+        }
+    }
+
+    /// Executions could not start in time, and the composite wants the component to stop then.
+    fn condemn(&mut self, index: u32, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        let missed = (now - slot.due) / slot.policy.period;
+        slot.statistics.missed += missed;
+        slot.state = State::Leaving;
+        slot.wish = Wish::None;
+        let what = Occurrence::Overrun { missed };
+        slot.condemned = Some(format!("component `{}` {what}", slot.name));
+        self.tell(now, index, what);
+    }
+
+    /// Takes a component's body for a job.
+    pub(super) fn begin(&mut self, index: u32, job: Job, now: u64) -> Option<Box<Body>> {
+        let slot = &mut self.slots[index as usize];
+        let mut body = slot.body.take()?;
+        self.out += 1;
+        body.part.now = now;
+        match job {
+            Job::Execute => self.begin_execution(index, &mut body, now),
+            Job::Shutdown => body.part.due = now,
+            Job::Start => {
+                let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
+                slot.instances += 1;
+                slot.execution = 0;
+                slot.cancelled.store(false, Ordering::Relaxed);
+                body.part.chance = Chance::for_component(seed, &slot.name);
+                body.part.due = now;
+                body.part.execution = 0;
+            }
+        }
+        Some(body)
+    }
+
+    fn begin_execution(&mut self, index: u32, body: &mut Body, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        let Policy { period, overrun, .. } = slot.policy;
+        let (due, part) = (slot.due, &mut body.part);
+        let late = now.saturating_sub(due);
+        let mut next = due.saturating_add(period);
+        if self.real {
+            slot.statistics.late.record(late);
+            if late >= period && overrun == Overrun::Skip {
+                let missed = late / period;
+                slot.statistics.missed += missed;
+                next += missed * period;
+            }
+        }
+        slot.due = next;
+        part.due = due;
+        part.execution = slot.execution;
+        slot.execution += 1;
+        slot.statistics.executions += 1;
+        // Only the holder of the lock writes.
+        self.executions.store(self.executions.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+        let mut lost = None;
+        for (subscription, inbox) in part.subscriptions.iter_mut().zip(&mut body.inboxes) {
+            let missing = self.bus.collect(subscription, inbox);
+            slot.statistics.received += inbox.len() as u64;
+            if missing > 0 {
+                let (topic, before) = lost.unwrap_or((self.bus.topic_of(subscription), 0));
+                lost = Some((topic, before + missing));
+            }
+        }
+        match lost {
+            None => slot.dropping = false,
+            Some((topic, count)) => {
+                let topic = Arc::clone(self.bus.name(topic));
+                self.dropped(index, &topic, count, now);
+            }
+        }
+    }
+
+    /// Counts messages that did not fit into a queue.
+    pub(super) fn dropped(&mut self, index: u32, topic: &Arc<str>, count: u64, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        if slot.statistics.dropped == 0 && slot.policy.loss == Loss::Fail {
+            self.reasons.push(format!(
+                "component `{}` lost messages of topic `{topic}`, whose queue was full: read faster, give it a longer `queue`, \
+                 or accept loss",
+                slot.name
+            ));
+        }
+        slot.statistics.dropped += count;
+        if !std::mem::replace(&mut slot.dropping, true) {
+            self.tell(now, index, Occurrence::Dropped { topic: Arc::clone(topic), count });
+        }
+    }
+
+    /// Gives a component's body back after a job.
+    pub(super) fn finish(
+        &mut self,
+        index: u32,
+        mut body: Box<Body>,
+        job: Job,
+        result: Result<(), Failure>,
+        started: u64,
+        ended: u64,
+    ) {
+        if self.is_abandoned(index) {
+            // Nobody waits for it any more, and its destructor is as little to be trusted: it stays where it is.
+            std::mem::forget(body);
+            return;
+        }
+        self.out -= 1;
+        let slot = &mut self.slots[index as usize];
+        if job == Job::Execute && self.real {
+            let slow = ended.saturating_sub(started) > self.budget;
+            slot.statistics.slow += u64::from(slow);
+            if slot.apart.now {
+                slot.apart.ran(slow);
+            }
+            if ended > body.part.due.saturating_add(slot.policy.deadline) {
+                slot.statistics.deadline_misses += 1;
+            }
+        }
+        match result {
+            Err(failure) => {
+                self.fail(index, &mut body, job, failure, ended);
+                self.slots[index as usize].body = Some(body);
+            }
+            Ok(()) => {
+                if self.phase != Phase::Starting {
+                    self.deliver(&mut body.part, ended);
+                }
+                let vote = body.part.vote.take();
+                if job == Job::Start {
+                    body.inboxes.resize_with(body.part.subscriptions.len(), Vec::new);
+                }
+                self.slots[index as usize].body = Some(body);
+                if let Some(vote) = vote {
+                    self.vote(index, vote, ended);
+                }
+                match job {
+                    Job::Execute => self.executed(index, ended),
+                    Job::Start => self.started(index, ended),
+                    Job::Shutdown => self.left(index, ended),
+                }
+            }
+        }
+    }
+
+    pub(super) fn is_abandoned(&self, index: u32) -> bool {
+        self.slots[index as usize].state == State::Abandoned
+    }
+
+    /// Lets the messages of an outbox go to their topics.
+    #[inline]
+    pub(super) fn deliver(&mut self, part: &mut Part, now: u64) {
+        self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
+        for (topic, message) in part.outbox.drain(..) {
+            if let Some(trace) = &mut self.trace {
+                trace.message(now, part.index, self.bus.name_hash(topic), &message);
+            }
+            self.bus.publish(topic, message);
+        }
+    }
+
+    fn executed(&mut self, index: u32, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        slot.waiting = false;
+        if self.phase == Phase::Running && slot.wish == Wish::None {
+            let when = slot.due.min(slot.until).max(now);
+            self.enqueue(index, when);
+        } else {
+            self.resume(index, now);
+        }
+    }
+
+    /// Puts a component into the queue.
+    pub(super) fn enqueue(&mut self, index: u32, when: u64) {
+        self.slots[index as usize].entry = when;
+        self.queue.push(when, index);
+        self.wake |= when < self.roles.asleep_until;
+        if self.queue.len() > 2 * self.slots.len() + 64 {
+            let slots = &self.slots;
+            self.queue.retain(|when, index| slots[index as usize].entry == when);
+        }
+    }
+
+    /// Notes what a component says about the work that is left.
+    pub(super) fn vote(&mut self, index: u32, vote: Work, now: u64) {
+        let before = self.slots[index as usize].vote.replace(vote);
+        if before == Some(vote) {
+            return;
+        }
+        self.votes.voters += usize::from(before.is_none());
+        match vote {
+            Work::Done => self.votes.done += 1,
+            Work::Open => self.votes.done -= usize::from(before.is_some()),
+        }
+        self.step(now, index, Step::Voted);
+        self.end_if_done(now);
+    }
+
+    /// Ends the run when all who voted see no work left.
+    pub(super) fn end_if_done(&mut self, now: u64) {
+        if self.votes.voters > 0 && self.votes.done == self.votes.voters {
+            self.begin_stop(Cause::Done, now);
+        }
+    }
+
+    /// Tells the program something about a component, as soon as the lock is free.
+    pub(super) fn tell(&mut self, now: u64, index: u32, what: Occurrence) {
+        let component = Some(Arc::clone(&self.slots[index as usize].name));
+        self.news.push(Event { time: Time::from_nanos(now), component, what });
+    }
+
+    pub(super) fn step(&mut self, now: u64, index: u32, step: Step) {
+        if let Some(trace) = &mut self.trace {
+            trace.step(now, index, step);
+        }
+    }
+}

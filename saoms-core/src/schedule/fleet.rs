@@ -1,0 +1,256 @@
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use saoms_api::Time;
+
+use super::capture;
+use super::clock::Clock;
+use super::drive;
+use super::engine::Phase;
+use super::lifecycle::Request;
+use super::observe::{Events, Line, Progress};
+use super::realtime;
+use super::settings::{ClockKind, Settings, nanos};
+use super::shared::Shared;
+use super::slot::NEVER;
+use super::start::{self, StartError};
+use crate::assembly::Assembly;
+use crate::report::RunReport;
+
+/// A fleet that runs.
+///
+/// ```
+/// use std::sync::Arc;
+/// use std::time::Duration;
+///
+/// use saoms_core::assembly::Assembly;
+/// use saoms_core::report::Status;
+/// use saoms_core::schedule::{Fleet, Quiet, Settings};
+///
+/// let settings = Settings { limit: Some(Duration::from_secs(3600)), ..Settings::simulated(7) };
+/// let fleet = Fleet::start(Assembly::default(), settings, Arc::new(Quiet))?;
+/// let report = fleet.run_to_end();
+/// assert_eq!(report.outcome.status, Status::Elapsed);
+/// assert_eq!(report.time_s, 3600.0);
+/// # Ok::<(), saoms_core::schedule::StartError>(())
+/// ```
+///
+/// In real time the fleet runs from [`start`](Fleet::start) on. In virtual time it goes on only while somebody waits for it in
+/// [`run_to_end`](Fleet::run_to_end) or [`run_until`](Fleet::run_until), so that a program can act at exact times. Dropping a fleet ends it.
+#[derive(Debug)]
+pub struct Fleet {
+    handle: Handle,
+    teller: Option<JoinHandle<()>>,
+}
+
+/// A remote control of a fleet. It may be cloned and used from any thread; after the end of the run it does nothing.
+#[derive(Clone)]
+pub struct Handle {
+    shared: Arc<Shared>,
+}
+
+/// A fleet has no such periodic component.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownComponent {
+    name: String,
+    passive: bool,
+}
+
+impl fmt::Display for UnknownComponent {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.passive {
+            write!(
+                formatter,
+                "component `{}` is passive: it has no executions that could be scheduled",
+                self.name
+            )
+        } else {
+            write!(formatter, "the fleet has no component `{}`", self.name)
+        }
+    }
+}
+
+impl std::error::Error for UnknownComponent {}
+
+impl Fleet {
+    /// Starts a fleet: constructs and initializes every component that runs from the start and every passive one, providers before
+    /// those that call them, and then lets time begin.
+    ///
+    /// # Errors
+    /// A component could not be constructed or initialized: then those before it have been shut down, what they had sent has reached nobody, and
+    /// nothing runs. Or the system refuses threads, or real-time scheduling.
+    pub fn start(
+        assembly: Assembly,
+        settings: Settings,
+        events: Arc<dyn Events>,
+    ) -> Result<Fleet, StartError> {
+        capture::install_hook();
+        let simulated = settings.clock == ClockKind::Virtual;
+        if settings.realtime && !simulated {
+            realtime::enter().map_err(StartError::Realtime)?;
+        }
+        let clock = if simulated { Clock::simulated() } else { Clock::real() };
+        let line = Line::new(events.as_ref(), simulated);
+        let shared = Arc::new(Shared::new(assembly, settings, clock, line));
+        let teller = Arc::clone(&shared);
+        let teller = thread::Builder::new()
+            .name("saoms-events".to_owned())
+            .spawn(move || teller.line.tell(&events, || teller.progress()))
+            .map_err(StartError::Thread)?;
+        // From here on, dropping the fleet ends whatever has begun.
+        let fleet = Fleet { handle: Handle { shared }, teller: Some(teller) };
+        let shared = &fleet.handle.shared;
+        drive::spawn(shared).map_err(StartError::Thread)?;
+        start::start(shared)?;
+        Ok(fleet)
+    }
+
+    /// A remote control of this fleet.
+    pub fn handle(&self) -> Handle {
+        self.handle.clone()
+    }
+
+    /// Waits until the fleet has reached this time, or has ended. Virtual time goes exactly so far: executions due at that very instant are
+    /// still to come.
+    pub fn run_until(&self, time: Time) {
+        let (shared, time) = (&self.handle.shared, time.as_nanos());
+        if shared.clock.is_virtual() {
+            self.resume(time);
+            drive::wait_until(shared, |engine| engine.roles.asleep_until != 0 && shared.clock.now() >= time);
+            return;
+        }
+        let ended = || shared.lock().phase == Phase::Ended;
+        while !ended() && shared.clock.now() < time {
+            let left = Duration::from_nanos(time.saturating_sub(shared.clock.now()));
+            thread::sleep(left.min(Duration::from_millis(10)));
+        }
+    }
+
+    /// Lets the fleet run to its end: all who voted see no work left, the time given is over, somebody asked for it, or nobody is left who
+    /// could go on. Every component has shut down then, or is named in the outcome.
+    pub fn run_to_end(mut self) -> RunReport {
+        let shared = &self.handle.shared;
+        if shared.clock.is_virtual() {
+            self.resume(NEVER);
+        }
+        drive::wait_until(shared, |_| false);
+        let report = shared.lock().report(&shared.assembly, &shared.sections());
+        self.finish();
+        report
+    }
+
+    /// Lets virtual time go on up to this time.
+    fn resume(&self, time: u64) {
+        let shared = &self.handle.shared;
+        let mut engine = shared.lock();
+        engine.pause = time.max(engine.pause);
+        engine.roles.asleep_until = 0;
+        shared.release(engine);
+        shared.timer.wake();
+    }
+
+    /// Lets the last events be told.
+    fn finish(&mut self) {
+        self.handle.shared.line.close();
+        if let Some(teller) = self.teller.take() {
+            // A program that panics over an event has been told so on standard error.
+            let _ = teller.join();
+        }
+    }
+}
+
+impl Drop for Fleet {
+    fn drop(&mut self) {
+        if self.teller.is_none() {
+            return;
+        }
+        let shared = &self.handle.shared;
+        let mut engine = shared.lock();
+        if engine.phase == Phase::Starting {
+            engine.phase = Phase::Ended;
+            shared.release(engine);
+            drive::announce_end(shared);
+        } else {
+            shared.release(engine);
+            self.handle.stop();
+            self.resume(NEVER);
+            drive::wait_until(shared, |_| false);
+        }
+        self.finish();
+    }
+}
+
+impl Handle {
+    /// Asks the fleet to end, as Ctrl-C does. Returns at once. It takes no lock, so that a thread that handles signals may call it, and so may a
+    /// signal handler.
+    pub fn stop(&self) {
+        self.shared.stop.store(true, Ordering::SeqCst);
+        self.shared.timer.wake();
+        self.shared.end.wake();
+    }
+
+    /// Schedules a periodic component. Returns at once; the component initializes as soon as no code runs, and begins after its delay.
+    ///
+    /// # Errors
+    /// There is no such component, or it is passive.
+    pub fn schedule(&self, component: &str) -> Result<(), UnknownComponent> {
+        self.request(component, Request::Schedule { lasting: NEVER })
+    }
+
+    /// The same for a limited time, counted from now.
+    ///
+    /// # Errors
+    /// As [`schedule`](Handle::schedule).
+    pub fn schedule_for(&self, component: &str, duration: Duration) -> Result<(), UnknownComponent> {
+        self.request(component, Request::Schedule { lasting: nanos(duration) })
+    }
+
+    /// Unschedules a periodic component. Returns at once; the component shuts down as soon as its present execution has ended, which ends early
+    /// only with `mayInterruptIfRunning`.
+    ///
+    /// # Errors
+    /// As [`schedule`](Handle::schedule).
+    pub fn unschedule(&self, component: &str) -> Result<(), UnknownComponent> {
+        self.request(component, Request::Unschedule)
+    }
+
+    /// Whether a periodic component is scheduled, or about to be.
+    ///
+    /// # Errors
+    /// As [`schedule`](Handle::schedule).
+    pub fn is_running(&self, component: &str) -> Result<bool, UnknownComponent> {
+        let index = self.find(component)?;
+        Ok(self.shared.lock().slots[index].is_scheduled())
+    }
+
+    /// How far the run is.
+    pub fn progress(&self) -> Progress {
+        self.shared.progress()
+    }
+
+    fn request(&self, component: &str, request: Request) -> Result<(), UnknownComponent> {
+        let index = self.find(component)?;
+        let mut engine = self.shared.lock();
+        engine.request(index as u32, request, self.shared.clock.now());
+        self.shared.release(engine);
+        Ok(())
+    }
+
+    fn find(&self, component: &str) -> Result<usize, UnknownComponent> {
+        let components = &self.shared.assembly.components;
+        let index = components.iter().position(|known| known.path == component);
+        match index {
+            Some(index) if components[index].task.is_some() => Ok(index),
+            _ => Err(UnknownComponent { name: component.to_owned(), passive: index.is_some() }),
+        }
+    }
+}
+
+impl fmt::Debug for Handle {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("Handle").field("components", &self.shared.assembly.components.len()).finish()
+    }
+}

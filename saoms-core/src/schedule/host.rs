@@ -1,0 +1,204 @@
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+use saoms_api::{
+    CallError, Chance, Failure, Host, Level, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration,
+    Work,
+};
+
+use super::body::Part;
+use super::observe::{Event, Occurrence};
+use super::shared::Shared;
+use crate::assembly::{ComponentSpec, TaskSettings};
+use crate::report::Sections;
+
+/// What the scheduler gives to a component while its code runs.
+pub(super) struct ComponentHost<'a> {
+    pub(super) shared: &'a Arc<Shared>,
+    pub(super) part: &'a mut Part,
+}
+
+impl ComponentHost<'_> {
+    fn spec(&self) -> &ComponentSpec {
+        self.shared.spec(self.part.index)
+    }
+
+    /// Checks that the component may take a topic now, and gives its task settings.
+    fn may_use(&self, topic: &str, verb: &str) -> Result<Option<&TaskSettings>, Failure> {
+        if !self.part.initializing {
+            return Err(Failure::new(format!(
+                "topic `{topic}`: a component can only {verb} in `initialize`; keep what it returns"
+            )));
+        }
+        let task = self.spec().task.as_ref();
+        if task.is_some_and(|task| !task.use_jms) {
+            return Err(Failure::new(format!(
+                "topic `{topic}`: component `{}` has `useJMS` false and can neither publish nor subscribe: set it to true",
+                self.part.name
+            )));
+        }
+        Ok(task)
+    }
+}
+
+/// The name of a topic on the bus.
+fn renamed<'a>(task: Option<&'a TaskSettings>, name: &'a str) -> &'a str {
+    let renames = task.map_or(&[][..], |task| &task.topic_rename);
+    renames.iter().find(|(old, _)| old == name).map_or(name, |(_, new)| new)
+}
+
+impl Host for ComponentHost<'_> {
+    fn name(&self) -> &str {
+        &self.part.name
+    }
+
+    fn sender(&self) -> u32 {
+        self.part.index
+    }
+
+    fn now(&self) -> Time {
+        Time::from_nanos(if self.shared.clock.is_virtual() { self.part.now } else { self.shared.clock.now() })
+    }
+
+    fn due(&self) -> Time {
+        Time::from_nanos(self.part.due)
+    }
+
+    fn execution(&self) -> u64 {
+        self.part.execution
+    }
+
+    fn period(&self) -> Duration {
+        Duration::from_nanos(self.part.period)
+    }
+
+    fn cancelled(&self) -> bool {
+        self.part.is_cancelled()
+    }
+
+    fn chance(&mut self) -> &mut Chance {
+        &mut self.part.chance
+    }
+
+    fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        let task = self.may_use(topic.name, "publish")?;
+        let bus = &mut self.shared.lock().bus;
+        let id = bus
+            .publisher(renamed(task, topic.name), topic, &self.part.name)
+            .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
+        self.part.publishers.push(id);
+        Ok((self.part.publishers.len() - 1) as u32)
+    }
+
+    fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        let Some(task) = self.may_use(topic.name, "subscribe")? else {
+            return Err(Failure::new(format!(
+                "topic `{}`: a passive component has no periods in which it could receive, and cannot subscribe",
+                topic.name
+            )));
+        };
+        let mut engine = self.shared.lock();
+        let name = renamed(Some(task), topic.name);
+        let fresh = engine
+            .bus
+            .subscribe(name, topic, &self.part.name, task.queue)
+            .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
+        // An instance that takes the place of a failed one gets the events that came meanwhile.
+        let same = |kept: &crate::bus::Subscription| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
+        let subscription = match self.part.kept.iter().position(same) {
+            Some(place) => {
+                let mut kept = self.part.kept.swap_remove(place);
+                engine.bus.unsubscribe(fresh);
+                engine.bus.rewind(&mut kept);
+                kept
+            }
+            None => fresh,
+        };
+        drop(engine);
+        self.part.subscriptions.push(subscription);
+        Ok((self.part.subscriptions.len() - 1) as u32)
+    }
+
+    #[inline]
+    fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {
+        match self.part.publishers.get(publisher as usize) {
+            Some(topic) => {
+                self.part.outbox.push((*topic, message));
+                Ok(())
+            }
+            None => Err(Failure::new(
+                "this publisher belongs to no topic: keep what `Context::publish` returned in `initialize`",
+            )),
+        }
+    }
+
+    fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {
+        let wires = &self.spec().references;
+        let found = wires.iter().position(|wire| wire.reference == name && wire.interface == interface);
+        if let Some(place) = found {
+            return Ok(place as u32);
+        }
+        let known: Vec<String> =
+            wires.iter().map(|wire| format!("`{}` ({})", wire.reference, wire.interface)).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Err(Failure::new(format!(
+            "class `{}` declares no reference `{name}` with the interface `{interface}`; it declares: {known}",
+            self.spec().class.name()
+        )))
+    }
+
+    fn is_wired(&self, reference: u32) -> bool {
+        self.spec().references.get(reference as usize).is_some_and(|wire| wire.target.is_some())
+    }
+
+    fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+        super::call::call(self.shared, self.part, reference, call)
+    }
+
+    fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
+        if self.shared.line.wants(level) {
+            self.tell(Occurrence::Log { level, text: line.to_string() });
+        }
+    }
+
+    fn console(&mut self, line: fmt::Arguments<'_>) {
+        if self.shared.line.wants_console() {
+            self.tell(Occurrence::Console { text: line.to_string() });
+        }
+    }
+
+    fn report(&mut self, path: &str, value: ReportValue) {
+        if self.may_report(path) {
+            self.shared.sections().set(path, value);
+        }
+    }
+
+    fn count(&mut self, path: &str, more: i64) {
+        if self.may_report(path) {
+            self.shared.sections().add(path, more);
+        }
+    }
+
+    fn vote(&mut self, work: Work) {
+        self.part.vote = Some(work);
+    }
+}
+
+impl ComponentHost<'_> {
+    fn tell(&self, what: Occurrence) {
+        self.shared.line.put(Event { time: self.now(), component: Some(Arc::clone(&self.part.name)), what });
+    }
+
+    /// Components cannot write over what the program itself reports.
+    fn may_report(&mut self, path: &str) -> bool {
+        let reserved = Sections::is_reserved(path);
+        if reserved {
+            self.log(
+                Level::Warning,
+                format_args!("`{path}` of the report is the program's own, and stays as it is"),
+            );
+        }
+        !reserved
+    }
+}

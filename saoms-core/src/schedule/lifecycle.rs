@@ -1,0 +1,270 @@
+use std::sync::atomic::Ordering;
+
+use saoms_api::{Failure, Work};
+
+use super::body::{Body, Job};
+use super::ending::Cause;
+use super::engine::{Engine, Phase};
+use super::observe::Occurrence;
+use super::settings::nanos;
+use super::slot::{NEVER, State, Wish};
+use super::trace::Step;
+use crate::assembly::Restart;
+
+/// What can be asked of the engine about a periodic component, at any time and from anywhere. It takes effect after the code that runs at
+/// present.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Request {
+    /// To be scheduled, for so many nanoseconds.
+    Schedule { lasting: u64 },
+    /// To be unscheduled.
+    Unschedule,
+}
+
+impl Engine {
+    /// Notes a request.
+    pub(super) fn request(&mut self, index: u32, request: Request, now: u64) {
+        let running = matches!(self.phase, Phase::Starting | Phase::Running);
+        if !running || !self.slots[index as usize].policy.periodic {
+            return;
+        }
+        match request {
+            Request::Schedule { lasting } => self.schedule(index, lasting, now),
+            Request::Unschedule => self.unschedule(index, now),
+        }
+    }
+
+    fn schedule(&mut self, index: u32, lasting: u64, now: u64) {
+        let until = now.saturating_add(lasting);
+        let slot = &mut self.slots[index as usize];
+        match (slot.state, slot.wish) {
+            (State::Idle | State::Failed, _) => {
+                slot.state = State::Starting;
+                slot.until = until;
+                self.enqueue(index, now);
+            }
+            (State::Leaving, _) | (_, Wish::Leave | Wish::Return { .. }) => {
+                slot.wish = Wish::Return { lasting }
+            }
+            (State::Starting, Wish::None) => slot.until = until,
+            (State::Active, Wish::None) => {
+                // One that runs goes on; only for how long may be new.
+                slot.until = until;
+                if slot.entry != NEVER {
+                    let when = slot.due.min(until).max(now);
+                    self.enqueue(index, when);
+                }
+            }
+            (State::Abandoned, _) => {}
+        }
+    }
+
+    fn unschedule(&mut self, index: u32, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        match slot.state {
+            State::Idle | State::Failed | State::Abandoned => {}
+            State::Leaving => slot.wish = Wish::None,
+            State::Starting if slot.body.is_some() => {
+                slot.state = State::Idle;
+                slot.entry = NEVER;
+                slot.restarting = false;
+                self.leave_topics(index, now);
+                self.forget_vote(index, now);
+            }
+            State::Active if slot.body.is_some() => self.leave(index, now),
+            State::Starting | State::Active => {
+                slot.wish = Wish::Leave;
+                if slot.policy.interrupt {
+                    slot.cancelled.store(true, Ordering::Relaxed);
+                }
+            }
+        }
+    }
+
+    /// Lets a component shut down as soon as possible.
+    fn leave(&mut self, index: u32, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        slot.state = State::Leaving;
+        if !slot.queued {
+            self.enqueue(index, now);
+        }
+    }
+
+    /// What comes next for a component that is alive and whose code has just returned.
+    pub(super) fn resume(&mut self, index: u32, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        if self.phase == Phase::Stopping {
+            self.ending.push_back(index);
+            self.wake = true;
+            return;
+        }
+        let waiting = std::mem::take(&mut slot.waiting);
+        match slot.wish {
+            Wish::Leave => {
+                slot.wish = Wish::None;
+                self.leave(index, now);
+            }
+            Wish::Return { .. } => self.leave(index, now),
+            Wish::None if waiting => self.enqueue(index, now),
+            Wish::None => {}
+        }
+    }
+
+    /// A component has initialized.
+    pub(super) fn started(&mut self, index: u32, now: u64) {
+        self.release_kept(index, now);
+        let slot = &mut self.slots[index as usize];
+        slot.state = State::Active;
+        let (number, again) = (slot.restarts, std::mem::take(&mut slot.restarting));
+        if self.phase == Phase::Starting {
+            return;
+        }
+        self.step(now, index, Step::Started);
+        self.tell(now, index, if again { Occurrence::Restarted { number } } else { Occurrence::Started });
+        let slot = &mut self.slots[index as usize];
+        slot.due = now.saturating_add(slot.policy.delay);
+        if self.phase == Phase::Running && slot.wish == Wish::None {
+            let when = slot.due.min(slot.until).max(now);
+            self.enqueue(index, when);
+        } else {
+            self.resume(index, now);
+        }
+    }
+
+    /// A component has shut down.
+    pub(super) fn left(&mut self, index: u32, now: u64) {
+        self.leave_topics(index, now);
+        self.step(now, index, Step::Left);
+        let slot = &mut self.slots[index as usize];
+        let wish = std::mem::replace(&mut slot.wish, Wish::None);
+        slot.state = State::Idle;
+        slot.waiting = false;
+        if let Some(reason) = slot.condemned.take() {
+            slot.state = State::Failed;
+            self.reasons.push(reason);
+            self.lost(index, now);
+            return;
+        }
+        self.tell(now, index, Occurrence::Left);
+        self.forget_vote(index, now);
+        if let Wish::Return { lasting } = wish {
+            self.request(index, Request::Schedule { lasting }, now);
+        }
+    }
+
+    /// A component has failed, whatever it was doing: its policy decides.
+    pub(super) fn fail(&mut self, index: u32, body: &mut Body, job: Job, failure: Failure, now: u64) {
+        let unsent = body.part.outbox.len();
+        body.part.outbox.clear();
+        body.part.vote = None;
+        let doing = match job {
+            Job::Start => "could not start: ",
+            Job::Execute => "",
+            Job::Shutdown => "could not shut down: ",
+        };
+        let mut message = format!("{doing}{failure}");
+        if unsent > 0 {
+            message.push_str(&format!(" (the {unsent} messages of this execution are not sent)"));
+        }
+        self.step(now, index, Step::Failed);
+        let slot = &mut self.slots[index as usize];
+        slot.statistics.failures += 1;
+        slot.waiting = false;
+        let stays = self.phase == Phase::Running && job != Job::Shutdown && slot.wish == Wish::None;
+        let pause = match slot.policy.restart {
+            Restart::OnFailure { backoff, limit } if stays && slot.restarts < limit => {
+                Some(backoff.saturating_mul(1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX)))
+            }
+            _ => None,
+        };
+        self.keep_subscriptions(body);
+        let slot = &mut self.slots[index as usize];
+        let wish = std::mem::replace(&mut slot.wish, Wish::None);
+        match pause {
+            Some(pause) => {
+                slot.restarts += 1;
+                slot.restarting = true;
+                slot.state = State::Starting;
+                self.tell(now, index, Occurrence::Failed { message, restart: Some(pause) });
+                self.enqueue(index, now.saturating_add(nanos(pause)));
+            }
+            None => {
+                slot.state = State::Failed;
+                slot.restarting = false;
+                self.reasons.extend(slot.condemned.take());
+                self.reasons.push(format!("component `{}` failed: {message}", slot.name));
+                self.tell(now, index, Occurrence::Failed { message, restart: None });
+                self.release(index, body, now);
+                self.lost(index, now);
+                if let Wish::Return { lasting } = wish {
+                    self.request(index, Request::Schedule { lasting }, now);
+                }
+            }
+        }
+    }
+
+    /// A component is gone for good: does the run still have a meaning?
+    fn lost(&mut self, index: u32, now: u64) {
+        if self.phase != Phase::Running {
+            return;
+        }
+        let voted = self.slots[index as usize].vote.is_some();
+        self.forget_vote(index, now);
+        if voted && self.votes.voters == 0 {
+            let name = &self.slots[index as usize].name;
+            self.reasons.push(format!("component `{name}`, which could say when the work is done, is gone"));
+            self.begin_stop(Cause::Lost, now);
+        } else if !self.slots.iter().any(|slot| slot.policy.periodic && slot.is_scheduled()) {
+            self.begin_stop(Cause::Lost, now);
+        }
+    }
+
+    /// A component that does not take part has no say about the work that is left.
+    fn forget_vote(&mut self, index: u32, now: u64) {
+        if self.phase != Phase::Running {
+            return;
+        }
+        if let Some(vote) = self.slots[index as usize].vote.take() {
+            self.votes.voters -= 1;
+            self.votes.done -= usize::from(vote == Work::Done);
+            self.end_if_done(now);
+        }
+    }
+
+    /// Takes a failed instance off its topics, but keeps its place in them for the next instance.
+    fn keep_subscriptions(&mut self, body: &mut Body) {
+        for topic in body.part.publishers.drain(..) {
+            self.bus.unpublish(topic);
+        }
+        body.part.kept.append(&mut body.part.subscriptions);
+        body.inboxes.clear();
+    }
+
+    /// Takes a component off all topics.
+    fn leave_topics(&mut self, index: u32, now: u64) {
+        if let Some(mut body) = self.slots[index as usize].body.take() {
+            self.keep_subscriptions(&mut body);
+            self.release(index, &mut body, now);
+            self.slots[index as usize].body = Some(body);
+        }
+    }
+
+    /// What a new instance did not ask for again is given up.
+    fn release_kept(&mut self, index: u32, now: u64) {
+        if let Some(mut body) = self.slots[index as usize].body.take() {
+            self.release(index, &mut body, now);
+            self.slots[index as usize].body = Some(body);
+        }
+    }
+
+    fn release(&mut self, index: u32, body: &mut Body, now: u64) {
+        for kept in body.part.kept.drain(..) {
+            let topic = self.bus.topic_of(&kept);
+            let lost = self.bus.unsubscribe(kept);
+            if lost > 0 {
+                let topic = std::sync::Arc::clone(self.bus.name(topic));
+                self.dropped(index, &topic, lost, now);
+            }
+        }
+    }
+}

@@ -1,0 +1,188 @@
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+use saoms_api::{Level, Time};
+
+/// Something that happened in a fleet, as [`Events`] is told it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// When, in the time of the run.
+    pub time: Time,
+    /// The path of the component that it concerns; `None` is the fleet as a whole.
+    pub component: Option<Arc<str>>,
+    /// What.
+    pub what: Occurrence,
+}
+
+/// What can happen in a fleet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Occurrence {
+    /// A component wrote a line to its log.
+    Log {
+        /// How much it matters.
+        level: Level,
+        /// The line.
+        text: String,
+    },
+    /// A component wrote a line of the original's console.
+    Console {
+        /// The line.
+        text: String,
+    },
+    /// The component has initialized and takes part.
+    Started,
+    /// The component has shut down.
+    Left,
+    /// The component failed, by an error or a panic.
+    Failed {
+        /// Why, in its own words.
+        message: String,
+        /// When a new one takes its place; `None` is never.
+        restart: Option<Duration>,
+    },
+    /// A new component has taken the place of a failed one.
+    Restarted {
+        /// How often that happened.
+        number: u32,
+    },
+    /// An execution took so long that another thread had to go on with the others. From now on the component runs on a thread of its own.
+    Slow {
+        /// The watchdog's budget.
+        budget: Duration,
+    },
+    /// An event queue of the component was full. Told once for each burst.
+    Dropped {
+        /// The topic.
+        topic: Arc<str>,
+        /// How many messages were lost in this period.
+        count: u64,
+    },
+    /// Executions were due faster than they could be run, and the component's `overrun` is `stop`.
+    Overrun {
+        /// How many executions were left out.
+        missed: u64,
+    },
+    /// The component did not end in time, and is left behind.
+    Abandoned,
+    /// Something that concerns the whole fleet.
+    Note {
+        /// How much it matters.
+        level: Level,
+        /// What it is.
+        text: String,
+    },
+}
+
+impl Occurrence {
+    /// How much it matters.
+    pub fn level(&self) -> Level {
+        match self {
+            Occurrence::Log { level, .. } | Occurrence::Note { level, .. } => *level,
+            Occurrence::Console { .. } => Level::Info,
+            Occurrence::Started | Occurrence::Left => Level::Debug,
+            Occurrence::Failed { restart: None, .. } | Occurrence::Overrun { .. } | Occurrence::Abandoned => {
+                Level::Error
+            }
+            Occurrence::Failed { .. }
+            | Occurrence::Restarted { .. }
+            | Occurrence::Slow { .. }
+            | Occurrence::Dropped { .. } => Level::Warning,
+        }
+    }
+}
+
+impl fmt::Display for Occurrence {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Occurrence::Log { text, .. } | Occurrence::Console { text } | Occurrence::Note { text, .. } => {
+                formatter.write_str(text)
+            }
+            Occurrence::Started => formatter.write_str("started"),
+            Occurrence::Left => formatter.write_str("has shut down"),
+            Occurrence::Failed { message, restart: None } => write!(formatter, "failed: {message}"),
+            Occurrence::Failed { message, restart: Some(pause) } => {
+                write!(
+                    formatter,
+                    "failed and is restarted in {}: {message}",
+                    saoms_api::format_duration(*pause)
+                )
+            }
+            Occurrence::Restarted { number } => write!(formatter, "restarted ({number})"),
+            Occurrence::Slow { budget } => write!(
+                formatter,
+                "an execution takes longer than {}: it runs on a thread of its own from now on, less punctually",
+                saoms_api::format_duration(*budget)
+            ),
+            Occurrence::Dropped { topic, count } => {
+                write!(formatter, "lost {count} messages of topic `{topic}`, whose queue was full")
+            }
+            Occurrence::Overrun { missed } => {
+                write!(formatter, "stopped, because {missed} executions could not start in time")
+            }
+            Occurrence::Abandoned => formatter.write_str("did not end in time and is left behind"),
+        }
+    }
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.component {
+            Some(component) => write!(formatter, "[{}] {component}: {}", self.time, self.what),
+            None => write!(formatter, "[{}] {}", self.time, self.what),
+        }
+    }
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// The time of the run.
+    pub time: Time,
+    /// Executions of all components so far.
+    pub periods: u64,
+    /// `luggage.requested` of the report so far.
+    pub requested: i64,
+    /// `luggage.delivered` of the report so far.
+    pub delivered: i64,
+}
+
+/// Who is told what happens. The calls come from one thread that does nothing else, in the order of events, so that they may take their
+/// time: in real time, events that pile up beyond a bound are counted and lost, in virtual time the run waits.
+pub trait Events: Send + Sync + 'static {
+    /// Something happened.
+    fn event(&self, event: &Event);
+
+    /// Up to which level log lines are wanted; those beyond are not even formatted. Asked once, at the start.
+    fn log_level(&self) -> Option<Level> {
+        Some(Level::Info)
+    }
+
+    /// Whether the lines of the original's console are wanted. Asked once, at the start.
+    fn wants_console(&self) -> bool {
+        false
+    }
+
+    /// How often to call [`progress`](Events::progress); `None` is never. Asked once, at the start.
+    fn progress_every(&self) -> Option<Duration> {
+        None
+    }
+
+    /// How far the run is.
+    fn progress(&self, progress: &Progress) {
+        let _ = progress;
+    }
+}
+
+/// Nobody is told anything.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Quiet;
+
+impl Events for Quiet {
+    fn event(&self, _: &Event) {}
+
+    fn log_level(&self) -> Option<Level> {
+        None
+    }
+}

@@ -1,0 +1,7 @@
+//! What a run tells the program while it happens.
+
+mod event;
+mod line;
+
+pub use event::{Event, Events, Occurrence, Progress, Quiet};
+pub(super) use line::Line;

@@ -1,0 +1,71 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What the thread with the timer's work does at present, written without locks and system calls for those who watch it.
+#[derive(Debug)]
+pub(super) struct Pulse {
+    /// Counts the pieces of component code begun; a watcher that sees the same number twice sees the same piece.
+    begun: AtomicU64,
+    /// When the present piece began, on the machine's clock; 0 is none.
+    since: AtomicU64,
+    /// When the timer wants to be awake again, on the machine's clock.
+    next: AtomicU64,
+    /// Until when the watcher sleeps, on the machine's clock.
+    watch: AtomicU64,
+}
+
+impl Default for Pulse {
+    fn default() -> Pulse {
+        Pulse {
+            begun: AtomicU64::new(0),
+            since: AtomicU64::new(0),
+            next: AtomicU64::new(u64::MAX),
+            watch: AtomicU64::new(u64::MAX),
+        }
+    }
+}
+
+impl Pulse {
+    /// Component code begins.
+    #[inline]
+    pub(super) fn begin(&self, now: u64) {
+        // Only the thread with the timer's work writes, so that no read-modify-write is needed.
+        self.begun.store(self.begun.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+        self.since.store(now.max(1), Ordering::Release);
+    }
+
+    /// Component code has ended.
+    #[inline]
+    pub(super) fn end(&self) {
+        self.since.store(0, Ordering::Release);
+    }
+
+    /// The timer is about to sleep.
+    pub(super) fn sleep(&self, until: u64) {
+        self.next.store(until, Ordering::Release);
+    }
+
+    /// The number of the present piece, and since when it runs.
+    pub(super) fn present(&self) -> (u64, Option<u64>) {
+        let since = self.since.load(Ordering::Acquire);
+        (self.begun.load(Ordering::Acquire), (since != 0).then_some(since))
+    }
+
+    pub(super) fn begun(&self) -> u64 {
+        self.begun.load(Ordering::Acquire)
+    }
+
+    pub(super) fn next(&self) -> u64 {
+        self.next.load(Ordering::Acquire)
+    }
+
+    /// The watcher is about to sleep.
+    pub(super) fn watch_from(&self, until: u64) {
+        self.watch.store(until, Ordering::SeqCst);
+    }
+
+    /// Whether the watcher would wake too late for a piece that begins now: then it has to be woken.
+    #[inline]
+    pub(super) fn unwatched(&self, now: u64, budget: u64) -> bool {
+        now.saturating_add(budget) < self.watch.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,41 @@
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// What is due when: a heap of absolute times. At one instant the order is that of the document.
+#[derive(Debug, Default)]
+pub(super) struct Queue {
+    heap: BinaryHeap<Reverse<(u64, u32)>>,
+}
+
+impl Queue {
+    pub(super) fn push(&mut self, when: u64, component: u32) {
+        self.heap.push(Reverse((when, component)));
+    }
+
+    /// The earliest time in the queue.
+    pub(super) fn earliest(&self) -> Option<u64> {
+        self.heap.peek().map(|Reverse((when, _))| *when)
+    }
+
+    /// Takes the first entry, if it is due.
+    pub(super) fn pop_due(&mut self, now: u64) -> Option<(u64, u32)> {
+        let Reverse((when, _)) = *self.heap.peek()?;
+        if when > now {
+            return None;
+        }
+        self.heap.pop().map(|Reverse(entry)| entry)
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.heap.len()
+    }
+
+    /// Forgets the entries that do not hold any more.
+    pub(super) fn retain(&mut self, mut holds: impl FnMut(u64, u32) -> bool) {
+        self.heap.retain(|Reverse((when, component))| holds(*when, *component));
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.heap.clear();
+    }
+}

@@ -1,0 +1,75 @@
+use std::fmt;
+use std::fs;
+use std::io;
+
+use super::sys;
+
+/// The priority of the timer among real-time threads: in the middle, below what Linux uses for its own interrupt threads.
+pub(super) const TIMER_PRIORITY: i32 = 49;
+/// That of the spare thread, which has to come through when the timer's thread spins.
+pub(super) const SPARE_PRIORITY: i32 = 50;
+
+/// Why real-time scheduling is not possible, and what to grant.
+#[derive(Debug)]
+pub struct RealtimeError {
+    what: What,
+    source: io::Error,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum What {
+    Scheduling,
+    Memory,
+}
+
+impl fmt::Display for RealtimeError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.what {
+            What::Scheduling => write!(
+                formatter,
+                "real-time scheduling (SCHED_FIFO) is not permitted: {}. Grant the capability CAP_SYS_NICE \
+                 (`sudo setcap cap_sys_nice,cap_ipc_lock+ep PROGRAM`), or allow the priority {SPARE_PRIORITY} (`ulimit -r {SPARE_PRIORITY}`, \
+                 `rtprio` in /etc/security/limits.conf), or run without `--realtime`",
+                self.source
+            ),
+            What::Memory => write!(
+                formatter,
+                "locking memory is not permitted: {}. Grant the capability CAP_IPC_LOCK \
+                 (`sudo setcap cap_sys_nice,cap_ipc_lock+ep PROGRAM`), or allow any amount (`ulimit -l unlimited`, `memlock` in \
+                 /etc/security/limits.conf), or run without `--realtime`",
+                self.source
+            ),
+        }
+    }
+}
+
+impl std::error::Error for RealtimeError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.source)
+    }
+}
+
+/// Locks the memory of the process, and makes sure that its threads may become real-time threads.
+pub(super) fn enter() -> Result<(), RealtimeError> {
+    let scheduling = |source| RealtimeError { what: What::Scheduling, source };
+    let memory = |source| RealtimeError { what: What::Memory, source };
+    let thread = sys::thread_id();
+    sys::set_fifo(thread, SPARE_PRIORITY).map_err(scheduling)?;
+    sys::set_normal(thread).map_err(scheduling)?;
+    // With a limit, the process would run into it later and die of it.
+    if let Some(limit) = sys::lockable_memory()
+        && !may_lock_any_memory()
+    {
+        return Err(memory(io::Error::other(format!("at most {} kB may be locked", limit / 1024))));
+    }
+    sys::lock_memory().map_err(memory)
+}
+
+/// Whether the process has the capability CAP_IPC_LOCK, which is number 14.
+fn may_lock_any_memory() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let effective = status.lines().find_map(|line| line.strip_prefix("CapEff:"));
+    effective
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_some_and(|mask| mask & (1 << 14) != 0)
+}

@@ -1,0 +1,60 @@
+use std::time::Duration;
+
+/// How a fleet runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Which time the components see.
+    pub clock: ClockKind,
+    /// The seed of all chance.
+    pub seed: u64,
+    /// When the run ends at the latest, in its own time. Executions due at that very instant are not run any more.
+    pub limit: Option<Duration>,
+    /// How long an execution may hold up the others: after that another thread goes on with them. Real time only.
+    pub budget: Duration,
+    /// How much later than asked the kernel may end the timer's sleeps to save energy. At most the shortest period should bear it; 1 ns is
+    /// the least. Real time only, and without effect under `realtime`.
+    pub timer_slack: Duration,
+    /// Whether the timer runs under `SCHED_FIFO` with all memory locked. Real time only.
+    pub realtime: bool,
+    /// How long components may take to end; who takes longer is abandoned.
+    pub grace: Duration,
+    /// How long, on the machine's clock, an execution in virtual time may take before the run ends as failed.
+    pub virtual_watchdog: Duration,
+}
+
+/// Which time a fleet runs in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ClockKind {
+    /// The time of the machine.
+    #[default]
+    Real,
+    /// A time that jumps from one due execution to the next: the same seed gives the same run, as fast as the machine goes.
+    Virtual,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            clock: ClockKind::Real,
+            seed: 0,
+            limit: None,
+            budget: Duration::from_millis(1),
+            timer_slack: Duration::from_micros(50),
+            realtime: false,
+            grace: Duration::from_secs(2),
+            virtual_watchdog: Duration::from_secs(10),
+        }
+    }
+}
+
+impl Settings {
+    /// The usual settings in virtual time with this seed.
+    pub fn simulated(seed: u64) -> Settings {
+        Settings { clock: ClockKind::Virtual, seed, ..Settings::default() }
+    }
+}
+
+/// Nanoseconds, as times are counted; longer than 584 years is for ever.
+pub(super) fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}

@@ -1,0 +1,111 @@
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+use saoms_api::Time;
+
+use super::clock::Clock;
+use super::engine::Engine;
+use super::observe::{Event, Line, Occurrence, Progress};
+use super::pulse::Pulse;
+use super::settings::Settings;
+use super::sys::Gate;
+use crate::assembly::{Assembly, ComponentSpec};
+use crate::report::Sections;
+
+/// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while component code runs or a
+/// thread sleeps.
+pub(super) struct Shared {
+    engine: Mutex<Engine>,
+    sections: Mutex<Sections>,
+    pub(super) assembly: Assembly,
+    pub(super) settings: Settings,
+    pub(super) clock: Clock,
+    pub(super) line: Line,
+    /// Where the thread with the timer's work sleeps.
+    pub(super) timer: Gate,
+    /// Where the spare thread that watches it sleeps.
+    pub(super) spare: Gate,
+    /// Where the thread that waits for the end sleeps.
+    pub(super) end: Gate,
+    pub(super) pulse: Pulse,
+    /// Work for the worker threads is there, or the end is.
+    pub(super) work: Condvar,
+    /// Somebody asked for the end.
+    pub(super) stop: AtomicBool,
+    /// The run has ended.
+    pub(super) ended: AtomicBool,
+    executions: Arc<AtomicU64>,
+}
+
+impl Shared {
+    pub(super) fn new(assembly: Assembly, settings: Settings, clock: Clock, line: Line) -> Shared {
+        let engine = Engine::new(&assembly, &settings);
+        Shared {
+            executions: Arc::clone(&engine.executions),
+            engine: Mutex::new(engine),
+            sections: Mutex::new(Sections::standard()),
+            assembly,
+            settings,
+            clock,
+            line,
+            timer: Gate::default(),
+            spare: Gate::default(),
+            end: Gate::default(),
+            pulse: Pulse::default(),
+            work: Condvar::new(),
+            stop: AtomicBool::new(false),
+            ended: AtomicBool::new(false),
+        }
+    }
+
+    #[inline]
+    pub(super) fn lock(&self) -> MutexGuard<'_, Engine> {
+        self.engine.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Frees the engine; then tells what is new, and wakes the timer if it has something new to do.
+    #[inline]
+    pub(super) fn release(&self, mut engine: MutexGuard<'_, Engine>) {
+        let wake = std::mem::take(&mut engine.wake);
+        let news = std::mem::take(&mut engine.news);
+        drop(engine);
+        for event in news {
+            self.line.put(event);
+        }
+        if wake {
+            self.timer.wake();
+        }
+    }
+
+    pub(super) fn sections(&self) -> MutexGuard<'_, Sections> {
+        self.sections.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn spec(&self, component: u32) -> &ComponentSpec {
+        &self.assembly.components[component as usize]
+    }
+
+    /// Something about the fleet as a whole.
+    pub(super) fn note(&self, level: saoms_api::Level, text: String) {
+        let time = Time::from_nanos(self.clock.now());
+        self.line.put(Event { time, component: None, what: Occurrence::Note { level, text } });
+    }
+
+    pub(super) fn progress(&self) -> Progress {
+        let time = Time::from_nanos(self.clock.now());
+        let periods = self.executions.load(Ordering::Relaxed);
+        let sections = self.sections();
+        let integer = |path| sections.integer(path).unwrap_or(0);
+        Progress {
+            time,
+            periods,
+            requested: integer("luggage.requested"),
+            delivered: integer("luggage.delivered"),
+        }
+    }
+}
+
+/// Locks the engine again after a wait.
+pub(super) fn relock<'a>(condition: &Condvar, engine: MutexGuard<'a, Engine>) -> MutexGuard<'a, Engine> {
+    condition.wait(engine).unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,50 @@
+use saoms_api::SharedMessage;
+
+use crate::bus::fold;
+
+/// The digest of everything that happens in a run: who did what when, in integers.
+///
+/// Each effect is folded in as its time, its component and what it is; a message as its topic's name and its bytes in CDR. Two runs with the
+/// same digest did the same, on whatever machines they ran.
+#[derive(Debug, Default)]
+pub(super) struct Trace {
+    hash: u64,
+    bytes: Vec<u8>,
+}
+
+/// Changes in the life of a component, as the trace counts them.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Step {
+    Started = 1,
+    Left = 2,
+    Failed = 3,
+    Voted = 4,
+}
+
+impl Trace {
+    pub(super) fn step(&mut self, time: u64, component: u32, step: Step) {
+        self.effect(time, component, step as u64);
+    }
+
+    pub(super) fn message(&mut self, time: u64, component: u32, topic: u64, message: &SharedMessage) {
+        self.effect(time, component, topic);
+        message.encode_into(&mut self.bytes);
+        let (words, rest) = self.bytes.as_chunks::<8>();
+        for word in words {
+            self.hash = fold(self.hash, u64::from_le_bytes(*word));
+        }
+        let mut last = [0; 8];
+        last[..rest.len()].copy_from_slice(rest);
+        self.hash = fold(self.hash, u64::from_le_bytes(last));
+        self.hash = fold(self.hash, self.bytes.len() as u64);
+    }
+
+    fn effect(&mut self, time: u64, component: u32, what: u64) {
+        self.hash = fold(fold(fold(self.hash, time), u64::from(component)), what);
+    }
+
+    /// The digest so far, as 16 hexadecimal digits.
+    pub(super) fn digits(&self) -> String {
+        format!("{:016x}", self.hash)
+    }
+}

@@ -1,0 +1,9 @@
+//! Fleets of scripted components, as text in and text out: see [`fleet`] and [`actor`] for the two little languages.
+
+#![allow(clippy::unwrap_used, clippy::panic, dead_code, reason = "tests, and helpers of tests")]
+
+mod actor;
+mod bus;
+mod fleet;
+mod order;
+mod start;
