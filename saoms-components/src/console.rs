@@ -1,0 +1,93 @@
+//! What the lines of the original's console have in common.
+
+use std::fmt;
+
+use saoms_api::Time;
+
+/// A list as Java prints it: `[a, b]`.
+pub struct JavaList<I>(pub I);
+
+impl<I> fmt::Display for JavaList<I>
+where
+    I: Iterator + Clone,
+    I::Item: fmt::Display,
+{
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("[")?;
+        for (place, item) in self.0.clone().enumerate() {
+            let comma = if place > 0 { ", " } else { "" };
+            write!(formatter, "{comma}{item}")?;
+        }
+        formatter.write_str("]")
+    }
+}
+
+impl<I> fmt::Debug for JavaList<I> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("JavaList")
+    }
+}
+
+/// A time of the run as the manual's figures show it: a run starts in the second in which that of figure 8.1 did, and decimals end
+/// with their last digit that is not 0, at least one.
+#[derive(Clone, Copy, Debug)]
+pub struct Timestamp(pub Time);
+
+/// 2015-01-23 14:32:35 in seconds since 1970.
+const EPOCH: u64 = 1_422_023_555;
+
+impl fmt::Display for Timestamp {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let millis = self.0.as_nanos() / 1_000_000;
+        let seconds = EPOCH + millis / 1000;
+        let (year, month, day) = date(seconds / 86_400);
+        let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
+        write!(formatter, "{year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}.")?;
+        match millis % 1000 {
+            0 => formatter.write_str("0"),
+            tenths if tenths % 100 == 0 => write!(formatter, "{}", tenths / 100),
+            hundredths if hundredths % 10 == 0 => write!(formatter, "{:02}", hundredths / 10),
+            thousandths => write!(formatter, "{thousandths:03}"),
+        }
+    }
+}
+
+/// Year, month and day of a day counted from 1970-01-01, by the algorithm `civil_from_days` of Howard Hinnant ("chrono-Compatible
+/// Low-Level Date Algorithms", 2013), for days that are not negative.
+const fn date(days: u64) -> (u64, u64, u64) {
+    let day = days + 719_468;
+    let (era, day_of_era) = (day / 146_097, day % 146_097);
+    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let shifted_month = (5 * day_of_year + 2) / 153;
+    let day_of_month = day_of_year - (153 * shifted_month + 2) / 5 + 1;
+    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
+    let year = year_of_era + era * 400 + if month <= 2 { 1 } else { 0 };
+    (year, month, day_of_month)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(millis: u64) -> String {
+        Timestamp(Time::from_nanos(millis * 1_000_000)).to_string()
+    }
+
+    #[test]
+    fn a_timestamp_looks_like_those_of_the_figures() {
+        assert_eq!(shown(0), "2015-01-23 14:32:35.0");
+        assert_eq!(shown(274), "2015-01-23 14:32:35.274");
+        assert_eq!(shown(5_340), "2015-01-23 14:32:40.34");
+        assert_eq!(shown(5_300), "2015-01-23 14:32:40.3");
+        assert_eq!(shown(5_005), "2015-01-23 14:32:40.005");
+        assert_eq!(shown(86_400_000 * 37), "2015-03-01 14:32:35.0");
+        assert_eq!(shown(86_400_000 * (365 + 403)), "2017-03-01 14:32:35.0");
+    }
+
+    #[test]
+    fn a_list_looks_like_javas() {
+        assert_eq!(JavaList([1, 2].iter()).to_string(), "[1, 2]");
+        assert_eq!(JavaList([0; 0].iter()).to_string(), "[]");
+    }
+}

@@ -1,0 +1,11 @@
+//! The area of a fleet: blocks on a grid, and the maps made of them.
+
+mod block;
+mod distances;
+mod map;
+mod read;
+
+pub use block::Block;
+pub use distances::{Distances, UNREACHABLE};
+pub use map::Map;
+pub use read::MapError;

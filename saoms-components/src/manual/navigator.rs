@@ -1,0 +1,82 @@
+use saoms_api::{CallError, Class, Component, Context, Failure, Properties, Work};
+
+use super::{Point, RobotInterface, RobotInterfaceReference};
+
+/// What a composite says about the navigator.
+#[derive(Clone, Debug, Properties)]
+pub struct NavigatorProperties {
+    /// The corners of the path in metres, such as `3 0`; by default a square of 2 metres. The path ends at the last corner.
+    path: Vec<String>,
+    /// How far the robot moves in a period.
+    #[property(default = 1.0, range = 0.001.., unit = "m")]
+    step: f64,
+}
+
+/// Leads a robot along a path, one step in each period.
+#[derive(Debug, Class)]
+#[class(
+    name = "resources.robotEnvironment.Navigator",
+    periodic,
+    reference("move": RobotInterface)
+)]
+pub struct Navigator {
+    path: Vec<Point>,
+    step: f64,
+    next: usize,
+    /// Where the robot is, as it said last.
+    place: Point,
+    robot: RobotInterfaceReference,
+}
+
+impl Component for Navigator {
+    type Properties = NavigatorProperties;
+
+    fn new(properties: NavigatorProperties) -> Result<Self, Failure> {
+        let path: Vec<Point> = properties.path.iter().map(|text| corner(text)).collect::<Result<_, _>>()?;
+        let square = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)].map(|(x, y)| Point { x, y });
+        Ok(Navigator {
+            path: if path.is_empty() { square.to_vec() } else { path },
+            step: properties.step,
+            next: 0,
+            place: Point::default(),
+            robot: RobotInterfaceReference::default(),
+        })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.robot = context.reference("move")?;
+        context.vote(Work::Open);
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let Some(corner) = self.path.get(self.next) else { return Ok(()) };
+        let (x, y) = (corner.x - self.place.x, corner.y - self.place.y);
+        let (distance, step) = (x.hypot(y), self.step);
+        let share = if distance > step { step / distance } else { 1.0 };
+        match self.robot.move_by(context, Point { x: x * share, y: y * share }) {
+            Ok(place) => self.place = place,
+            // The robot is asked again in the next period.
+            Err(CallError::Busy { .. } | CallError::NotRunning { .. }) => return Ok(()),
+            Err(error) => return Err(error.into()),
+        }
+        if distance <= step {
+            context.info(format_args!("reached corner {} of {} at {corner}", self.next + 1, self.path.len()));
+            self.next += 1;
+            if self.next == self.path.len() {
+                context.vote(Work::Done);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn corner(text: &str) -> Result<Point, Failure> {
+    let mut numbers = text.split([' ', ',']).filter(|word| !word.is_empty()).map(str::parse::<f64>);
+    match (numbers.next(), numbers.next(), numbers.next()) {
+        (Some(Ok(x)), Some(Ok(y)), None) if x.is_finite() && y.is_finite() => Ok(Point { x, y }),
+        _ => {
+            Err(Failure::new(format!("property `path`: found `{text}`, expected two numbers such as `3 0`")))
+        }
+    }
+}

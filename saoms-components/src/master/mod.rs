@@ -1,0 +1,7 @@
+//! The masters: one sorts what the environment says, one keeps an eye on the robots.
+
+mod environment;
+mod robot;
+
+pub use environment::MasterEnvironment;
+pub use robot::MasterRobot;

@@ -1,0 +1,33 @@
+use std::fmt;
+
+use saoms_api::{Field, Message};
+
+/// What happened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+pub enum ExceptionalKind {
+    /// An airplane landed.
+    #[default]
+    Landing,
+    /// An airplane is about to take off.
+    Takeoff,
+}
+
+/// An event that brings more luggage than usual.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+pub struct ExceptionalEvent {
+    /// Landing or take-off.
+    pub kind: ExceptionalKind,
+    /// How many pieces of luggage are expected.
+    pub pieces: u32,
+}
+
+impl fmt::Display for ExceptionalEvent {
+    /// As the console of the manual's figures shows it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = match self.kind {
+            ExceptionalKind::Landing => "LANDING",
+            ExceptionalKind::Takeoff => "TAKEOFF",
+        };
+        write!(formatter, "{kind} with {} expected pieces of luggage", self.pieces)
+    }
+}

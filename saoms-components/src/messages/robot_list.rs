@@ -1,0 +1,24 @@
+use std::fmt;
+
+use saoms_api::Message;
+
+/// That a robot is there, or no longer is.
+#[derive(Clone, Debug, Default, PartialEq, Message)]
+#[message(key = "robot")]
+pub struct RobotList {
+    /// The robot's number.
+    pub robot: u32,
+    /// Whether it works; `false` when it ends.
+    pub active: bool,
+    /// Its battery in percent.
+    pub battery: f64,
+    /// Whether it is at its charger and in charge.
+    pub in_charge: bool,
+}
+
+impl fmt::Display for RobotList {
+    /// As the console of the manual's figures shows it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Robot{} is active", self.robot)
+    }
+}

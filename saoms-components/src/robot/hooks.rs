@@ -1,0 +1,116 @@
+use saoms_api::{CallError, Context, Failure};
+
+use crate::grid::{Block, Map};
+use crate::hardware::{Action, HardwareReference, Progress};
+
+/// A robot's way to its hardware: what its reference `world` leads to. Where it leads nowhere, every action succeeds at once.
+#[derive(Debug, Default)]
+pub(crate) struct Hooks {
+    hardware: HardwareReference,
+    wired: bool,
+    entered: bool,
+    running: Option<Action>,
+}
+
+/// What became of a call to the hardware.
+pub(crate) enum Reply<T> {
+    /// It answered.
+    Answer(T),
+    /// It could not be reached now; a later call may.
+    Later,
+}
+
+impl Hooks {
+    pub(crate) fn new(context: &mut Context<'_>) -> Result<Hooks, Failure> {
+        let hardware: HardwareReference = context.reference("world")?;
+        let wired = context.is_wired(&hardware);
+        Ok(Hooks { hardware, wired, entered: !wired, running: None })
+    }
+
+    /// Whether there is hardware.
+    pub(crate) fn is_wired(&self) -> bool {
+        self.wired
+    }
+
+    /// Whether the hardware knows that the robot is there.
+    pub(crate) fn has_entered(&self) -> bool {
+        self.entered
+    }
+
+    /// Says that the robot is there; the answer is where it really is, and the area.
+    pub(crate) fn enter(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+        block: Block,
+    ) -> Result<Reply<(Block, Option<Map>)>, Failure> {
+        if self.entered {
+            return Ok(Reply::Answer((block, None)));
+        }
+        let block = match reply(self.hardware.enter(context, robot, block))? {
+            Reply::Answer(block) => block,
+            Reply::Later => return Ok(Reply::Later),
+        };
+        let area = match reply(self.hardware.area(context))? {
+            Reply::Answer(area) => area,
+            Reply::Later => return Ok(Reply::Later),
+        };
+        self.entered = true;
+        let map: Option<Map> = area.into();
+        if map.is_none() {
+            return Err(Failure::new("the world's map does not fit its own width and height"));
+        }
+        Ok(Reply::Answer((block, map)))
+    }
+
+    /// The action that takes its time.
+    pub(crate) fn running(&self) -> Option<Action> {
+        self.running
+    }
+
+    /// Starts an action.
+    pub(crate) fn begin(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+        action: Action,
+    ) -> Result<Reply<Progress>, Failure> {
+        if !self.wired {
+            return Ok(Reply::Answer(Progress::Done));
+        }
+        let progress = reply(self.hardware.begin(context, robot, action))?;
+        if matches!(progress, Reply::Answer(Progress::Running)) {
+            self.running = Some(action);
+        }
+        Ok(progress)
+    }
+
+    /// How the running action goes; done when none is running.
+    pub(crate) fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Reply<Progress>, Failure> {
+        if self.running.is_none() {
+            return Ok(Reply::Answer(Progress::Done));
+        }
+        let progress = reply(self.hardware.poll(context, robot))?;
+        if matches!(progress, Reply::Answer(Progress::Done | Progress::Failed)) {
+            self.running = None;
+        }
+        Ok(progress)
+    }
+
+    /// Stops the running action. Hardware that cannot be reached any more has stopped by itself.
+    pub(crate) fn stop(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+        if self.running.take().is_some() {
+            reply(self.hardware.cancel(context, robot))?;
+        }
+        Ok(())
+    }
+}
+
+/// Hardware that is busy, or not started yet, is asked again in the next period.
+fn reply<T>(answer: Result<T, CallError>) -> Result<Reply<T>, Failure> {
+    match answer {
+        Ok(value) => Ok(Reply::Answer(value)),
+        Err(CallError::Busy { .. } | CallError::NotRunning { .. }) => Ok(Reply::Later),
+        Err(error) => Err(error.into()),
+    }
+}

@@ -1,0 +1,44 @@
+//! What a robot heard from others.
+
+mod peers;
+mod requests;
+
+use crate::messages::RobotList;
+
+pub use peers::Peers;
+pub use requests::{Request, Requests, Rival};
+
+/// The lists of a robot.
+#[derive(Debug)]
+pub struct Lists {
+    number: u32,
+    /// The other robots that are active, by number.
+    pub active: Vec<RobotList>,
+    /// The luggage that waits, oldest first.
+    pub requests: Requests,
+    /// Where the other robots are and go.
+    pub peers: Peers,
+}
+
+impl Lists {
+    /// The empty lists of the robot with this number.
+    pub fn new(number: u32) -> Lists {
+        Lists { number, active: Vec::new(), requests: Requests::new(number), peers: Peers::new(number) }
+    }
+
+    /// Takes in that a robot is active, or no longer is.
+    pub fn hear_robot(&mut self, robot: &RobotList) {
+        if robot.robot == self.number {
+            return;
+        }
+        match (self.active.binary_search_by_key(&robot.robot, |known| known.robot), robot.active) {
+            (Ok(place), true) => self.active[place].clone_from(robot),
+            (Err(place), true) => self.active.insert(place, robot.clone()),
+            (Ok(place), false) => {
+                self.active.remove(place);
+                self.requests.forget(robot.robot);
+            }
+            (Err(_), false) => {}
+        }
+    }
+}

@@ -1,0 +1,150 @@
+use std::fmt;
+
+use saoms_api::Time;
+
+use crate::grid::Block;
+use crate::messages::{EventLuggage, LuggageStage};
+use crate::robot::Job;
+
+/// Another robot that took an interest in the same luggage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rival {
+    /// Its number.
+    pub robot: u32,
+    /// Where it was then.
+    pub block: Block,
+}
+
+/// Luggage that waits for a robot.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// What there is to bring.
+    pub job: Job,
+    /// When it was asked for.
+    pub since: Time,
+    /// The other robots that took an interest and did not take it back.
+    pub rivals: Vec<Rival>,
+    /// How many executions the battery has to last before this robot thinks about it again; 0 while it did not.
+    pub needs: u32,
+}
+
+impl fmt::Display for Request {
+    /// As the console of the manual's figures shows it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Luggage to bring from {} to {}", self.job.from, self.job.to)
+    }
+}
+
+impl Request {
+    fn hear(&mut self, event: &EventLuggage) {
+        match event.stage {
+            LuggageStage::Interest => {
+                self.rivals.retain(|rival| rival.robot != event.robot);
+                self.rivals.push(Rival { robot: event.robot, block: event.block });
+            }
+            LuggageStage::Release => self.rivals.retain(|rival| rival.robot != event.robot),
+            LuggageStage::Request | LuggageStage::Taken | LuggageStage::Delivered => {}
+        }
+    }
+}
+
+/// The luggage that waits, oldest first.
+#[derive(Debug)]
+pub struct Requests {
+    number: u32,
+    open: Vec<Request>,
+    /// The one that this robot took an interest in: no longer on the list.
+    claimed: Option<Request>,
+}
+
+impl Requests {
+    /// None, for the robot of this number.
+    pub fn new(number: u32) -> Requests {
+        Requests { number, open: Vec::new(), claimed: None }
+    }
+
+    /// Takes in a request or a response that was sent at this time; the own responses do not count.
+    pub fn hear(&mut self, event: &EventLuggage, sent: Time) {
+        if event.stage == LuggageStage::Request {
+            return self.hear_request(event, sent);
+        }
+        if event.robot == self.number {
+            return;
+        }
+        let gone = matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered);
+        if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.job.luggage == event.luggage) {
+            claimed.hear(event);
+            if gone {
+                self.claimed = None;
+            }
+        } else if let Some(place) = self.open.iter().position(|open| open.job.luggage == event.luggage) {
+            self.open[place].hear(event);
+            if gone {
+                self.open.remove(place);
+            }
+        }
+    }
+
+    fn hear_request(&mut self, event: &EventLuggage, since: Time) {
+        let mut known = self.open.iter().chain(&self.claimed);
+        if !known.any(|request| request.job.luggage == event.luggage) {
+            let job = Job { luggage: event.luggage, from: event.from, to: event.to };
+            self.open.push(Request { job, since, rivals: Vec::new(), needs: 0 });
+        }
+    }
+
+    /// Drops the interest of a robot that is not active any more.
+    pub fn forget(&mut self, robot: u32) {
+        for request in self.open.iter_mut().chain(&mut self.claimed) {
+            request.rivals.retain(|rival| rival.robot != robot);
+        }
+    }
+
+    /// Takes what others took an interest in off the list.
+    pub fn drop_contested(&mut self) {
+        self.open.retain(|request| request.rivals.is_empty());
+    }
+
+    /// Those on the list, oldest first.
+    pub fn open(&self) -> &[Request] {
+        &self.open
+    }
+
+    /// Those on the list, to note something about them.
+    pub fn open_mut(&mut self) -> &mut [Request] {
+        &mut self.open
+    }
+
+    /// The one that this robot took an interest in, unless another robot took it.
+    pub fn claimed(&self) -> Option<&Request> {
+        self.claimed.as_ref()
+    }
+
+    /// Takes an interest in the one at this place of the list.
+    pub fn claim(&mut self, place: usize) -> Option<&Request> {
+        if place < self.open.len() && self.claimed.is_none() {
+            self.claimed = Some(self.open.remove(place));
+        }
+        self.claimed.as_ref()
+    }
+
+    /// Ends the interest: the robot brings it, or another one does.
+    pub fn settle(&mut self) -> Option<Request> {
+        self.claimed.take()
+    }
+
+    /// Ends the interest and puts the request back where it was on the list.
+    pub fn put_back(&mut self) {
+        if let Some(request) = self.claimed.take() {
+            let place = self.open.partition_point(|open| open.since <= request.since);
+            self.open.insert(place, request);
+        }
+    }
+
+    /// Takes the one at this place off the list for good.
+    pub fn remove(&mut self, place: usize) {
+        if place < self.open.len() {
+            self.open.remove(place);
+        }
+    }
+}

@@ -1,0 +1,62 @@
+use saoms_api::{Failure, Properties, PropertyField};
+
+use crate::grid::Block;
+
+/// By which rules a robot acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
+pub enum Policy {
+    /// Never enters a block that another robot holds, and never takes a job for which the battery does not last.
+    Safe,
+    /// The rules of the manual, for its transcripts: robots can collide and run out of battery.
+    Classic,
+}
+
+/// What a composite says about a robot.
+#[derive(Clone, Debug, Properties)]
+pub struct RobotProperties {
+    /// The robot's name.
+    #[property(name = "ID", required_text, unique = "robot")]
+    pub(crate) id: String,
+    /// The robot's number; by default the digits at the end of its ID. Where robots are equal, the lower number goes first.
+    #[property(range = 1.., unique = "robot number")]
+    pub(crate) number: Option<u32>,
+    /// The column of the block with its charger, where it starts.
+    #[property(default = 0, range = 0..)]
+    pub(crate) charge_x: i32,
+    /// The row of that block; by default the robot's number.
+    #[property(range = 0..)]
+    pub(crate) charge_y: Option<i32>,
+    /// The charge of the battery at the start.
+    #[property(default = 100.0, range = 0.0..=100.0, unit = "%")]
+    pub(crate) battery: f64,
+    /// What an execution takes from the battery; in charge it gains five times as much.
+    #[property(default = 2.0, range = 0.0..=100.0, unit = "% per execution")]
+    pub(crate) discharge: f64,
+    /// By which rules the robot acts: `safe`, which neither collides nor runs out of battery, or `classic`, the manual's.
+    #[property(default = "safe")]
+    pub(crate) policy: Policy,
+}
+
+impl RobotProperties {
+    pub(crate) fn number(&self) -> Result<u32, Failure> {
+        if let Some(number) = self.number {
+            return Ok(number);
+        }
+        let id = self.id.trim();
+        let digits = &id[id.trim_end_matches(|sign: char| sign.is_ascii_digit()).len()..];
+        match digits.parse() {
+            Ok(number @ 1..) => Ok(number),
+            _ => Err(Failure::new(format!(
+                "found the ID `{id}` without a number from 1 to {} at its end, and no property `number`: expected one of them",
+                u32::MAX
+            ))),
+        }
+    }
+
+    pub(crate) fn charge_block(&self, number: u32) -> Result<Block, Failure> {
+        let row = self.charge_y.map_or_else(|| i32::try_from(number), Ok);
+        row.map(|y| Block::new(self.charge_x, y)).map_err(|_| {
+            Failure::new(format!("robot {number} has no row of this number: give the property `chargeY`"))
+        })
+    }
+}

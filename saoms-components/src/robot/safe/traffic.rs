@@ -1,0 +1,178 @@
+//! Who goes where next.
+//!
+//! A robot says which block beside its own it wants. It enters in an execution in which nobody else holds that block or wants it, as far as
+//! was heard since it said so. Of two robots that want one block at least one hears of the other before it enters, so they never both do,
+//! however late messages are; the one with the lower priority then wants something else.
+//!
+//! Wanting a block that is held asks its holder to make way. The holder of lower priority does, with the priority of the asking robot, and so
+//! on along a line of robots: the priority inheritance of PIBT (Okumura, Machida, Défago, Tamura, "Priority Inheritance with
+//! Backtracking for Iterative Multi-agent Path Finding", 2019), here without common steps. A robot that gets nowhere tries another way.
+
+use std::cmp::Reverse;
+
+use saoms_api::Chance;
+
+use crate::grid::{Block, UNREACHABLE};
+use crate::messages::{IMMOVABLE, Position, Priority};
+use crate::robot::{Peers, Routes};
+
+/// A robot that waited for so many executions tries another way.
+const PATIENCE: u32 = 4;
+
+/// For so many executions it does not want the block again that it waited for.
+const DETOUR: u32 = 12;
+
+/// A robot's view of the robots around it, and what it wants.
+#[derive(Debug, Default)]
+pub(super) struct Traffic {
+    near: Vec<Position>,
+    wanted: Option<Block>,
+    /// The block that it left last: not the first choice when another one is as good.
+    previous: Option<Block>,
+    waited: u32,
+    detour: Option<(Block, u32)>,
+}
+
+/// What a robot brings to the choice of its next block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Claim {
+    pub(super) robot: u32,
+    /// The block from which it goes on.
+    pub(super) at: Block,
+    pub(super) goal: Option<Block>,
+    pub(super) priority: Priority,
+}
+
+/// How a block stands, the best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Standing {
+    /// Nobody holds it.
+    Free,
+    /// Its holder goes on.
+    Leaving,
+    /// Its holder has to make way.
+    Yielding,
+}
+
+impl Traffic {
+    /// Looks around: only robots close to this block matter.
+    pub(super) fn look(&mut self, peers: &Peers, at: Block) {
+        self.near.clear();
+        self.near.extend(peers.all().filter(|peer| peer.block.distance(at) <= 3).cloned());
+    }
+
+    /// What the robot said that it wants, if that is not to stay.
+    pub(super) fn wanted(&self, at: Block) -> Option<Block> {
+        self.wanted.filter(|wanted| *wanted != at)
+    }
+
+    /// Wants nothing but the block that it holds.
+    pub(super) fn stay(&mut self, at: Block) {
+        self.wanted = Some(at);
+        self.waited = 0;
+    }
+
+    /// Whether nobody else holds or wants the block.
+    pub(super) fn is_clear(&self, block: Block) -> bool {
+        !self.near.iter().any(|peer| peer.holds(block) || peer.wanted == block)
+    }
+
+    /// Takes in that the robot goes to what it wanted.
+    pub(super) fn went(&mut self, from: Block) {
+        self.previous = Some(from);
+        self.waited = 0;
+    }
+
+    /// The robot's own priority, or that of the robot for which it has to make way.
+    pub(super) fn inherited(&self, own: Priority, at: Block) -> Priority {
+        let asking = self.near.iter().filter(|peer| peer.wanted == at && !peer.holds(at));
+        asking.map(|peer| peer.priority).max().map_or(own, |asked| asked.max(own))
+    }
+
+    /// Decides which block to want from now on.
+    pub(super) fn choose(
+        &mut self,
+        claim: &Claim,
+        own: Priority,
+        routes: &Routes,
+        chance: &mut Chance,
+    ) -> Block {
+        let Claim { at, goal, .. } = *claim;
+        let makes_way = claim.priority > own;
+        let on_the_way = goal.is_some_and(|goal| goal != at);
+        if !makes_way && !on_the_way {
+            self.stay(at);
+            return at;
+        }
+        self.waited += 1;
+        self.detour = self.detour.and_then(|(block, left)| Some((block, left.checked_sub(1)?)));
+        let impatient = self.waited > PATIENCE;
+        if impatient {
+            self.give_up(claim, routes, chance);
+        }
+        let here = goal.map_or(0, |goal| routes.to_goal(at, goal));
+        let best = at
+            .neighbours()
+            .into_iter()
+            .filter(|block| {
+                routes.is_free(*block) && self.detour.is_none_or(|(avoided, _)| avoided != *block)
+            })
+            .filter_map(|block| {
+                let standing = self.standing(block, claim)?;
+                let moves = goal.map_or(0, |goal| routes.to_goal(block, goal));
+                let aside = impatient && standing == Standing::Free;
+                if !makes_way && (moves == UNREACHABLE || (moves >= here && !aside)) {
+                    return None;
+                }
+                let rank = if makes_way { (standing as u32, moves) } else { (moves, standing as u32) };
+                let settled = Some(block) != self.wanted;
+                Some(((rank, settled, Some(block) == self.previous), block))
+            })
+            .min_by_key(|(score, _)| *score);
+        let wanted = best.map_or(at, |(_, block)| block);
+        self.wanted = Some(wanted);
+        wanted
+    }
+
+    /// After waiting in vain: not the same block again for a while.
+    fn give_up(&mut self, claim: &Claim, routes: &Routes, chance: &mut Chance) {
+        let toward = |block: &Block| claim.goal.map_or(0, |goal| routes.to_goal(*block, goal));
+        let first =
+            || claim.at.neighbours().into_iter().filter(|block| routes.is_free(*block)).min_by_key(toward);
+        let blocked = self.wanted(claim.at).or_else(first);
+        self.detour = blocked.map(|block| (block, DETOUR));
+        self.wanted = None;
+        // Two robots in each other's way must not give up at the same time for ever.
+        self.waited = u32::try_from(chance.below(u64::from(PATIENCE))).unwrap_or(0);
+    }
+
+    /// How a block stands; `None` where the robot cannot have it.
+    fn standing(&self, block: Block, claim: &Claim) -> Option<Standing> {
+        let right = |priority: Priority, robot: u32| (priority, Reverse(robot));
+        let mine = right(claim.priority, claim.robot);
+        let mut standing = Standing::Free;
+        for peer in &self.near {
+            if peer.holds(block) {
+                let comes_here = peer.wanted == claim.at || peer.next == claim.at;
+                let leaves = peer.next != block || (peer.wanted != block && !comes_here);
+                standing = if leaves && peer.priority != IMMOVABLE {
+                    Standing::Leaving
+                } else if peer.priority < claim.priority {
+                    Standing::Yielding
+                } else {
+                    return None;
+                };
+            } else if peer.wanted == block && right(peer.priority, peer.robot) > mine {
+                return None;
+            }
+        }
+        Some(standing)
+    }
+}
+
+impl Position {
+    /// Whether the robot holds a block.
+    pub(super) fn holds(&self, block: Block) -> bool {
+        self.block == block || self.next == block
+    }
+}

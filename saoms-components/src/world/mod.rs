@@ -1,0 +1,186 @@
+//! What is physically true: the map, where robots and luggage really are, and the simulated hardware of the robots.
+
+mod luggage;
+mod properties;
+mod referee;
+
+use saoms_api::{Class, Component, Context, Failure, Level, Subscription, Work};
+
+use crate::grid::Block;
+use crate::hardware::{Action, ActionKind, Area, Hardware, Progress};
+use crate::messages::{ENVIRONMENT, EnvironmentEvent};
+
+pub use properties::WorldProperties;
+
+use luggage::{Luggage, Stock};
+use referee::{Collision, Referee};
+
+/// The physical world of a fleet.
+///
+/// Robots whose reference `world` leads here drive simulated hardware: what they do takes the time that the properties say, and happens
+/// only where it can. The world counts what is delivered and who collides; the run is done when all luggage is delivered.
+#[derive(Debug, Class)]
+#[class(
+    name = "saoms.World",
+    periodic,
+    subscribes(ENVIRONMENT),
+    service("hardware": Hardware)
+)]
+pub struct World {
+    properties: WorldProperties,
+    referee: Referee,
+    stock: Stock,
+    events: Subscription<EnvironmentEvent>,
+    vote: Option<Work>,
+}
+
+impl Component for World {
+    type Properties = WorldProperties;
+
+    fn new(properties: WorldProperties) -> Result<Self, Failure> {
+        let map = properties.map()?;
+        Ok(World {
+            properties,
+            referee: Referee::new(map),
+            stock: Stock::default(),
+            events: Subscription::default(),
+            vote: None,
+        })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.events = context.subscribe(&ENVIRONMENT)?;
+        for section in ["luggage.delivered", "collisions.vertex", "collisions.swap", "stranded"] {
+            context.count(section, 0);
+        }
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for event in context.receive(&self.events) {
+            for request in &event.luggage {
+                if let Some(block) =
+                    [request.from, request.to].into_iter().find(|block| !self.referee.map().is_free(*block))
+                {
+                    let luggage = request.luggage;
+                    context.log(
+                        Level::Error,
+                        format_args!("ignores luggage {luggage}: {block} is not a free block of the map"),
+                    );
+                } else {
+                    self.stock.add(request.luggage, request.from, request.to);
+                }
+            }
+        }
+        self.stock.settle();
+        self.referee.settle(context.now());
+        self.vote(context);
+        Ok(())
+    }
+}
+
+impl World {
+    /// Nothing is voted before there is luggage, so that a fleet without a scenario runs until it is stopped.
+    fn vote(&mut self, context: &mut Context<'_>) {
+        let vote = match self.stock.is_delivered() {
+            _ if self.stock.is_empty() => return,
+            true => Work::Done,
+            false => Work::Open,
+        };
+        if self.vote != Some(vote) {
+            self.vote = Some(vote);
+            context.vote(vote);
+        }
+    }
+
+    fn begin_move(&mut self, context: &mut Context<'_>, robot: u32, to: Block) -> Result<Progress, Failure> {
+        let until = context.now() + self.properties.move_time;
+        match self.referee.begin_move(robot, to, until)? {
+            Ok(collision) => {
+                if let Some(collision) = collision {
+                    report(context, collision);
+                }
+                Ok(self.referee.progress(robot, context.now()))
+            }
+            Err(reason) => {
+                context.warn(format_args!("robot {robot} cannot move: {reason}"));
+                Ok(Progress::Failed)
+            }
+        }
+    }
+
+    /// The end of collecting or depositing.
+    fn handle(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
+        let block = self.referee.block(robot)?;
+        let result = match action.kind {
+            ActionKind::Collect => self.stock.collect(action.luggage, robot, block),
+            _ => self.stock.deposit(action.luggage, robot, block),
+        };
+        match result {
+            Ok(Luggage::Unknown) => return Ok(Progress::Running),
+            Ok(Luggage::Delivered) => {
+                context.count("luggage.delivered", 1);
+                self.vote(context);
+            }
+            Ok(Luggage::Handled) => {}
+            Err(reason) => {
+                context.warn(format_args!("robot {robot} at {block}: {reason}"));
+                self.referee.end_handling(robot);
+                return Ok(Progress::Failed);
+            }
+        }
+        self.referee.end_handling(robot);
+        Ok(Progress::Done)
+    }
+}
+
+fn report(context: &mut Context<'_>, collision: Collision) {
+    let Collision { robots: (one, other), block, swap, seen } = collision;
+    if swap {
+        context.count("collisions.swap", 1);
+        if seen {
+            // It was counted as meeting in one block when the first of the two moved.
+            context.count("collisions.vertex", -1);
+        }
+        context.log(
+            Level::Error,
+            format_args!("robots {one} and {other} collide: they exchange blocks at {block}"),
+        );
+    } else {
+        context.count("collisions.vertex", 1);
+        context.log(Level::Error, format_args!("robots {one} and {other} collide at {block}"));
+    }
+}
+
+impl Hardware for World {
+    fn enter(&mut self, _context: &mut Context<'_>, robot: u32, block: Block) -> Result<Block, Failure> {
+        self.referee.enter(robot, block)
+    }
+
+    fn area(&mut self, _context: &mut Context<'_>) -> Result<Area, Failure> {
+        Ok(self.referee.map().into())
+    }
+
+    fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
+        if self.referee.is_running(robot)? {
+            return Err(Failure::new(format!("robot {robot} begins an action before its last one is over")));
+        }
+        if action.kind == ActionKind::Move {
+            return self.begin_move(context, robot, action.block);
+        }
+        self.referee.begin_handling(robot, action, context.now() + self.properties.handling_time)?;
+        self.poll(context, robot)
+    }
+
+    fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Progress, Failure> {
+        match self.referee.handling(robot)? {
+            None => Ok(self.referee.progress(robot, context.now())),
+            Some((_, until)) if context.now() < until => Ok(Progress::Running),
+            Some((action, _)) => self.handle(context, robot, action),
+        }
+    }
+
+    fn cancel(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+        self.referee.cancel(robot)
+    }
+}

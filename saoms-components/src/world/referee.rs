@@ -1,0 +1,224 @@
+use std::collections::BTreeMap;
+
+use saoms_api::{Failure, Time};
+
+use crate::grid::{Block, Map};
+use crate::hardware::{Action, Progress};
+
+/// Where the robots really are, and who collided.
+///
+/// A robot holds its block and, while it moves, the block where it moves to. Two robots that hold one block collide; two that exchange their
+/// blocks collide as well, and are counted as that alone.
+#[derive(Debug)]
+pub(super) struct Referee {
+    map: Map,
+    bodies: BTreeMap<u32, Body>,
+    /// How many robots hold each block of the map.
+    holders: Vec<u16>,
+    /// Robots that meet in a block at present.
+    meetings: Vec<Meeting>,
+    /// How many robots are moving.
+    moving: usize,
+}
+
+#[derive(Debug)]
+struct Body {
+    block: Block,
+    /// Where it moves, and when it will be there.
+    moving: Option<(Block, Time)>,
+    /// What it does with luggage, and when it will be done.
+    handling: Option<(Action, Time)>,
+}
+
+/// A robot entered a block where another one was.
+#[derive(Clone, Copy, Debug)]
+struct Meeting {
+    entered: u32,
+    from: Block,
+    other: u32,
+    block: Block,
+}
+
+/// Two robots were in each other's way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Collision {
+    pub(super) robots: (u32, u32),
+    pub(super) block: Block,
+    /// Whether they exchanged their blocks.
+    pub(super) swap: bool,
+    /// Whether an exchange was taken for a meeting before.
+    pub(super) seen: bool,
+}
+
+impl Referee {
+    pub(super) fn new(map: Map) -> Referee {
+        let holders = vec![0; map.size()];
+        Referee { map, bodies: BTreeMap::new(), holders, meetings: Vec::new(), moving: 0 }
+    }
+
+    pub(super) fn map(&self) -> &Map {
+        &self.map
+    }
+
+    /// Lets a robot start at a block. A robot that was there before, as before a restart, is where it was.
+    pub(super) fn enter(&mut self, robot: u32, block: Block) -> Result<Block, Failure> {
+        if self.bodies.contains_key(&robot) {
+            self.cancel(robot)?;
+            return self.block(robot);
+        }
+        let (x, y) = (self.map.width() - 1, self.map.height() - 1);
+        if !self.map.contains(block) {
+            return Err(Failure::new(format!(
+                "robot {robot} starts at {block}, outside the map from (0,0) to ({x},{y}): give it another charge block"
+            )));
+        }
+        if !self.map.is_free(block) {
+            return Err(Failure::new(format!(
+                "robot {robot} starts at {block}, which is blocked on the map: give it another charge block"
+            )));
+        }
+        if let Some(other) = self.holder(block, robot) {
+            return Err(Failure::new(format!(
+                "robot {robot} starts at {block}, where robot {other} is already: give it another charge block"
+            )));
+        }
+        self.hold(block);
+        self.bodies.insert(robot, Body { block, moving: None, handling: None });
+        Ok(block)
+    }
+
+    fn body(&self, robot: u32) -> Result<&Body, Failure> {
+        self.bodies.get(&robot).ok_or_else(|| unknown(robot))
+    }
+
+    pub(super) fn block(&self, robot: u32) -> Result<Block, Failure> {
+        self.body(robot).map(|body| body.block)
+    }
+
+    pub(super) fn is_running(&self, robot: u32) -> Result<bool, Failure> {
+        self.body(robot).map(|body| body.moving.is_some() || body.handling.is_some())
+    }
+
+    pub(super) fn handling(&self, robot: u32) -> Result<Option<(Action, Time)>, Failure> {
+        self.body(robot).map(|body| body.handling)
+    }
+
+    pub(super) fn begin_handling(&mut self, robot: u32, action: Action, until: Time) -> Result<(), Failure> {
+        let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
+        body.handling = Some((action, until));
+        Ok(())
+    }
+
+    pub(super) fn end_handling(&mut self, robot: u32) {
+        if let Some(body) = self.bodies.get_mut(&robot) {
+            body.handling = None;
+        }
+    }
+
+    /// Starts a move that lasts until then. The inner error says why there is no way.
+    pub(super) fn begin_move(
+        &mut self,
+        robot: u32,
+        to: Block,
+        until: Time,
+    ) -> Result<Result<Option<Collision>, String>, Failure> {
+        let from = self.block(robot)?;
+        if from.distance(to) != 1 {
+            return Ok(Err(format!("{to} is not beside {from}")));
+        }
+        if !self.map.is_free(to) {
+            return Ok(Err(format!("{to} is not a free block of the map")));
+        }
+        let collision = self.collide(robot, from, to);
+        self.hold(to);
+        if let Some(body) = self.bodies.get_mut(&robot) {
+            body.moving = Some((to, until));
+            self.moving += 1;
+        }
+        Ok(Ok(collision))
+    }
+
+    /// How the robot's move goes.
+    pub(super) fn progress(&mut self, robot: u32, now: Time) -> Progress {
+        let Some(body) = self.bodies.get_mut(&robot) else { return Progress::Failed };
+        match body.moving {
+            Some((_, until)) if now < until => Progress::Running,
+            Some((to, _)) => {
+                let from = std::mem::replace(&mut body.block, to);
+                body.moving = None;
+                self.moving -= 1;
+                self.leave(robot, from);
+                Progress::Done
+            }
+            None => Progress::Done,
+        }
+    }
+
+    /// Ends the moves that are over, also of robots that did not ask.
+    pub(super) fn settle(&mut self, now: Time) {
+        if self.moving == 0 {
+            return;
+        }
+        let over = |body: &Body| body.moving.is_some_and(|(_, until)| until <= now);
+        let done: Vec<u32> =
+            self.bodies.iter().filter(|(_, body)| over(body)).map(|(robot, _)| *robot).collect();
+        for robot in done {
+            self.progress(robot, now);
+        }
+    }
+
+    /// Stops a robot: a move that is not over leaves it where it was.
+    pub(super) fn cancel(&mut self, robot: u32) -> Result<(), Failure> {
+        let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
+        body.handling = None;
+        if let Some((to, _)) = body.moving.take() {
+            self.moving -= 1;
+            self.leave(robot, to);
+        }
+        Ok(())
+    }
+
+    fn collide(&mut self, robot: u32, from: Block, to: Block) -> Option<Collision> {
+        let exchanges =
+            |meeting: &Meeting| meeting.other == robot && meeting.block == from && meeting.from == to;
+        if let Some(place) = self.meetings.iter().position(exchanges) {
+            let meeting = self.meetings.remove(place);
+            return Some(Collision { robots: (meeting.entered, robot), block: from, swap: true, seen: true });
+        }
+        let other = self.holder(to, robot)?;
+        let meeting = Meeting { entered: robot, from, other, block: to };
+        self.meetings.push(meeting);
+        Some(Collision { robots: (robot, other), block: to, swap: false, seen: false })
+    }
+
+    fn hold(&mut self, block: Block) {
+        if let Some(place) = self.map.place(block) {
+            self.holders[place] = self.holders[place].saturating_add(1);
+        }
+    }
+
+    fn leave(&mut self, robot: u32, block: Block) {
+        if let Some(place) = self.map.place(block) {
+            self.holders[place] = self.holders[place].saturating_sub(1);
+        }
+        if !self.meetings.is_empty() {
+            self.meetings.retain(|meeting| {
+                meeting.block != block || (meeting.entered != robot && meeting.other != robot)
+            });
+        }
+    }
+
+    /// Another robot that holds the block.
+    fn holder(&self, block: Block, robot: u32) -> Option<u32> {
+        let place = self.map.place(block)?;
+        if self.holders[place] == 0 {
+            return None;
+        }
+        let holds = |body: &Body| body.block == block || body.moving.is_some_and(|(to, _)| to == block);
+        self.bodies.iter().find(|(other, body)| **other != robot && holds(body)).map(|(other, _)| *other)
+    }
+}
+
+fn unknown(robot: u32) -> Failure {
+    Failure::new(format!("robot {robot} is not in this world"))
+}

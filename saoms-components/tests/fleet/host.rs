@@ -1,0 +1,345 @@
+//! A host that runs components in virtual time, and can keep what they send from the others for a while.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+use std::fmt;
+use std::time::Duration;
+
+use saoms_api::{
+    CallError, Chance, Class, Context, DynComponent, Failure, Host, Invocation, Level, PropertyValue,
+    Registration, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, TopicKind, Work,
+};
+
+/// A fleet in virtual time.
+pub(crate) struct Fleet {
+    components: Vec<Option<Box<dyn DynComponent>>>,
+    seats: Vec<Seat>,
+    topics: Vec<Topic>,
+    queue: BinaryHeap<Reverse<(Time, u64, Due)>>,
+    order: u64,
+    now: Time,
+    seed: u64,
+    /// Up to which share of its period a component's messages are late.
+    lateness: f64,
+    chance: Chance,
+    pub(crate) counts: BTreeMap<String, i64>,
+    pub(crate) log: Vec<String>,
+    pub(crate) console: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Due {
+    /// The messages of a component leave.
+    Delivery(usize),
+    Execution(usize),
+}
+
+struct Topic {
+    name: String,
+    kind: TopicKind,
+    newest: BTreeMap<u64, SharedMessage>,
+    readers: Vec<(usize, usize)>,
+}
+
+/// What the host knows about a component.
+struct Seat {
+    name: String,
+    period: Duration,
+    execution: u64,
+    chance: Chance,
+    references: Vec<(String, Option<(usize, String)>)>,
+    publishes: Vec<usize>,
+    inboxes: Vec<Vec<SharedMessage>>,
+    outbox: Vec<(u32, SharedMessage)>,
+    /// What left the component but did not reach the others yet, in order.
+    travelling: Vec<(u32, SharedMessage)>,
+    vote: Option<Work>,
+}
+
+impl Fleet {
+    pub(crate) fn new(seed: u64, lateness: f64) -> Fleet {
+        Fleet {
+            components: Vec::new(),
+            seats: Vec::new(),
+            topics: Vec::new(),
+            queue: BinaryHeap::new(),
+            order: 0,
+            now: Time::START,
+            seed,
+            lateness,
+            chance: Chance::for_component(seed, "host"),
+            counts: BTreeMap::new(),
+            log: Vec::new(),
+            console: Vec::new(),
+        }
+    }
+
+    /// Adds a component; references are given as (name, provider, service).
+    pub(crate) fn add<C: Class>(
+        &mut self,
+        name: &str,
+        period: Duration,
+        delay: Duration,
+        values: &[(&str, &str)],
+        references: &[(&str, usize, &str)],
+    ) -> usize {
+        let values: Vec<_> = values
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), PropertyValue::Text((*value).to_owned())))
+            .collect();
+        let component = Registration::of::<C>().construct(&values).unwrap();
+        let index = self.components.len();
+        self.components.push(Some(component));
+        let references = references
+            .iter()
+            .map(|(name, provider, service)| ((*name).to_owned(), Some((*provider, (*service).to_owned()))))
+            .collect();
+        self.seats.push(Seat {
+            name: name.to_owned(),
+            period,
+            execution: 0,
+            chance: Chance::for_component(self.seed, name),
+            references,
+            publishes: Vec::new(),
+            inboxes: Vec::new(),
+            outbox: Vec::new(),
+            travelling: Vec::new(),
+            vote: None,
+        });
+        if period > Duration::ZERO {
+            self.schedule(Time::START + delay, Due::Execution(index));
+        }
+        index
+    }
+
+    fn schedule(&mut self, at: Time, due: Due) {
+        self.order += 1;
+        // At one instant messages arrive first, then components run in the order of their addition.
+        let order = match due {
+            Due::Delivery(_) => 0,
+            Due::Execution(index) => 1 + index as u64,
+        };
+        self.queue.push(Reverse((at, order, due)));
+    }
+
+    /// Initializes all components; what they send reaches the others at once.
+    pub(crate) fn initialize(&mut self) -> Result<(), Failure> {
+        for index in 0..self.components.len() {
+            self.call(index, |component, context| component.initialize(context))?;
+        }
+        for index in 0..self.components.len() {
+            let outbox = std::mem::take(&mut self.seats[index].outbox);
+            self.deliver(index, outbox);
+        }
+        Ok(())
+    }
+
+    /// Runs until everybody who voted is done, or that time is over; `true` when they are done.
+    pub(crate) fn run(&mut self, until: Duration) -> bool {
+        while let Some(Reverse((at, _, due))) = self.queue.pop() {
+            if at > Time::START + until {
+                self.queue.push(Reverse((at, 0, due)));
+                return false;
+            }
+            self.now = at;
+            match due {
+                Due::Delivery(index) => {
+                    let travelling = std::mem::take(&mut self.seats[index].travelling);
+                    self.deliver(index, travelling);
+                }
+                Due::Execution(index) => self.execute(index),
+            }
+            let mut votes = self.seats.iter().filter_map(|seat| seat.vote).peekable();
+            if votes.peek().is_some() && votes.all(|vote| vote == Work::Done) {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn execute(&mut self, index: usize) {
+        let late = std::mem::take(&mut self.seats[index].travelling);
+        self.deliver(index, late);
+        self.call(index, |component, context| component.execute(context))
+            .unwrap_or_else(|failure| panic!("{} failed: {failure}", self.seats[index].name));
+        let seat = &mut self.seats[index];
+        seat.execution += 1;
+        seat.travelling = std::mem::take(&mut seat.outbox);
+        let period = seat.period;
+        let share = self.lateness * (self.chance.below(1000) as f64 / 1000.0);
+        let latency = period.mul_f64(share);
+        if latency.is_zero() {
+            let travelling = std::mem::take(&mut self.seats[index].travelling);
+            self.deliver(index, travelling);
+        } else {
+            self.schedule(self.now + latency, Due::Delivery(index));
+        }
+        self.schedule(self.now + period, Due::Execution(index));
+    }
+
+    fn deliver(&mut self, sender: usize, messages: Vec<(u32, SharedMessage)>) {
+        for (publisher, message) in messages {
+            let topic = &mut self.topics[self.seats[sender].publishes[publisher as usize]];
+            let key = message.key().unwrap_or(sender as u64);
+            for (reader, inbox) in &topic.readers {
+                let inbox = &mut self.seats[*reader].inboxes[*inbox];
+                if topic.kind == TopicKind::State {
+                    inbox.retain(|waiting| waiting.key() != Some(key));
+                }
+                inbox.push(message.clone());
+            }
+            if topic.kind == TopicKind::State {
+                topic.newest.insert(key, message);
+            }
+        }
+    }
+
+    fn call<R>(
+        &mut self,
+        index: usize,
+        work: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> Result<R, Failure>,
+    ) -> Result<R, Failure> {
+        let mut component = self.components[index].take().expect("no component calls itself");
+        let mut inboxes = std::mem::take(&mut self.seats[index].inboxes);
+        let result = work(&mut *component, &mut Context::new(&mut View { fleet: self, index }, &inboxes));
+        for inbox in &mut inboxes {
+            inbox.clear();
+        }
+        let seat = &mut self.seats[index];
+        // Subscribing adds inboxes.
+        inboxes.append(&mut seat.inboxes);
+        seat.inboxes = inboxes;
+        self.components[index] = Some(component);
+        result
+    }
+
+    fn topic(&mut self, topic: &TopicDeclaration<'_>) -> usize {
+        self.topics.iter().position(|known| known.name == topic.name).unwrap_or_else(|| {
+            self.topics.push(Topic {
+                name: topic.name.to_owned(),
+                kind: topic.kind,
+                newest: BTreeMap::new(),
+                readers: Vec::new(),
+            });
+            self.topics.len() - 1
+        })
+    }
+
+    pub(crate) fn count(&self, path: &str) -> i64 {
+        self.counts.get(path).copied().unwrap_or(0)
+    }
+}
+
+/// A component's view of the fleet during a call.
+struct View<'a> {
+    fleet: &'a mut Fleet,
+    index: usize,
+}
+
+impl View<'_> {
+    fn seat(&self) -> &Seat {
+        &self.fleet.seats[self.index]
+    }
+
+    fn seat_mut(&mut self) -> &mut Seat {
+        &mut self.fleet.seats[self.index]
+    }
+}
+
+impl Host for View<'_> {
+    fn name(&self) -> &str {
+        &self.seat().name
+    }
+
+    fn sender(&self) -> u32 {
+        self.index as u32
+    }
+
+    fn now(&self) -> Time {
+        self.fleet.now
+    }
+
+    fn due(&self) -> Time {
+        self.fleet.now
+    }
+
+    fn execution(&self) -> u64 {
+        self.seat().execution
+    }
+
+    fn period(&self) -> Duration {
+        self.seat().period
+    }
+
+    fn cancelled(&self) -> bool {
+        false
+    }
+
+    fn chance(&mut self) -> &mut Chance {
+        &mut self.seat_mut().chance
+    }
+
+    fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        let topic = self.fleet.topic(topic);
+        let publishes = &mut self.seat_mut().publishes;
+        publishes.push(topic);
+        Ok(publishes.len() as u32 - 1)
+    }
+
+    fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        let topic = self.fleet.topic(topic);
+        let inboxes = &mut self.seat_mut().inboxes;
+        inboxes.push(Vec::new());
+        let inbox = inboxes.len() - 1;
+        self.fleet.topics[topic].readers.push((self.index, inbox));
+        Ok(inbox as u32)
+    }
+
+    fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {
+        self.seat_mut().outbox.push((publisher, message));
+        Ok(())
+    }
+
+    fn reference(&mut self, name: &str, _interface: &str) -> Result<u32, Failure> {
+        let references = &mut self.seat_mut().references;
+        let place = references.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
+            references.push((name.to_owned(), None));
+            references.len() - 1
+        });
+        Ok(place as u32)
+    }
+
+    fn is_wired(&self, reference: u32) -> bool {
+        self.seat().references[reference as usize].1.is_some()
+    }
+
+    fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+        let (name, target) = self.seat().references[reference as usize].clone();
+        let Some((provider, service)) = target else { return Err(CallError::NotWired { reference: name }) };
+        let mut component = self.fleet.components[provider].take().expect("no component calls itself");
+        let mut view = View { fleet: self.fleet, index: provider };
+        let result =
+            component.serve(&mut Invocation { service: &service, call }, &mut Context::new(&mut view, &[]));
+        self.fleet.components[provider] = Some(component);
+        result
+    }
+
+    fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
+        let line = format!("{} {}: {level:?}: {line}", self.fleet.now, self.name());
+        self.fleet.log.push(line);
+    }
+
+    fn console(&mut self, line: fmt::Arguments<'_>) {
+        self.fleet.console.push(line.to_string());
+    }
+
+    fn report(&mut self, _path: &str, _value: ReportValue) {}
+
+    fn count(&mut self, path: &str, more: i64) {
+        *self.fleet.counts.entry(path.to_owned()).or_default() += more;
+    }
+
+    fn vote(&mut self, work: Work) {
+        self.seat_mut().vote = Some(work);
+    }
+}

@@ -1,0 +1,6 @@
+//! Whole fleets of the shipped components in virtual time.
+
+#![expect(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod classic;
+mod host;
