@@ -37,31 +37,30 @@ impl Diagnostics {
 
     /// Adds one.
     pub fn push(&mut self, diagnostic: Diagnostic) {
-        self.push_with(diagnostic.code, diagnostic.severity, diagnostic.location, || diagnostic);
+        if !self.skip(diagnostic.code, diagnostic.severity, diagnostic.location) {
+            self.count(diagnostic.code, diagnostic.severity, diagnostic.location.file);
+            self.items.push(diagnostic);
+        }
     }
 
-    /// Adds one of this code, severity and place, made only when it is kept. For places where a file can have a
-    /// million faults.
-    pub fn push_with(
-        &mut self,
-        code: &'static Code,
-        severity: Severity,
-        location: Location,
-        make: impl FnOnce() -> Diagnostic,
-    ) {
+    /// Whether a diagnostic of this code is one too many for its file; it is counted then, as if it had been pushed.
+    /// Asked before a diagnostic is put together, where a file can have a million of them.
+    pub fn skip(&mut self, code: &'static Code, severity: Severity, location: Location) -> bool {
+        let count = self.counts.get_mut(&(location.file, code.id));
+        let Some(count) = count.filter(|count| count.number >= LIMIT) else { return false };
+        count.beyond.get_or_insert(location);
+        self.count(code, severity, location.file);
+        true
+    }
+
+    fn count(&mut self, code: &'static Code, severity: Severity, file: FileId) {
         match severity {
             Severity::Error => self.errors += 1,
             Severity::Warning => self.warnings += 1,
             Severity::Note => {}
         }
         let new = Count { code, number: 0, beyond: None };
-        let count = self.counts.entry((location.file, code.id)).or_insert(new);
-        count.number += 1;
-        if count.number <= LIMIT {
-            self.items.push(make());
-        } else {
-            count.beyond.get_or_insert(location);
-        }
+        self.counts.entry((file, code.id)).or_insert(new).number += 1;
     }
 
     /// Whether one of them is an error: nothing may start.

@@ -10,52 +10,61 @@ use crate::xml::{Attribute, Element};
 impl Loader<'_> {
     /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
     pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
+        let mut free: Option<Vec<&'static str>> = None;
         for attribute in element.attributes() {
-            match attribute.namespace() {
-                "" if kind.has(attribute.name(), self.version) => {}
-                "" => self.unknown(element, attribute, kind),
-                namespace if namespace == self.namespace => self.prefixed(element, attribute, kind),
-                SAOMS_NAMESPACE => self.unknown(element, attribute, kind),
-                namespace if Version::from_namespace(namespace).is_some() => {
-                    self.prefixed(element, attribute, kind);
+            let is_own = match attribute.namespace() {
+                "" if kind.has(attribute.name(), self.version) => continue,
+                "" | SAOMS_NAMESPACE => true,
+                namespace if namespace == self.namespace || Version::from_namespace(namespace).is_some() => {
+                    !kind.has(attribute.local_name(), self.version)
                 }
-                _ => {}
+                _ => continue,
+            };
+            // What is given already is not meant a second time.
+            let free = free.get_or_insert_with(|| {
+                let names = kind.names(self.version);
+                names.filter(|known| element.attribute(known).is_none()).collect()
+            });
+            if is_own {
+                self.unknown(element, attribute, kind, free);
+            } else {
+                self.prefixed(element, attribute, free);
             }
         }
     }
 
-    fn unknown(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind) {
+    fn unknown(
+        &mut self,
+        element: Element<'_>,
+        attribute: Attribute<'_>,
+        kind: &'static Kind,
+        free: &[&'static str],
+    ) {
         let name = attribute.name();
         let location = attribute.name_span().in_file(element.document().file());
-        let message = format!("{} has no attribute {}", quoted(element.name()), quoted(name));
-        let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message);
-        let free: Vec<&str> =
-            kind.names(self.version).filter(|known| element.attribute(known).is_none()).collect();
         let meant = nearest(name, free.iter().copied()).or_else(|| nearest(name, kind.names(self.version)));
-        match meant {
-            Some(meant) => {
-                let description = format!("replace {} with {}", quoted(name), quoted(meant));
-                one = one.suggest(description, location, meant);
-            }
-            // The schema of SCA 1.0 lets any attribute pass; tools put some of their own there.
-            None if attribute.namespace().is_empty() && !self.version.is_1_1() => {
-                one = one.severity(Severity::Warning);
-            }
-            None => {}
+        // The schema of SCA 1.0 lets any attribute pass; tools put some of their own there.
+        let passes = meant.is_none() && attribute.namespace().is_empty() && !self.version.is_1_1();
+        let severity = if passes { Severity::Warning } else { Severity::Error };
+        if self.diagnostics.skip(&codes::UNKNOWN_ATTRIBUTE, severity, location) {
+            return;
+        }
+        let message = format!("{} has no attribute {}", quoted(element.name()), quoted(name));
+        let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message).severity(severity);
+        if let Some(meant) = meant {
+            let description = format!("replace {} with {}", quoted(name), quoted(meant));
+            one = one.suggest(description, location, meant);
         }
         let names: Vec<String> = kind.names(self.version).map(quoted).collect();
         self.report(one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", "))));
     }
 
     /// An attribute of SCA with a prefix: SCA's attributes have none.
-    fn prefixed(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind) {
-        if !kind.has(attribute.local_name(), self.version) {
-            return self.unknown(element, attribute, kind);
-        }
+    fn prefixed(&mut self, element: Element<'_>, attribute: Attribute<'_>, free: &[&str]) {
         let location = attribute.name_span().in_file(element.document().file());
         let message = format!("{} has a prefix; attributes of SCA have none", quoted(attribute.name()));
         let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message);
-        if element.attribute(attribute.local_name()).is_none() {
+        if free.contains(&attribute.local_name()) {
             one = one.suggest("remove the prefix", location, attribute.local_name());
         }
         self.report(one);
@@ -69,15 +78,7 @@ impl Loader<'_> {
     /// The value of an attribute that has to be there, and not be empty.
     pub(super) fn required(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
         let Some(attribute) = element.attribute(name) else {
-            let shown = element.name();
-            let message =
-                format!("{} has no attribute {}, which it has to have", quoted(shown), quoted(name));
-            let one = Diagnostic::new(&codes::MISSING_ATTRIBUTE, element.name_location(), message);
-            // A misspelt one is reported already, with the right name as suggestion.
-            if !has_near_miss(element, name) {
-                let help = format!("write {}", quoted(&format!("<{shown} {name}=\"...\"")));
-                self.report(one.help(help));
-            }
+            self.missing(element, name);
             return None;
         };
         let value = attribute.trimmed();
@@ -86,6 +87,20 @@ impl Loader<'_> {
             return None;
         }
         Some(value)
+    }
+
+    fn missing(&mut self, element: Element<'_>, name: &str) {
+        let location = element.name_location();
+        // A misspelt one is reported already, with the right name as suggestion.
+        if has_near_miss(element, name)
+            || self.diagnostics.skip(&codes::MISSING_ATTRIBUTE, Severity::Error, location)
+        {
+            return;
+        }
+        let shown = element.name();
+        let message = format!("{} has no attribute {}, which it has to have", quoted(shown), quoted(name));
+        let help = format!("write {}", quoted(&format!("<{shown} {name}=\"...\"")));
+        self.report(Diagnostic::new(&codes::MISSING_ATTRIBUTE, location, message).help(help));
     }
 
     /// The name of a part; empty, at the tag, when there is none.

@@ -4,7 +4,7 @@ use smol_str::SmolStr;
 
 use super::Loader;
 use super::vocabulary::{self, Kind, OWN_ELEMENTS};
-use crate::diagnostic::{Diagnostic, Edit, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
 use crate::xml::Element;
@@ -36,13 +36,17 @@ impl Loader<'_> {
             namespace => match Version::from_namespace(namespace) {
                 None => Family::Foreign,
                 Some(version) => {
+                    let location = element.name_location();
+                    if self.diagnostics.skip(&codes::OTHER_VERSION, Severity::Error, location) {
+                        return Family::Sca;
+                    }
                     let message = format!(
                         "{} is of {}, and the composite is of {}",
                         quoted(element.name()),
                         version.label(),
                         self.version.label()
                     );
-                    let one = Diagnostic::new(&codes::OTHER_VERSION, element.name_location(), message);
+                    let one = Diagnostic::new(&codes::OTHER_VERSION, location, message);
                     let help = "a composite and all of SCA inside it are of one namespace";
                     self.report(one.label(root.name_location(), "the composite").help(help));
                     Family::Sca
@@ -59,6 +63,12 @@ impl Loader<'_> {
             _ => vocabulary::children(parent).collect(),
         };
         let is_own = family == Family::Own && OWN_ELEMENTS.contains(&name);
+        let is_misplaced = is_own || (family == Family::Sca && vocabulary::is_known(name));
+        let code = if is_misplaced { &codes::MISPLACED_ELEMENT } else { &codes::UNKNOWN_ELEMENT };
+        let location = element.name_location();
+        if self.diagnostics.skip(code, Severity::Error, location) {
+            return;
+        }
         let place = quoted(parent.name);
         let holds = || {
             let names = parent.children.iter().map(|child| match child.strip_suffix('.') {
@@ -67,14 +77,14 @@ impl Loader<'_> {
             });
             format!("{place} can hold {}", names.collect::<Vec<_>>().join(", "))
         };
-        if is_own || (family == Family::Sca && vocabulary::is_known(name)) {
+        if is_misplaced {
             let message = format!("{} cannot stand in {place}", quoted(element.name()));
-            let one = Diagnostic::new(&codes::MISPLACED_ELEMENT, element.name_location(), message);
+            let one = Diagnostic::new(code, location, message);
             return self.report(one.help(holds()));
         }
         let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
         let message = format!("{whose} has no element {}", quoted(name));
-        let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        let mut one = Diagnostic::new(code, location, message);
         match nearest(name, known) {
             Some(meant) => {
                 let description = format!("replace {} with {}", quoted(name), quoted(meant));
@@ -117,6 +127,9 @@ impl Loader<'_> {
     pub(super) fn no_text(&mut self, element: Element<'_>) {
         let Some(span) = element.text_span() else { return };
         let location = span.in_file(element.document().file());
+        if self.diagnostics.skip(&codes::MISPLACED_TEXT, Severity::Error, location) {
+            return;
+        }
         let message = format!("text in {}, which holds no text", quoted(element.name()));
         let mut one = Diagnostic::new(&codes::MISPLACED_TEXT, location, message);
         if element.local_name().starts_with("implementation.") && element.attribute("class").is_none() {
@@ -126,9 +139,12 @@ impl Loader<'_> {
     }
 
     fn without_namespace(&mut self, element: Element<'_>, root: Element<'_>) {
-        let name = element.local_name();
+        let (name, location) = (element.local_name(), element.name_location());
+        if self.diagnostics.skip(&codes::UNKNOWN_ELEMENT, Severity::Error, location) {
+            return;
+        }
         let message = format!("{} is in no namespace", quoted(name));
-        let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, location, message);
         if vocabulary::is_known(name)
             && let Some(prefix) = root.prefix()
         {

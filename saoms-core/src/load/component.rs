@@ -117,15 +117,16 @@ impl Loader<'_> {
     fn missing_implementation(&mut self, element: Element<'_>, name: &Text) {
         let severity = if self.version.is_1_1() { Severity::Error } else { Severity::Warning };
         let location = element.name_location();
-        self.diagnostics.push_with(&codes::MISSING_IMPLEMENTATION, severity, location, || {
-            let message = if name.is_empty() {
-                "a component has no implementation".to_owned()
-            } else {
-                format!("the component {} has no implementation", quoted(name))
-            };
-            Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message).severity(severity).help(
-                "write `<implementation.java class=\"...\"/>` or `<implementation.rust class=\"...\"/>` in it",
-            )
-        });
+        if self.diagnostics.skip(&codes::MISSING_IMPLEMENTATION, severity, location) {
+            return;
+        }
+        let message = match name.as_str() {
+            "" => "a component has no implementation".to_owned(),
+            name => format!("the component {} has no implementation", quoted(name)),
+        };
+        let help =
+            "write `<implementation.java class=\"...\"/>` or `<implementation.rust class=\"...\"/>` in it";
+        let one = Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message);
+        self.report(one.severity(severity).help(help));
     }
 }

@@ -438,6 +438,14 @@ fn a_million_faults_are_counted_and_a_few_shown() {
     assert_eq!(diagnostics.into_sorted().len(), 1001);
 }
 
+#[test]
+fn an_element_of_endless_attributes_takes_no_time() {
+    let attributes: String = (0..50_000).map(|number| format!(" a{number}=''")).collect();
+    let text = format!("<composite xmlns='{OSOA}'{attributes} name='c' targetNamespace='u'/>");
+    let (composite, faults) = loaded(&text);
+    assert!(composite.is_some() && faults.contains("49000 more of the kind S1007 (unknown-attribute)"));
+}
+
 /// What `read` says of a file of these bytes.
 fn reading(bytes: &[u8], max_size: u64) -> String {
     let folder = tempfile::tempdir().unwrap();

@@ -1,0 +1,9 @@
+//! The loader over real files, broken files, and beside another XML parser.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod corpus;
+mod files;
+mod oracle;
+mod places;
+mod wellformed;
