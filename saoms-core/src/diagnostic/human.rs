@@ -6,7 +6,8 @@ use super::window::{Mark, Window, windows};
 use super::{Diagnostic, Severity};
 use crate::source::{FileId, Sources};
 
-/// All diagnostics as text, one after the other, an empty line between two.
+/// All diagnostics as text, one after the other, an empty line between two. Beside the code stands the rule of the SCA
+/// specification, where there is one.
 pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
     let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
     let mut out = String::new();
@@ -27,19 +28,17 @@ fn render(one: &Diagnostic, sources: &Sources, renderer: &Renderer) -> String {
         Severity::Warning => Level::WARNING,
         Severity::Note => Level::NOTE,
     };
-    let mut group = Group::with_title(level.primary_title(&one.message).id(one.code.id));
+    let id = one.rule.map_or_else(|| one.code.id.to_owned(), |rule| format!("{}, {rule}", one.code.id));
+    let mut group = Group::with_title(level.primary_title(&one.message).id(id));
     let windows = pictures(one, sources);
     for (file, window) in &windows {
         group = picture(group, *file, window, sources);
     }
-    for help in &one.help {
-        group = group.element(Level::HELP.message(help));
-    }
     for suggestion in &one.suggestions {
         group = group.element(Level::HELP.message(&suggestion.description));
     }
-    if let Some(rule) = one.rule {
-        group = group.element(Level::NOTE.message(format!("rule {rule} of SCA Assembly 1.1")));
+    for help in &one.help {
+        group = group.element(Level::HELP.message(help));
     }
     renderer.render(&[group])
 }

@@ -42,7 +42,7 @@ fn codes_are_unique_grouped_and_documented() {
 fn people_see_the_place() {
     let (sources, one) = fleet();
     let expected = "\
-error[S0105]: no such attribute `nmae`
+error[S0105, ASM13001]: no such attribute `nmae`
  --> fleet.composite:2:26
   |
 2 |     <component name=\"Röbot\" nmae='x'/>
@@ -50,9 +50,8 @@ error[S0105]: no such attribute `nmae`
   |      |
   |      in this component
   |
-  = help: attributes are name and autowire
   = help: replace `nmae` with `name`
-  = note: rule ASM13001 of SCA Assembly 1.1
+  = help: attributes are name and autowire
 ";
     assert_eq!(human(&[one], &sources, false), expected);
 }

@@ -51,12 +51,16 @@ impl Loader<'_> {
         }
         let message = format!("{} has no attribute {}", quoted(element.name()), quoted(name));
         let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message).severity(severity);
-        if let Some(meant) = meant {
-            let description = format!("replace {} with {}", quoted(name), quoted(meant));
-            one = one.suggest(description, location, meant);
-        }
-        let names: Vec<String> = kind.names(self.version).map(quoted).collect();
-        self.report(one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", "))));
+        one = match meant {
+            Some(meant) => {
+                one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
+            }
+            None => {
+                let names: Vec<String> = kind.names(self.version).map(quoted).collect();
+                one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", ")))
+            }
+        };
+        self.report(one);
     }
 
     /// An attribute of SCA with a prefix: SCA's attributes have none.
@@ -98,7 +102,7 @@ impl Loader<'_> {
             return;
         }
         let shown = element.name();
-        let message = format!("{} has no attribute {}, which it has to have", quoted(shown), quoted(name));
+        let message = format!("{} needs the attribute {}", quoted(shown), quoted(name));
         let help = format!("write {}", quoted(&format!("<{shown} {name}=\"...\"")));
         self.report(Diagnostic::new(&codes::MISSING_ATTRIBUTE, location, message).help(help));
     }
@@ -108,7 +112,11 @@ impl Loader<'_> {
         let Some(name) = self.required(element, "name") else {
             return Located::new("".into(), element.name_location());
         };
-        if let Some(bad) = name.chars().find(|c| c.is_whitespace() || *c == '/') {
+        // The usual name is plain: a look at its bytes is enough.
+        let is_odd = |byte: u8| byte <= b' ' || byte == b'/' || byte >= 0x80;
+        if name.bytes().any(is_odd)
+            && let Some(bad) = name.chars().find(|c| c.is_whitespace() || *c == '/')
+        {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
             let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));
             let help = "names are used in targets as `component/service`, and in lists between blanks";

@@ -84,18 +84,17 @@ impl Loader<'_> {
         }
         let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
         let message = format!("{whose} has no element {}", quoted(name));
-        let mut one = Diagnostic::new(code, location, message);
-        match nearest(name, known) {
+        let one = Diagnostic::new(code, location, message);
+        self.report(match nearest(name, known) {
             Some(meant) => {
                 let description = format!("replace {} with {}", quoted(name), quoted(meant));
-                one = one.suggest_edits(description, renaming(element, element.prefix(), meant));
+                one.suggest_edits(description, renaming(element, element.prefix(), meant))
             }
             None if name.contains('.') => {
-                one = one.help("an extension is written in the namespace of the one who defined it");
+                one.help("an extension is written in the namespace of the one who defined it").help(holds())
             }
-            None => {}
-        }
-        self.report(one.help(holds()));
+            None => one.help(holds()),
+        });
     }
 
     /// Checks the children of an element none of whose children the model holds.

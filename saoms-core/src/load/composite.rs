@@ -31,7 +31,7 @@ impl Loader<'_> {
             properties: Vec::new(),
             services: Vec::new(),
             references: Vec::new(),
-            components: Vec::new(),
+            components: Vec::with_capacity(root.children().count()),
             wires: Vec::new(),
             policy: self.policy(root),
             name,

@@ -183,7 +183,7 @@ fn a_wrong_namespace_is_found_where_it_is_written_and_the_rest_is_read() {
         "<composite name='c' targetNamespace='u'><component/></composite>",
         "
 1:2 [composite] error S1002 `composite` is in no namespace, and so it is no composite of SCA | insert `xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"`
-1:42 [component] error S1008 `component` has no attribute `name`, which it has to have
+1:42 [component] error S1008 `component` needs the attribute `name`
 1:42 [component] warning S1010 a component has no implementation",
     );
     faults(
@@ -285,26 +285,26 @@ fn what_cannot_be_is_found_at_its_place() {
     faults_1_0(
         &format!("<component>{JAVA}</component><component name=''>{JAVA}</component>"),
         "
-2:2 [component] error S1008 `component` has no attribute `name`, which it has to have
+2:2 [component] error S1008 `component` needs the attribute `name`
 2:69 [name=''] error S1011 the attribute `name` is empty",
     );
     faults_1_0(
         "<wire target='b'/><wire source='a' target=' '/>",
         "
-2:2 [wire] error S1008 `wire` has no attribute `source`, which it has to have
+2:2 [wire] error S1008 `wire` needs the attribute `source`
 2:36 [target=' '] error S1011 the attribute `target` is empty",
     );
     faults_1_0(
         &format!("<component name='a'>oops{JAVA}<property>1</property></component>more"),
         "
 2:21 [oops] error S1012 text in `component`, which holds no text
-2:60 [property] error S1008 `property` has no attribute `name`, which it has to have
+2:60 [property] error S1008 `property` needs the attribute `name`
 2:93 [more] error S1012 text in `composite`, which holds no text",
     );
     faults_1_0(
         "<component name='a'><implementation.java>x.Y</implementation.java></component>",
         "
-2:22 [implementation.java] error S1008 `implementation.java` has no attribute `class`, which it has to have
+2:22 [implementation.java] error S1008 `implementation.java` needs the attribute `class`
 2:42 [x.Y] error S1012 text in `implementation.java`, which holds no text",
     );
     faults_1_0(
@@ -339,7 +339,7 @@ fn what_cannot_be_is_found_at_its_place() {
     faults_1_0(
         "<service name='s'/><reference name='r' promote=''/>",
         "
-2:2 [service] error S1008 `service` has no attribute `promote`, which it has to have
+2:2 [service] error S1008 `service` needs the attribute `promote`
 2:40 [promote=''] warning S1011 `reference` promotes nothing",
     );
 }
@@ -419,7 +419,7 @@ fn all_up_to_the_first_ill_formed_place_is_reported_and_nothing_behind_it() {
     assert_eq!(
         faults,
         "1:54 [nmae] error S1007 `composite` has no attribute `nmae` | replace `nmae` with `name`\n\
-         2:2 [component] error S1008 `component` has no attribute `name`, which it has to have\n\
+         2:2 [component] error S1008 `component` needs the attribute `name`\n\
          2:2 [component] warning S1010 a component has no implementation\n\
          4:22 [&] error S0109 `&` starts a reference and none follows | replace `&` with `&amp;`\n"
     );
@@ -444,6 +444,53 @@ fn an_element_of_endless_attributes_takes_no_time() {
     let text = format!("<composite xmlns='{OSOA}'{attributes} name='c' targetNamespace='u'/>");
     let (composite, faults) = loaded(&text);
     assert!(composite.is_some() && faults.contains("49000 more of the kind S1007 (unknown-attribute)"));
+}
+
+#[test]
+fn depth_is_no_matter_wherever_it_is() {
+    let deep = |name: &str| {
+        format!("{}{}", format!("<{name}>").repeat(100_000), format!("</{name}>").repeat(100_000))
+    };
+    let (composite, faults) = loaded(&format!(
+        "<composite xmlns='{OSOA}' name='c' targetNamespace='u'><component name='a'>{JAVA}<property name='p'>{}</property>\
+         </component>{}</composite>",
+        deep("value-of-mine"),
+        deep("component name='b'").replace("</component name='b'>", "</component>"),
+    ));
+    let composite = composite.unwrap();
+    assert_eq!(composite.components.len(), 2);
+    assert_eq!(composite.components[0].properties[0].content().len(), 1);
+    assert!(
+        faults.starts_with("1:") && faults.contains("`component` cannot stand in `component`"),
+        "{faults}"
+    );
+}
+
+#[test]
+fn figure_6_25_of_the_manual_has_nothing_wrong() {
+    let text = r#"<?xml version="1.0" encoding="UTF-8"?>
+<composite xmlns="http://www.osoa.org/xmlns/sca/1.0"
+    targetNamespace="http://launch" name="launchbroker">
+
+    <component name="MessageBrokerComponent">
+        <implementation.java
+            class="unibg.robotics.tca.MessageBrokerImpl" />
+        <property name="IP">localhost</property>
+        <property name="port">61616</property>
+        <service name="MessageBroker">
+            <interface.java
+                interface="unibg.robotics.tca.MessageBroker" />
+            </service>
+        </component>
+    </composite>"#;
+    let (composite, faults) = loaded(text);
+    assert_eq!(faults, "");
+    let broker = &composite.unwrap().components[0];
+    let values: Vec<_> = broker.properties.iter().map(|one| one.simple_value().unwrap().as_str()).collect();
+    assert_eq!(
+        (broker.class().unwrap().as_str(), values),
+        ("unibg.robotics.tca.MessageBrokerImpl", vec!["localhost", "61616"])
+    );
 }
 
 /// What `read` says of a file of these bytes.

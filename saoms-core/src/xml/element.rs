@@ -85,9 +85,14 @@ impl<'a> Element<'a> {
 
     /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
     pub fn content_span(self) -> Span {
-        let Node { tag_end, end, is_closed, .. } = *self.node();
+        let Node { tag_end, end, is_closed, name_len, .. } = *self.node();
         if tag_end == end || !is_closed {
             return Span::new(tag_end, end);
+        }
+        // Most end tags have no white space before their `>`.
+        let usual = end - name_len - 3;
+        if usual >= tag_end && self.document.text.as_bytes()[usual as usize] == b'<' {
+            return Span::new(tag_end, usual);
         }
         // An end tag holds no `<` but its first character.
         let content = &self.document.text.as_bytes()[tag_end as usize..end as usize];

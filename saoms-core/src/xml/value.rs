@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// The value of an attribute (XML 1.0, 3.3.3): each white space character a blank, references resolved.
 pub(super) fn attribute_value(raw: &str) -> Cow<'_, str> {
-    if !raw.bytes().any(|byte| byte == b'&' || byte < b' ') {
+    if raw.bytes().fold(true, |literal, byte| literal & (byte != b'&') & (byte >= b' ')) {
         return Cow::Borrowed(raw);
     }
     let mut value = String::with_capacity(raw.len());
@@ -34,7 +34,8 @@ pub(super) fn attribute_value(raw: &str) -> Cow<'_, str> {
 
 /// Whether character data means itself: no markup, references or line ends to resolve.
 pub(super) fn is_literal(text: &str) -> bool {
-    !text.bytes().any(|byte| matches!(byte, b'<' | b'&' | b'\r'))
+    // Without a branch, so that the compiler makes vector instructions of it; texts are short.
+    text.bytes().fold(true, |literal, byte| literal & (byte != b'<') & (byte != b'&') & (byte != b'\r'))
 }
 
 /// The text of a stretch without elements: comments and instructions out, CDATA and references resolved.
