@@ -3,6 +3,7 @@
 pub mod assemble;
 pub mod assembly;
 pub mod bus;
+pub mod check;
 pub mod diagnostic;
 pub mod load;
 pub mod model;

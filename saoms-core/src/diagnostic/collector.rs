@@ -63,6 +63,25 @@ impl Diagnostics {
         self.counts.entry((file, code.id)).or_insert(new).number += 1;
     }
 
+    /// Makes errors of all warnings of one code in one file, and says why: what a file may say can still be wrong for
+    /// what is to be done with it.
+    pub fn escalate(&mut self, code: &'static Code, file: FileId, why: &str) {
+        let is_meant = |one: &&mut Diagnostic| {
+            one.code == code && one.location.file == file && one.severity == Severity::Warning
+        };
+        let mut kept = 0;
+        for one in self.items.iter_mut().filter(is_meant) {
+            one.severity = Severity::Error;
+            one.help.push(why.to_owned());
+            kept += 1;
+        }
+        // Those that were not kept are of the severity of the last that was.
+        let number = self.counts.get(&(file, code.id)).map_or(0, |count| count.number as usize);
+        let changed = if kept == LIMIT as usize { number } else { kept };
+        self.warnings -= changed;
+        self.errors += changed;
+    }
+
     /// Whether one of them is an error: nothing may start.
     pub fn has_errors(&self) -> bool {
         self.errors > 0

@@ -1,0 +1,86 @@
+//! Wires that lead back to where they came from.
+//!
+//! A call runs inside the caller's execution. A component that is called back by the one it is calling is busy and cannot
+//! answer, so such a circle of wires is a fault of the composite.
+
+use super::classes::ClassIndex;
+use super::cycles::{Edge, cycles};
+use super::fleet::Fleet;
+use super::report::Report;
+use super::target::Provider;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::source::Location;
+
+/// At most this many wires of one circle are shown.
+const SHOWN: usize = 8;
+
+/// The wires of a fleet along which components call each other.
+pub(super) struct Circles<'f> {
+    edges: Vec<Vec<Edge>>,
+    wires: Vec<Wire<'f>>,
+}
+
+struct Wire<'f> {
+    member: usize,
+    reference: &'f str,
+    to: usize,
+    place: Location,
+}
+
+impl<'f> Circles<'f> {
+    pub(super) fn new(members: usize) -> Self {
+        Self { edges: std::iter::repeat_with(Vec::new).take(members).collect(), wires: Vec::new() }
+    }
+
+    /// Adds a wire. What the host serves for a component does not disturb the component.
+    pub(super) fn add(
+        &mut self,
+        member: usize,
+        reference: &'f str,
+        to: Provider,
+        place: Location,
+        fleet: &Fleet<'_>,
+        classes: &[ClassIndex<'_>],
+    ) {
+        let is_of_host =
+            fleet.class_of(to.member, classes).is_some_and(|class| class.services[to.service].is_of_host());
+        if !is_of_host {
+            self.edges[member].push(Edge { to: to.member, wire: self.wires.len() });
+            self.wires.push(Wire { member, reference, to: to.member, place });
+        }
+    }
+
+    /// Reports every circle at the wire that closes it.
+    pub(super) fn check(&self, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+        for circle in cycles(&self.edges) {
+            self.report(&circle, fleet, report);
+        }
+    }
+
+    fn report(&self, circle: &[usize], fleet: &Fleet<'_>, report: &mut Report<'_>) {
+        let name = |member: usize| quoted(&fleet.members[member].component.name);
+        let Some(last) = circle.last().map(|wire| &self.wires[*wire]) else { return };
+        if circle.len() == 1 {
+            let message =
+                format!("component {} is wired to itself: it would call while it is busy", name(last.member));
+            let one = Diagnostic::new(&codes::CALL_CYCLE, last.place, message);
+            return report.push(one.help("wire the reference to another component, or remove the target"));
+        }
+        let mut names: Vec<String> =
+            circle.iter().take(SHOWN).map(|wire| name(self.wires[*wire].member)).collect();
+        if circle.len() > SHOWN {
+            names.push(format!("{} more", circle.len() - SHOWN));
+        }
+        names.push(name(last.to));
+        let message = format!("components call each other in a circle: {}", names.join(" -> "));
+        let mut one = Diagnostic::new(&codes::CALL_CYCLE, last.place, message)
+            .at(format!("{} calls {}", name(last.member), name(last.to)))
+            .help("a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic");
+        for wire in circle[..circle.len() - 1].iter().take(SHOWN).map(|wire| &self.wires[*wire]) {
+            let text =
+                format!("{} calls {} through {}", name(wire.member), name(wire.to), quoted(wire.reference));
+            one = one.label(wire.place, text);
+        }
+        report.push(one);
+    }
+}

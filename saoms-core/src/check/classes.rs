@@ -1,0 +1,179 @@
+//! Which class each component is of.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::fleet::Fleet;
+use super::report::{Report, escaped, list, replacing};
+use crate::assembly::TaskProperties;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{Component, ImplementationKind, Part};
+use crate::registry::{Class, PropertyDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration};
+use crate::source::Text;
+
+/// A class of the fleet, with its declaration at hand.
+pub(super) struct ClassIndex<'r> {
+    pub(super) class: &'r Arc<Class>,
+    /// Its properties, those of tasks behind its own.
+    pub(super) properties: Vec<Slot<'r>>,
+    by_name: HashMap<&'r str, usize>,
+    /// What it offers, what the host serves for it included.
+    pub(super) services: Vec<&'r ServiceDeclaration>,
+    pub(super) references: &'r [ReferenceDeclaration],
+}
+
+/// A property that components of a class can be given.
+///
+/// A class can declare a property that tasks have as well, as robots do with `ID`; then one value serves both and the
+/// stricter rule counts.
+pub(super) struct Slot<'r> {
+    pub(super) own: Option<&'r PropertyDeclaration>,
+    pub(super) task: Option<&'r PropertyDeclaration>,
+}
+
+impl<'r> Slot<'r> {
+    pub(super) fn declarations(&self) -> impl Iterator<Item = &'r PropertyDeclaration> {
+        self.own.into_iter().chain(self.task)
+    }
+
+    pub(super) fn is_required(&self) -> bool {
+        self.declarations().any(|declaration| declaration.required)
+    }
+
+    /// The declaration that people are told of.
+    pub(super) fn main(&self) -> Option<&'r PropertyDeclaration> {
+        self.own.or(self.task)
+    }
+}
+
+impl<'r> ClassIndex<'r> {
+    fn new(class: &'r Arc<Class>) -> Self {
+        let declaration = class.declaration();
+        let own = declaration.properties.iter().map(|own| Slot { own: Some(own), task: None });
+        let mut properties: Vec<Slot<'r>> = own.collect();
+        let mut by_name: HashMap<&str, usize> = declaration
+            .properties
+            .iter()
+            .enumerate()
+            .map(|(place, own)| (own.name.as_str(), place))
+            .collect();
+        let task = if declaration.is_periodic() { TaskProperties::declarations() } else { &[] };
+        for task in task {
+            match by_name.get(task.name.as_str()) {
+                Some(&place) => properties[place].task = Some(task),
+                None => {
+                    by_name.insert(&task.name, properties.len());
+                    properties.push(Slot { own: None, task: Some(task) });
+                }
+            }
+        }
+        let services = declaration.offers().collect();
+        Self { class, properties, by_name, services, references: &declaration.references }
+    }
+
+    /// The place of the property of this name.
+    pub(super) fn property(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
+    /// The names of all properties, in order.
+    pub(super) fn property_names(&self) -> impl Iterator<Item = &'r str> + Clone {
+        self.properties.iter().filter_map(|slot| slot.main()).map(|declaration| declaration.name.as_str())
+    }
+
+    /// Whether the topics it declares are any.
+    pub(super) fn has_topics(&self) -> bool {
+        let declaration = self.class.declaration();
+        !declaration.publishes.is_empty() || !declaration.subscribes.is_empty()
+    }
+}
+
+/// Finds the class of every component; the classes that occur.
+pub(super) fn resolve<'r>(
+    fleet: &mut Fleet<'_>,
+    registry: &'r Registry,
+    report: &mut Report<'_>,
+) -> Vec<ClassIndex<'r>> {
+    let mut classes = Vec::new();
+    let mut known: HashMap<&str, usize> = HashMap::new();
+    for place in 0..fleet.members.len() {
+        let component = fleet.members[place].component;
+        let Some(class) = runnable(component, report) else { continue };
+        let index = match known.get(class.as_str()) {
+            Some(&index) => index,
+            None => match registry.get(class) {
+                Some(found) => {
+                    classes.push(ClassIndex::new(found));
+                    known.insert(class, classes.len() - 1);
+                    classes.len() - 1
+                }
+                None => {
+                    report.push(unknown(class, registry));
+                    continue;
+                }
+            },
+        };
+        fleet.members[place].class = Some(index);
+    }
+    classes
+}
+
+/// The name of the class of a component that names one.
+fn runnable<'a>(component: &'a Component, report: &mut Report<'_>) -> Option<&'a Text> {
+    const SUPPORTED: &str = "components are implemented by a class: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
+    let Some(implementation) = &component.implementation else {
+        // Reported by the loader, for SCA 1.0 as a warning.
+        let why = "SCA 1.0 allows a component without an implementation, but it cannot run";
+        report.escalate(&codes::MISSING_IMPLEMENTATION, component.origin.file(), why);
+        return None;
+    };
+    match &implementation.kind {
+        ImplementationKind::Java { class } => class.as_ref(),
+        ImplementationKind::Rust { class, library } => {
+            if let Some(library) = library {
+                let message = "classes from plugins are not supported yet: `library` names one";
+                report.push(
+                    Diagnostic::new(&codes::NOT_SUPPORTED_YET, library.location, message)
+                        .help("leave `library` out where the class is linked into the program"),
+                );
+                return None;
+            }
+            class.as_ref()
+        }
+        ImplementationKind::Composite { .. } => {
+            let message = "nested composites are not supported yet: `implementation.composite` cannot run";
+            report.push(
+                Diagnostic::new(&codes::NOT_SUPPORTED_YET, implementation.tag(), message)
+                    .help("put the components of the inner composite in this one")
+                    .help(SUPPORTED),
+            );
+            None
+        }
+        ImplementationKind::Other { kind, .. } => {
+            let message = format!("{} cannot run here", quoted(&format!("implementation.{kind}")));
+            let one = Diagnostic::new(&codes::IMPLEMENTATION_UNSUPPORTED, implementation.tag(), message);
+            report.push(one.help(SUPPORTED));
+            None
+        }
+    }
+}
+
+fn unknown(class: &Text, registry: &Registry) -> Diagnostic {
+    const SHOWN: usize = 6;
+    let message = format!("there is no class {}", quoted(class));
+    let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
+    for meant in registry.nearest(class) {
+        one = one.suggest(replacing(class, meant), class.location, escaped(meant));
+    }
+    let looked = match registry.len() {
+        0 => "no class is linked into this program".to_owned(),
+        1..=SHOWN => format!(
+            "the classes linked into this program are {}",
+            list(registry.iter().map(|class| class.name()))
+        ),
+        count => format!(
+            "looked among the {count} classes linked into this program; `saoms components` lists them"
+        ),
+    };
+    one.help(looked)
+}

@@ -1,0 +1,59 @@
+//! The address of a message broker, `host:port`.
+
+use std::net::Ipv6Addr;
+use std::ops::Range;
+
+/// What is wrong with an address.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Fault {
+    /// Where.
+    pub(super) at: Range<usize>,
+    /// What was found.
+    pub(super) message: String,
+    /// What the bytes at `at` should be, where that is plain.
+    pub(super) instead: Option<String>,
+}
+
+/// The fault of `text` as an address: a host name, an IPv4 address, or an IPv6 address in brackets, then a colon and a
+/// port from 1 to 65535.
+pub(super) fn fault(text: &str) -> Option<Fault> {
+    let at = |at: Range<usize>, message: String| Some(Fault { at, message, instead: None });
+    if let Some(scheme) = text.find("://") {
+        let message = format!("`{}` is more than host and port", &text[..scheme + 3]);
+        return Some(Fault { at: 0..scheme + 3, message, instead: Some(String::new()) });
+    }
+    let bracket = text.starts_with('[').then(|| text.find(']')).flatten();
+    let colon = match bracket {
+        Some(end) => text[end..].find(':').map(|at| end + at),
+        None => text.rfind(':'),
+    };
+    let Some(colon) = colon else {
+        return at(0..text.len(), "there is no port".to_owned());
+    };
+    let (host, port) = (&text[..colon], &text[colon + 1..]);
+    if host.is_empty() {
+        return at(0..text.len(), "there is no host".to_owned());
+    }
+    if let Some(address) = host.strip_prefix('[') {
+        if address.strip_suffix(']').is_none_or(|address| address.parse::<Ipv6Addr>().is_err()) {
+            return at(0..colon, format!("`{host}` is no IPv6 address"));
+        }
+    } else if host.contains(':') {
+        let message = format!("`{host}` is no host: an IPv6 address stands in brackets");
+        let instead = host.parse::<Ipv6Addr>().is_ok().then(|| format!("[{host}]"));
+        return Some(Fault { at: 0..colon, message, instead });
+    } else if let Some(found) = host.find(|c: char| !(c.is_ascii_alphanumeric() || "-._".contains(c))) {
+        let character = host[found..].chars().next().unwrap_or(' ');
+        return at(
+            found..found + character.len_utf8(),
+            format!("`{}` cannot be in the name of a host", character.escape_debug()),
+        );
+    }
+    let digits = port.bytes().all(|byte| byte.is_ascii_digit());
+    match port.parse::<u16>() {
+        Ok(1..) if digits => None,
+        _ if port.is_empty() => at(colon..text.len(), "there is no port".to_owned()),
+        _ if digits => at(colon + 1..text.len(), format!("port {port} is outside 1 to 65535")),
+        _ => at(colon + 1..text.len(), format!("`{port}` is no port")),
+    }
+}

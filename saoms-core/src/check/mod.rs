@@ -1,0 +1,165 @@
+//! From the model to an assembly: what can be wrong with a fleet before anything runs.
+//!
+//! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but what it is given. It goes from cheap
+//! rules to dear ones and looks at everything, so that all faults come in one run. What depends on something that is wrong
+//! is not looked at: one mistake gives one diagnostic.
+
+mod circle;
+mod classes;
+mod construct;
+mod contracts;
+mod cycles;
+mod endpoint;
+mod fleet;
+mod parameters;
+mod promote;
+mod properties;
+mod raw;
+mod rename;
+mod report;
+mod setting;
+mod target;
+mod task;
+#[cfg(test)]
+mod tests;
+mod topics;
+mod unique;
+mod values;
+mod wires;
+
+use saoms_api::PropertyValue;
+
+use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
+use crate::diagnostic::Diagnostics;
+use crate::model::Composite;
+use crate::registry::Registry;
+use crate::source::Sources;
+
+use classes::ClassIndex;
+use fleet::Fleet;
+use parameters::Parameters;
+use report::Report;
+pub use setting::Setting;
+use values::Values;
+use wires::Wiring;
+
+/// Checks composites as one fleet, and resolves them when there is no error among `diagnostics`, those from before
+/// included.
+///
+/// `settings` are values of composite properties that count in place of those in the files.
+///
+/// ```
+/// use saoms_core::{check::check, diagnostic::Diagnostics, load::load_file, registry::Registry, source::Sources};
+///
+/// let text = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="fleet" targetNamespace="urn:fleet">
+///     <component name="Robot001"><implementation.java class="robot.Robot001"/></component>
+/// </composite>"#;
+/// let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+/// let file = sources.add("fleet.composite", text);
+/// let fleet = load_file(file, &sources, &mut diagnostics).unwrap();
+/// let assembly = check(&[fleet], &Registry::new(), &[], &sources, &mut diagnostics);
+/// assert!(assembly.is_none());
+/// assert_eq!(diagnostics.iter().next().unwrap().message, "there is no class `robot.Robot001`");
+/// ```
+pub fn check(
+    composites: &[Composite],
+    registry: &Registry,
+    settings: &[Setting],
+    sources: &Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<Assembly> {
+    let report = &mut Report::new(sources, diagnostics);
+    let mut fleet = Fleet::of(composites, report);
+    let parameters = Parameters::of(composites, settings, report);
+    let classes = classes::resolve(&mut fleet, registry, report);
+    let resolved = components(&fleet, &classes, parameters, report);
+    contracts::check(&fleet, &classes, report);
+    let promoted = promote::check(&fleet, &classes, report);
+    let wiring = wires::check(&fleet, &classes, &promoted, report);
+    for (member, resolved) in fleet.members.iter().zip(&resolved) {
+        if let (Some(class), Some(resolved)) = (member.class, resolved) {
+            construct::check(member.component, &classes[class], &resolved.values, report);
+        }
+    }
+    if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
+}
+
+/// What the properties of a component come to.
+struct Resolved {
+    /// The values of the class's own properties.
+    values: Vec<(String, PropertyValue)>,
+    task: Option<TaskSettings>,
+}
+
+/// Checks everything about components that needs no look at wires; `None` for one with a fault.
+fn components<'a>(
+    fleet: &Fleet<'a>,
+    classes: &[ClassIndex<'a>],
+    mut parameters: Parameters<'a>,
+    report: &mut Report<'_>,
+) -> Vec<Option<Resolved>> {
+    let mut values = Values::default();
+    let mut unique = unique::Unique::default();
+    let mut topics = topics::Topics::default();
+    let mut all = Vec::with_capacity(fleet.members.len());
+    for member in &fleet.members {
+        let Some(index) = member.class else {
+            // Nothing says what its properties should be, but where they come from can be looked at.
+            for source in member.component.properties.iter().filter_map(|property| property.source()) {
+                let _ = parameters.resolve(member.composite, source, report);
+            }
+            all.push(None);
+            continue;
+        };
+        let class = &classes[index];
+        let checked = properties::check(fleet, member, class, &mut parameters, &mut values, report);
+        unique.add(member, class, &checked, report);
+        let is_periodic = class.class.declaration().is_periodic();
+        let task =
+            (is_periodic && checked.is_sound).then(|| task::check(member.component, class, &checked, report));
+        let task = task.flatten();
+        topics.add(member, index, class, task.as_ref(), report);
+        all.push((checked.is_sound && is_periodic == task.is_some()).then(|| {
+            let mut values = checked.values(class, |slot| slot.own);
+            let absent = class.class.presets().iter().filter(|(name, _)| checked.get(class, name).is_none());
+            values.extend(absent.cloned());
+            Resolved { values, task: task.map(|task| task.settings) }
+        }));
+    }
+    parameters.finish(report);
+    all
+}
+
+/// The assembly; `None` when something is missing, which was reported then.
+fn assemble(
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
+    resolved: Vec<Option<Resolved>>,
+    wiring: &Wiring,
+) -> Option<Assembly> {
+    let mut components = Vec::with_capacity(resolved.len());
+    for (place, resolved) in resolved.into_iter().enumerate() {
+        let class = fleet.class_of(place, classes)?;
+        let Resolved { values, task } = resolved?;
+        let references = class.references.iter().zip(&wiring[place]);
+        let references = references.map(|(declared, provider)| Wire {
+            reference: declared.name.clone(),
+            interface: declared.interface.name.clone(),
+            target: provider.and_then(|provider| {
+                let class = fleet.class_of(provider.member, classes)?;
+                Some(Target {
+                    component: provider.member,
+                    service: class.services[provider.service].name.clone(),
+                })
+            }),
+        });
+        components.push(ComponentSpec {
+            path: fleet.members[place].component.name.as_str().to_owned(),
+            class: std::sync::Arc::clone(class.class),
+            values,
+            task,
+            references: references.collect(),
+        });
+    }
+    Some(Assembly { components })
+}

@@ -1,0 +1,208 @@
+//! The properties of each component: known, given once, right, and all that have to be there.
+
+use saoms_api::PropertyValue;
+
+use super::classes::{ClassIndex, Slot};
+use super::fleet::{Fleet, Member};
+use super::parameters::Parameters;
+use super::raw::{Raw, raw};
+use super::report::Report;
+use super::values::{Path, Use, Values};
+use crate::assembly::TaskProperties;
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::model::{Part, Property};
+use crate::registry::PropertyDeclaration;
+use crate::source::{Location, Text};
+
+/// What a component gives for one property of its class.
+pub(super) struct Given {
+    pub(super) value: PropertyValue,
+    /// Where the value is, to point at.
+    pub(super) place: Location,
+}
+
+impl Given {
+    /// The value as a text with its place; `None` when it is not one text.
+    pub(super) fn text(&self) -> Option<Text> {
+        match &self.value {
+            PropertyValue::Text(text) => Some(Text::new(text.as_str().into(), self.place)),
+            _ => None,
+        }
+    }
+}
+
+/// What all properties of a component come to.
+pub(super) struct Checked {
+    /// By the places of the class's properties.
+    pub(super) given: Vec<Option<Given>>,
+    /// Whether there was no fault, so that the component can be constructed.
+    pub(super) is_sound: bool,
+}
+
+impl Checked {
+    /// What is given for the property of this name.
+    pub(super) fn get(&self, class: &ClassIndex<'_>, name: &str) -> Option<&Given> {
+        self.given[class.property(name)?].as_ref()
+    }
+
+    /// The values of those properties that `of` finds a declaration for.
+    pub(super) fn values<'r>(
+        &self,
+        class: &ClassIndex<'r>,
+        of: impl Fn(&Slot<'r>) -> Option<&'r PropertyDeclaration>,
+    ) -> Vec<(String, PropertyValue)> {
+        let slots = class.properties.iter().zip(&self.given);
+        let values =
+            slots.filter_map(|(slot, given)| Some((of(slot)?.name.clone(), given.as_ref()?.value.clone())));
+        values.collect()
+    }
+}
+
+/// Checks the properties of one component of the class.
+pub(super) fn check<'a>(
+    fleet: &Fleet<'a>,
+    member: &Member<'a>,
+    class: &ClassIndex<'_>,
+    parameters: &mut Parameters<'a>,
+    values: &mut Values,
+    report: &mut Report<'_>,
+) -> Checked {
+    let component = member.component;
+    let mut given: Vec<Option<Given>> =
+        std::iter::repeat_with(|| None).take(class.properties.len()).collect();
+    let mut first: Vec<Option<&Property>> = vec![None; class.properties.len()];
+    let mut is_sound = true;
+    for property in &component.properties {
+        if property.name.is_empty() {
+            is_sound = false;
+            continue;
+        }
+        let Some(place) = class.property(&property.name) else {
+            report_unknown(property, class, report);
+            if let Some(source) = property.source() {
+                let _ = parameters.resolve(member.composite, source, report);
+            }
+            is_sound = false;
+            continue;
+        };
+        if let Some(first) = first[place] {
+            let message = format!("the property {} is given twice", quoted(&property.name));
+            report.push(
+                Diagnostic::new(&codes::PROPERTY_REPEATED, property.name.location, message)
+                    .label(first.name.location, "first here"),
+            );
+            is_sound = false;
+            continue;
+        }
+        first[place] = Some(property);
+        let slot = &class.properties[place];
+        match value(fleet, member, property, slot, parameters, values, report) {
+            Ok(value) => given[place] = value,
+            Err(()) => is_sound = false,
+        }
+    }
+    for (place, slot) in class.properties.iter().enumerate() {
+        let Some(declaration) = slot.main() else { continue };
+        if given[place].is_some() || !slot.is_required() {
+            continue;
+        }
+        let name = declaration.name.as_str();
+        if class.class.presets().iter().any(|(preset, _)| preset == name) {
+            continue;
+        }
+        is_sound = false;
+        // What is given wrongly is reported already; what `source` leads to may just have no value.
+        match first[place] {
+            None => report_missing(fleet, member, declaration, class, report),
+            Some(property) if property.source().is_some() => {
+                let message = format!("the property {} has no value: its source has none", quoted(name));
+                let at = property.source().map_or(property.tag(), |source| source.location);
+                report.push(Diagnostic::new(&codes::PROPERTY_MISSING, at, message));
+            }
+            Some(_) => {}
+        }
+    }
+    Checked { given, is_sound }
+}
+
+/// The value of a property; `None` when its `source` has none.
+fn value<'a>(
+    fleet: &Fleet<'a>,
+    member: &Member<'a>,
+    property: &'a Property,
+    slot: &Slot<'_>,
+    parameters: &mut Parameters<'a>,
+    values: &mut Values,
+    report: &mut Report<'_>,
+) -> Result<Option<Given>, ()> {
+    let path = Path { outer: None, name: &property.name };
+    let document = &fleet.composite_of(member).document;
+    let mut used = Use { property: property.tag(), source: None };
+    let mut found = Raw(Vec::new());
+    if let Some(source) = property.source() {
+        found = parameters.resolve(member.composite, source, report)?;
+        used = Use { property: source.location, source: Some(source.location) };
+    } else if let Some(file) = property.file() {
+        let message = "values from files are not supported yet: `file` names one";
+        let one = Diagnostic::new(&codes::NOT_SUPPORTED_YET, file.location, message);
+        report.push(one.help("write the value in the composite"));
+        return Err(());
+    }
+    if found.0.is_empty() {
+        // A source without a value leaves what stands in the property itself, as SCA says.
+        let own = raw(property, document, report)?;
+        if used.source.is_some() {
+            if own.0.is_empty() {
+                return Ok(None);
+            }
+            used = Use { property: property.tag(), source: None };
+        }
+        found = own;
+    }
+    let place = found.0.first().map_or(used.property, |piece| piece.location());
+    let both: [Option<&PropertyDeclaration>; 2] = [slot.own, slot.task];
+    let value = match both {
+        [Some(own), Some(task)] => values.convert(found, path, &[own, task], used, report),
+        [Some(one), None] | [None, Some(one)] => values.convert(found, path, &[one], used, report),
+        [None, None] => None,
+    };
+    Ok(Some(Given { value: value.ok_or(())?, place }))
+}
+
+fn report_unknown(property: &Property, class: &ClassIndex<'_>, report: &mut Report<'_>) {
+    let (name, at) = (&property.name, property.name.location);
+    let of = quoted(class.class.name());
+    let is_task = !class.class.declaration().is_periodic()
+        && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
+    let message = format!("class {of} has no property {}", quoted(name));
+    let known = ("its properties are", class.property_names());
+    let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
+    report.push(match is_task {
+        true => one.help(format!("{of} is passive: it is never executed and has no task properties")),
+        false => one,
+    });
+}
+
+fn report_missing(
+    fleet: &Fleet<'_>,
+    member: &Member<'_>,
+    declaration: &PropertyDeclaration,
+    class: &ClassIndex<'_>,
+    report: &mut Report<'_>,
+) {
+    let component = member.component;
+    let name = declaration.name.as_str();
+    let is_meant =
+        |given: &Property| class.property(&given.name).is_none() && nearest(&given.name, [name]).is_some();
+    if component.properties.iter().any(is_meant) {
+        // It is there, misspelt, and reported with the right name.
+        return;
+    }
+    let element = component.origin.element(&fleet.composite_of(member).document);
+    let tag = element.prefix().map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
+    let message = format!("component {} lacks the property {}", quoted(&component.name), quoted(name));
+    report.push(
+        Diagnostic::new(&codes::PROPERTY_MISSING, component.name.location, message)
+            .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),
+    );
+}

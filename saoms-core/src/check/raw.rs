@@ -1,0 +1,102 @@
+//! Values as files give them, before anybody asks what they should be.
+
+use std::borrow::Cow;
+
+use super::report::Report;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{Part, Property};
+use crate::source::{Located, Location, Text};
+use crate::xml::{Document, Element};
+
+/// Every value that a property is given; none when it is given nothing.
+pub(super) struct Raw<'a>(pub(super) Vec<Piece<'a>>);
+
+/// One value.
+pub(super) enum Piece<'a> {
+    /// A text.
+    Text(Cow<'a, Text>),
+    /// Elements: the named values of a complex property.
+    Elements(Vec<Element<'a>>),
+}
+
+impl<'a> Raw<'a> {
+    /// One text.
+    pub(super) fn one(text: &'a Text) -> Self {
+        Self(vec![Piece::Text(Cow::Borrowed(text))])
+    }
+
+    /// What is inside these elements, a value each.
+    pub(super) fn of_elements(elements: &[Element<'a>]) -> Self {
+        Self(elements.iter().map(|element| Piece::inside(*element)).collect())
+    }
+
+    /// The elements of a complex value.
+    pub(super) fn elements(self) -> Option<Vec<Element<'a>>> {
+        match <[Piece<'a>; 1]>::try_from(self.0) {
+            Ok([Piece::Elements(elements)]) => Some(elements),
+            _ => None,
+        }
+    }
+}
+
+impl<'a> Piece<'a> {
+    /// What is inside an element.
+    pub(super) fn inside(element: Element<'a>) -> Self {
+        let children: Vec<Element<'a>> = element.children().collect();
+        if !children.is_empty() {
+            return Self::Elements(children);
+        }
+        let nothing = || Located::new("".into(), element.name_location());
+        Self::Text(Cow::Owned(element.trimmed_text().unwrap_or_else(nothing)))
+    }
+
+    /// Where it is.
+    pub(super) fn location(&self) -> Location {
+        match self {
+            Self::Text(text) => text.location,
+            // Never without any: it was made from some.
+            Self::Elements(elements) => elements[0].name_location(),
+        }
+    }
+}
+
+/// The values that a property gives directly, in one of three ways: the attribute `value`, what is inside, or elements
+/// `value`. Two ways at once are reported.
+pub(super) fn raw<'a>(
+    property: &'a Property,
+    document: &'a Document,
+    report: &mut Report<'_>,
+) -> Result<Raw<'a>, ()> {
+    let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
+    if let Some(value) = &property.value {
+        ways.push((value.location, Raw::one(value)));
+    }
+    if let Some(text) = &property.text {
+        ways.push((text.location, Raw::one(text)));
+    }
+    if let Some(first) = property.values().first() {
+        let values = property.values().iter().map(|value| {
+            if value.content.is_empty() {
+                return Piece::Text(Cow::Borrowed(&value.text));
+            }
+            Piece::Elements(value.content.iter().map(|id| document.element(*id)).collect())
+        });
+        ways.push((first.tag(), Raw(values.collect())));
+    }
+    if let Some(first) = property.content().first() {
+        let elements = property.content().iter().map(|id| document.element(*id)).collect();
+        ways.push((document.element(*first).name_location(), Raw(vec![Piece::Elements(elements)])));
+    }
+    let mut ways = ways.into_iter();
+    let Some((first, raw)) = ways.next() else { return Ok(Raw(Vec::new())) };
+    if let Some((second, _)) = ways.next() {
+        let message = format!("the property {} is given a value in two ways", quoted(&property.name));
+        report.push(
+            Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message)
+                .label(first, "the other one")
+                .help("write it as text inside, as the attribute `value`, or as `<value>` elements"),
+        );
+        return Err(());
+    }
+    Ok(raw)
+}

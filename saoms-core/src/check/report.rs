@@ -1,0 +1,105 @@
+//! Where the rules put what they find.
+
+use std::collections::HashSet;
+use std::ops::Range;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, nearest, quoted};
+use crate::source::{FileId, Location, Sources, Span, Text};
+
+/// How many right names are looked at for all wrong ones together: in a large file full of wrong names every search goes
+/// through all right ones.
+const CANDIDATES: usize = 1_000_000;
+
+/// Collects diagnostics, and knows the texts they are about.
+pub(super) struct Report<'a> {
+    sources: &'a Sources,
+    diagnostics: &'a mut Diagnostics,
+    candidates: usize,
+    escalated: HashSet<(&'static str, FileId)>,
+}
+
+impl<'a> Report<'a> {
+    pub(super) fn new(sources: &'a Sources, diagnostics: &'a mut Diagnostics) -> Self {
+        Self { sources, diagnostics, candidates: CANDIDATES, escalated: HashSet::new() }
+    }
+
+    pub(super) fn push(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Makes errors of all warnings of one code in one file.
+    pub(super) fn escalate(&mut self, code: &'static Code, file: FileId, why: &str) {
+        if self.escalated.insert((code.id, file)) {
+            self.diagnostics.escalate(code, file, why);
+        }
+    }
+
+    pub(super) fn has_errors(&self) -> bool {
+        self.diagnostics.has_errors()
+    }
+
+    /// The place of a part of `text`; that of all of it where references in the file hide which characters they are.
+    pub(super) fn part(&self, text: &Text, part: Range<usize>) -> Location {
+        let Location { file, span } = text.location;
+        if self.sources.snippet(text.location) != text.as_str() {
+            return text.location;
+        }
+        Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file)
+    }
+
+    /// A diagnostic about a name that stands for nothing: with the likeliest right one as a suggestion, or else with all
+    /// right ones, introduced by `known_as`.
+    pub(super) fn unknown<'n>(
+        &mut self,
+        code: &'static Code,
+        at: Location,
+        message: String,
+        name: &str,
+        (known_as, candidates): (&str, impl IntoIterator<Item = &'n str> + Clone),
+    ) -> Diagnostic {
+        let one = Diagnostic::new(code, at, message);
+        let Some(left) = self.candidates.checked_sub(candidates.clone().into_iter().count()) else {
+            return one;
+        };
+        self.candidates = left;
+        match nearest(name, candidates.clone()) {
+            Some(meant) => one.suggest(replacing(name, meant), at, escaped(meant)),
+            None if candidates.clone().into_iter().next().is_none() => one,
+            None => one.help(format!("{known_as} {}", list(candidates))),
+        }
+    }
+}
+
+/// What a suggestion says.
+pub(super) fn replacing(name: &str, meant: &str) -> String {
+    format!("replace {} with {}", quoted(name), quoted(meant))
+}
+
+/// A text as it can stand in an attribute or an element.
+pub(super) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&apos;"),
+            _ => out.push(character),
+        }
+    }
+    out
+}
+
+/// Names for a line of help: `a`, `b` and `c`, at most thirty of them.
+pub(super) fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+    const MOST: usize = 30;
+    let mut names = names.into_iter();
+    let shown: Vec<String> = names.by_ref().take(MOST).map(quoted).collect();
+    let more = names.count();
+    match (&shown[..], more) {
+        ([], _) => "none".to_owned(),
+        ([one], 0) => one.clone(),
+        ([most @ .., last], 0) => format!("{} and {last}", most.join(", ")),
+        _ => format!("{} and {more} more", shown.join(", ")),
+    }
+}

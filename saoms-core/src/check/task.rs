@@ -1,0 +1,189 @@
+//! The task properties of a component: what goes beyond each value alone.
+
+use saoms_api::PropertyValue;
+
+use super::classes::ClassIndex;
+use super::properties::Checked;
+use super::report::{Report, list};
+use super::{endpoint, rename};
+use crate::assembly::{Restart, TaskSettings};
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{Component, Part};
+use crate::registry::TopicDeclaration;
+use crate::source::{Location, Text};
+
+/// How a component runs, and where its topics got their names.
+pub(super) struct Task {
+    pub(super) settings: TaskSettings,
+    /// Where each pair of `settings.topic_rename` has its new name.
+    pub(super) renamed_at: Vec<Location>,
+}
+
+/// The settings of a component of a periodic class whose properties are sound. Faults are reported.
+pub(super) fn check(
+    component: &Component,
+    class: &ClassIndex<'_>,
+    checked: &Checked,
+    report: &mut Report<'_>,
+) -> Option<Task> {
+    let text = |name: &str| {
+        checked.get(class, name).and_then(|given| given.text()).filter(|text| !text.trim().is_empty())
+    };
+    if let Some(url) = text("url") {
+        check_url(&url, report);
+    }
+    let (pairs, renamed_at) = match text("topicRename") {
+        Some(text) => renames(&text, class, report),
+        None => (Vec::new(), Vec::new()),
+    };
+    let mut values = checked.values(class, |slot| slot.task);
+    for (name, value) in class.class.presets() {
+        if class
+            .property(name)
+            .is_some_and(|place| class.properties[place].task.is_some() && checked.given[place].is_none())
+        {
+            values.push((name.clone(), value.clone()));
+        }
+    }
+    let settings = match TaskSettings::from_values(&values, pairs) {
+        Ok(settings) => settings,
+        // Not reached with sound properties; and if it is, somebody hears of it.
+        Err(failure) => {
+            let message = format!("component {}: {failure}", quoted(&component.name));
+            report.push(Diagnostic::new(&codes::CONSTRUCTION, component.name.location, message));
+            return None;
+        }
+    };
+    combinations(component, class, checked, &settings, report);
+    Some(Task { settings, renamed_at })
+}
+
+fn check_url(url: &Text, report: &mut Report<'_>) {
+    let Some(fault) = endpoint::fault(url) else { return };
+    let at = report.part(url, fault.at);
+    let message = format!("{} is no address of a message broker: {}", quoted(url), fault.message);
+    let one = Diagnostic::new(&codes::BROKER_URL, at, message)
+        .help("an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535");
+    report.push(match fault.instead {
+        Some(instead) if instead.is_empty() => one.suggest("remove it", at, instead),
+        Some(instead) => one.suggest(format!("replace it with {}", quoted(&instead)), at, instead),
+        None => one,
+    });
+}
+
+/// The topics of a class, each once.
+fn topics<'c>(class: &'c ClassIndex<'_>) -> impl Iterator<Item = &'c TopicDeclaration> + Clone {
+    let declaration = class.class.declaration();
+    let published = |name: &str| declaration.publishes.iter().any(|topic| topic.name == name);
+    let others = declaration.subscribes.iter().filter(move |topic| !published(&topic.name));
+    declaration.publishes.iter().chain(others)
+}
+
+fn renames(
+    text: &Text,
+    class: &ClassIndex<'_>,
+    report: &mut Report<'_>,
+) -> (Vec<(String, String)>, Vec<Location>) {
+    let (pairs, faults) = rename::parse(text);
+    for fault in faults {
+        let at = report.part(text, fault.at);
+        let mut one =
+            Diagnostic::new(&codes::TOPIC_RENAME, at, format!("bad `topicRename`: {}", fault.message));
+        match fault.other {
+            Some((other, what)) => one = one.label(report.part(text, other), what),
+            None => one = one.help("write `OLD,new` for each topic, and `::` between two of them"),
+        }
+        report.push(one);
+    }
+    for pair in &pairs {
+        let name = pair.old.text;
+        if topics(class).any(|topic| topic.name == name) {
+            continue;
+        }
+        let names = topics(class).map(|topic| topic.name.as_str());
+        let message = format!(
+            "class {} uses no topic {}: nothing is renamed",
+            quoted(class.class.name()),
+            quoted(name)
+        );
+        let at = report.part(text, pair.old.at.clone());
+        let one = report.unknown(&codes::RENAME_UNUSED, at, message, name, ("its topics are", names));
+        report.push(one);
+    }
+    let places = pairs.iter().map(|pair| report.part(text, pair.new.at.clone())).collect();
+    let names = pairs.iter().map(|pair| (pair.old.text.to_owned(), pair.new.text.to_owned()));
+    (names.collect(), places)
+}
+
+/// Settings that do not go together.
+fn combinations(
+    component: &Component,
+    class: &ClassIndex<'_>,
+    checked: &Checked,
+    settings: &TaskSettings,
+    report: &mut Report<'_>,
+) {
+    let place = |name: &str| checked.get(class, name).map(|given| given.place);
+    let name = quoted(&component.name);
+    if !settings.use_jms && class.has_topics() {
+        let declaration = class.class.declaration();
+        let mut uses = Vec::new();
+        for (verb, topics) in
+            [("publishes", &declaration.publishes), ("subscribes to", &declaration.subscribes)]
+        {
+            if !topics.is_empty() {
+                uses.push(format!("{verb} {}", list(topics.iter().map(|topic| topic.name.as_str()))));
+            }
+        }
+        let message = format!("`useJMS` is false, and component {name} {}", uses.join(" and "));
+        let at = place("useJMS").unwrap_or(component.tag());
+        report.push(
+            Diagnostic::new(&codes::USE_JMS, at, message)
+                .help("set `useJMS` to true: without it a component cannot publish or subscribe"),
+        );
+    }
+    if let Some(deadline) = settings.deadline
+        && deadline > settings.period
+    {
+        let shown = |duration| saoms_api::format_duration(duration);
+        let message = format!(
+            "the deadline of {} is behind the period of {}: the next execution is due before it",
+            shown(deadline),
+            shown(settings.period)
+        );
+        let one = Diagnostic::new(&codes::DEADLINE, place("deadline").unwrap_or(component.tag()), message);
+        report.push(match place("period") {
+            Some(period) => one.label(period, "the period"),
+            None => one,
+        });
+    }
+    if settings.restart == Restart::Never {
+        for name in ["restartBackoff", "restartLimit"] {
+            if let Some(place) = place(name) {
+                let message = format!("{} has no effect: the component is never restarted", quoted(name));
+                let one = Diagnostic::new(&codes::RESTART_UNUSED, place, message);
+                report.push(one.help("set `restart` to `onFailure`"));
+            }
+        }
+    }
+    credentials(checked, class, settings, report);
+}
+
+fn credentials(checked: &Checked, class: &ClassIndex<'_>, settings: &TaskSettings, report: &mut Report<'_>) {
+    let is_empty =
+        |value: &PropertyValue| matches!(value, PropertyValue::Text(text) if text.trim().is_empty());
+    let given = |name: &str| checked.get(class, name).filter(|given| !is_empty(&given.value));
+    let (user, password) = (given("user"), given("password"));
+    let fault = match (user, password) {
+        (Some(user), None) => Some((user, "`user` is given without `password`".to_owned())),
+        (None, Some(password)) => Some((password, "`password` is given without `user`".to_owned())),
+        (Some(user), Some(_)) if settings.url.is_none() => Some((
+            user,
+            "`user` and `password` have no effect: there is no `url` of a message broker".to_owned(),
+        )),
+        _ => None,
+    };
+    if let Some((given, message)) = fault {
+        report.push(Diagnostic::new(&codes::CREDENTIALS, given.place, message));
+    }
+}

@@ -1,0 +1,93 @@
+//! The parts that know no composite.
+
+use std::collections::HashSet;
+
+use proptest::prelude::*;
+
+use super::cycles::{Edge, cycles};
+use super::{endpoint, rename};
+
+fn graph(nodes: usize, wires: &[(usize, usize)]) -> Vec<Vec<Edge>> {
+    let mut edges = vec![Vec::new(); nodes];
+    for (wire, (from, to)) in wires.iter().enumerate() {
+        edges[*from].push(Edge { to: *to, wire });
+    }
+    edges
+}
+
+#[test]
+fn every_cycle_is_cut_at_the_wire_that_closes_it() {
+    assert_eq!(cycles(&graph(3, &[(0, 1), (1, 2), (0, 2)])), Vec::<Vec<usize>>::new());
+    assert_eq!(cycles(&graph(3, &[(0, 1), (1, 2), (2, 0)])), [[0, 1, 2]]);
+    assert_eq!(cycles(&graph(1, &[(0, 0)])), [[0]]);
+    assert_eq!(cycles(&graph(4, &[(0, 1), (1, 2), (2, 1), (2, 3), (3, 1)])), [vec![1, 2], vec![1, 3, 4]]);
+}
+
+#[test]
+fn a_long_chain_costs_no_stack() {
+    let wires: Vec<_> = (0..200_000).map(|node| (node, (node + 1) % 200_000)).collect();
+    assert_eq!(cycles(&graph(200_000, &wires)).len(), 1);
+}
+
+/// Whether there is a cycle, found another way: by taking away what nothing leads to.
+fn has_cycle(nodes: usize, wires: &[(usize, usize)]) -> bool {
+    let mut left: HashSet<usize> = (0..nodes).collect();
+    loop {
+        let reached: HashSet<usize> =
+            wires.iter().filter(|(from, _)| left.contains(from)).map(|(_, to)| *to).collect();
+        let before = left.len();
+        left.retain(|node| reached.contains(node));
+        if left.len() == before {
+            return !left.is_empty();
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn without_the_closing_wires_there_is_no_cycle(wires in prop::collection::vec((0..8usize, 0..8usize), 0..20)) {
+        let found = cycles(&graph(8, &wires));
+        prop_assert_eq!(!found.is_empty(), has_cycle(8, &wires));
+        for cycle in &found {
+            let next = cycle.iter().cycle().skip(1);
+            for (wire, next) in cycle.iter().zip(next) {
+                prop_assert_eq!(wires[*wire].1, wires[*next].0, "the wires follow each other");
+            }
+        }
+        let closing: HashSet<usize> = found.iter().filter_map(|cycle| cycle.last().copied()).collect();
+        let others: Vec<_> = wires.iter().enumerate().filter(|(wire, _)| !closing.contains(wire)).map(|(_, ends)| *ends).collect();
+        prop_assert!(!has_cycle(8, &others));
+    }
+
+    #[test]
+    fn renames_are_read_from_any_text(text in "([ABab ,:é]|::|, ){0,12}") {
+        let (pairs, faults) = rename::parse(&text);
+        for pair in &pairs {
+            for name in [&pair.old, &pair.new] {
+                prop_assert_eq!(&text[name.at.clone()], name.text);
+                prop_assert!(!name.text.is_empty() && name.text == name.text.trim());
+            }
+        }
+        for fault in &faults {
+            prop_assert!(text.get(fault.at.clone()).is_some());
+        }
+        if faults.is_empty() {
+            let written: Vec<String> = pairs.iter().map(|pair| format!("{},{}", pair.old.text, pair.new.text)).collect();
+            let again = written.join("::");
+            let (same, none) = rename::parse(&again);
+            prop_assert!(none.is_empty());
+            let names = |pairs: &[rename::Pair<'_>]| -> Vec<(String, String)> {
+                pairs.iter().map(|pair| (pair.old.text.to_owned(), pair.new.text.to_owned())).collect()
+            };
+            prop_assert_eq!(names(&same), names(&pairs));
+        }
+    }
+
+    #[test]
+    fn any_text_is_an_address_or_has_a_fault_inside_it(text in "[a1:.\\[\\]é/ -]{0,12}") {
+        match endpoint::fault(&text) {
+            Some(fault) => prop_assert!(text.get(fault.at).is_some(), "{}", text),
+            None => prop_assert!(text.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok())),
+        }
+    }
+}

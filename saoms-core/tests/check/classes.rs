@@ -1,0 +1,244 @@
+//! The classes that the tests' composites name.
+
+use std::time::Duration;
+
+use saoms_api::{
+    Class, Component, Context, Failure, Message, Properties, PropertyField, Registration, TaskInterface,
+    Topic, interface,
+};
+use saoms_core::registry::Registry;
+
+/// All of them.
+pub(crate) fn registry() -> Registry {
+    let mut registry = Registry::new();
+    let all = [
+        Registration::of::<Robot>(),
+        Registration::of::<Navigator>(),
+        Registration::of::<Gps>(),
+        Registration::of::<OldGps>(),
+        Registration::of::<Twins>(),
+        Registration::of::<Clock>(),
+        Registration::of::<Broker>(),
+        Registration::of::<Shouter>(),
+        Registration::of::<Tracker>(),
+        Registration::of::<Fragile>(),
+    ];
+    for one in all {
+        registry.add(one).unwrap();
+    }
+    registry
+}
+
+#[derive(Clone, Debug, Message)]
+pub(crate) struct Position {
+    x: i32,
+    y: i32,
+}
+
+#[derive(Clone, Debug, Message)]
+#[message(name = "Position")]
+pub(crate) struct OtherPosition {
+    x: f64,
+    y: f64,
+}
+
+#[derive(Clone, Debug, Message)]
+pub(crate) struct Order {
+    block: u32,
+}
+
+const POSITION: Topic<Position> = Topic::state("POSTOPIC");
+const ORDERS: Topic<Order> = Topic::event("ORDERS");
+const SHOUTED: Topic<Position> = Topic::event("POSTOPIC");
+const TRACKED: Topic<OtherPosition> = Topic::state("TRACKS");
+
+#[interface(name = "test.Wheels")]
+pub(crate) trait Wheels {
+    fn r#move(&mut self, context: &mut Context<'_>, blocks: u32) -> Result<bool, Failure>;
+}
+
+#[interface(name = "test.Positions")]
+pub(crate) trait Positions {
+    fn position(&mut self, context: &mut Context<'_>) -> Result<i32, Failure>;
+}
+
+mod old {
+    use super::*;
+
+    #[interface(name = "test.Positions")]
+    pub(crate) trait OldPositions {
+        fn position(&mut self, context: &mut Context<'_>) -> Result<f64, Failure>;
+    }
+}
+use old::OldPositions;
+
+macro_rules! component {
+    ($name:ident, $properties:ty) => {
+        impl Component for $name {
+            type Properties = $properties;
+
+            fn new(_: $properties) -> Result<Self, Failure> {
+                Ok($name)
+            }
+        }
+    };
+}
+
+macro_rules! offers {
+    ($name:ident, $interface:ident, $operation:ident($($argument:ident: $of:ty),*) -> $reply:ty) => {
+        impl $interface for $name {
+            fn $operation(&mut self, _: &mut Context<'_>, $($argument: $of),*) -> Result<$reply, Failure> {
+                Err(Failure::new("never called"))
+            }
+        }
+    };
+}
+
+#[derive(Debug, PropertyField)]
+pub(crate) enum Colour {
+    Red,
+    Blue,
+}
+
+#[derive(Properties)]
+#[expect(dead_code, reason = "never executed")]
+pub(crate) struct Block {
+    x: i32,
+    #[property(default = 0, range = 0..=10)]
+    y: i32,
+}
+
+#[derive(Properties)]
+#[expect(dead_code, reason = "never executed")]
+pub(crate) struct RobotProperties {
+    /// The robot's name.
+    #[property(name = "ID", unique = "robot", required_text)]
+    id: String,
+    /// The number of the robot.
+    #[property(range = 1..=99)]
+    number: u8,
+    /// How fast it drives.
+    #[property(default = 1.0, range = 0.0..=2.5, unit = "m/s")]
+    speed: f64,
+    #[property(default = "blue")]
+    colour: Colour,
+    #[property(default = true)]
+    awake: bool,
+    /// Where it charges.
+    charger: Option<Block>,
+    stops: Vec<u16>,
+    #[property(default = "10ms")]
+    grace: Duration,
+}
+
+/// Drives around.
+#[derive(Class)]
+#[class(
+    name = "test.Robot",
+    periodic,
+    publishes(POSITION),
+    subscribes(POSITION, ORDERS),
+    service("move": Wheels),
+    reference("gps": Positions, optional),
+    also("test.Robot001", number = 1),
+    also("robot.Robot001", number = 1),
+    also("robot.Robot002", number = 2)
+)]
+pub(crate) struct Robot;
+
+impl Component for Robot {
+    type Properties = RobotProperties;
+
+    fn new(properties: RobotProperties) -> Result<Self, Failure> {
+        if properties.speed > 2.0 && matches!(properties.colour, Colour::Red) {
+            return Err(Failure::new("a red robot drives at most 2 m/s"));
+        }
+        Ok(Self)
+    }
+}
+
+offers!(Robot, Wheels, r#move(_blocks: u32) -> bool);
+
+/// Tells robots where to go.
+#[derive(Class)]
+#[class(
+    name = "test.Navigator",
+    passive,
+    service("position": Positions),
+    reference("wheels": Wheels),
+    reference("task": TaskInterface, optional)
+)]
+pub(crate) struct Navigator;
+
+component!(Navigator, ());
+offers!(Navigator, Positions, position() -> i32);
+
+#[derive(Class)]
+#[class(name = "test.Gps", passive, service("position": Positions), reference("other": Positions, optional))]
+pub(crate) struct Gps;
+
+component!(Gps, ());
+offers!(Gps, Positions, position() -> i32);
+
+#[derive(Class)]
+#[class(name = "test.OldGps", passive, service("position": OldPositions))]
+pub(crate) struct OldGps;
+
+component!(OldGps, ());
+offers!(OldGps, OldPositions, position() -> f64);
+
+#[derive(Class)]
+#[class(name = "test.Twins", passive, service("left": Wheels), service("right": Wheels))]
+pub(crate) struct Twins;
+
+component!(Twins, ());
+offers!(Twins, Wheels, r#move(_blocks: u32) -> bool);
+
+/// Does nothing, periodically.
+#[derive(Class)]
+#[class(name = "test.Clock", periodic)]
+pub(crate) struct Clock;
+
+component!(Clock, ());
+
+#[derive(Properties)]
+#[expect(dead_code, reason = "never executed")]
+pub(crate) struct BrokerProperties {
+    #[property(name = "IP", required_text)]
+    address: String,
+    #[property(range = 1..=65535)]
+    port: u16,
+}
+
+#[derive(Class)]
+#[class(name = "test.Broker", passive, also("unibg.robotics.tca.MessageBrokerImpl"))]
+pub(crate) struct Broker;
+
+component!(Broker, BrokerProperties);
+
+/// Uses the robots' topic for events.
+#[derive(Class)]
+#[class(name = "test.Shouter", periodic, publishes(SHOUTED))]
+pub(crate) struct Shouter;
+
+component!(Shouter, ());
+
+/// Has other ideas of a position.
+#[derive(Class)]
+#[class(name = "test.Tracker", periodic, publishes(TRACKED))]
+pub(crate) struct Tracker;
+
+component!(Tracker, ());
+
+/// Panics when somebody makes one.
+#[derive(Class)]
+#[class(name = "test.Fragile", passive)]
+pub(crate) struct Fragile;
+
+impl Component for Fragile {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        panic!("do not touch")
+    }
+}

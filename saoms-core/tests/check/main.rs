@@ -1,0 +1,12 @@
+//! What the checker finds in composites, and what it makes of those without faults.
+
+#![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, outside test functions")]
+
+mod assemblies;
+mod classes;
+mod names;
+mod properties;
+mod support;
+mod tasks;
+mod topics;
+mod wires;
