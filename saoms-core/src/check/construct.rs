@@ -23,7 +23,11 @@ pub(super) fn check(
         Err(panic) => format!("its constructor panicked: {}", said(&*panic)),
     };
     let message = format!("component {}: {message}", quoted(&component.name));
-    report.push(Diagnostic::new(&codes::CONSTRUCTION, component.name.location, message));
+    let help = format!(
+        "{} says what its properties mean",
+        quoted(&format!("saoms components {}", class.class.name()))
+    );
+    report.push(Diagnostic::new(&codes::CONSTRUCTION, component.name.location, message).help(help));
 }
 
 fn said(panic: &(dyn std::any::Any + Send)) -> &str {

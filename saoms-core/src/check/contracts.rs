@@ -73,7 +73,7 @@ fn repeated<'a>(
         if let Some(first) = seen.get(name.as_str()) {
             let message = format!("component {} has two {what}s {}", quoted(&component.name), quoted(name));
             let one = Diagnostic::new(&codes::CONTRACT_REPEATED, name.location, message);
-            report.push(one.rule(rule).label(*first, "the first"));
+            report.push(one.rule(rule).label(*first, "the first").help("keep one of them"));
         } else {
             seen.insert(name, name.location);
         }
@@ -166,6 +166,11 @@ fn bindings(bindings: &[Binding], so: &str, report: &mut Report<'_>) {
             continue;
         }
         let message = format!("{} is not served: {so}", quoted(&format!("binding.{}", binding.kind)));
-        report.push(Diagnostic::new(&codes::BINDING_NOT_SERVED, binding.tag(), message));
+        let one = Diagnostic::new(&codes::BINDING_NOT_SERVED, binding.tag(), message);
+        report.push(
+            one.help(
+                "remove it; other machines are reached through topics and the `url` of a message broker",
+            ),
+        );
     }
 }

@@ -20,6 +20,8 @@ pub(super) struct Parameters<'a> {
 struct Scope<'a> {
     composite: &'a Composite,
     by_name: HashMap<&'a str, Parameter<'a>>,
+    /// Whether a `source` leads to none of them: one of them is probably meant.
+    has_wrong_source: bool,
 }
 
 struct Parameter<'a> {
@@ -49,13 +51,14 @@ impl<'a> Parameters<'a> {
                     report.push(
                         Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, property.name.location, message)
                             .rule("ASM60014")
-                            .label(first.property.name.location, "the first"),
+                            .label(first.property.name.location, "the first")
+                            .help("give each its own name"),
                     );
                     continue;
                 }
                 by_name.insert(&property.name, Parameter { property, setting: None, is_used: false });
             }
-            scopes.push(Scope { composite, by_name });
+            scopes.push(Scope { composite, by_name, has_wrong_source: false });
         }
         let mut parameters = Self { scopes };
         parameters.set(settings, report);
@@ -69,7 +72,8 @@ impl<'a> Parameters<'a> {
                 let message = format!("{} is set twice", quoted(&setting.name));
                 report.push(
                     Diagnostic::new(&codes::SETTING_REPEATED, setting.name.location, message)
-                        .label(earlier.name.location, "first here"),
+                        .label(earlier.name.location, "first here")
+                        .help("keep one of them"),
                 );
                 continue;
             }
@@ -111,6 +115,7 @@ impl<'a> Parameters<'a> {
     ) -> Result<Raw<'a>, ()> {
         let scope = &mut self.scopes[scope];
         let Some((name, path)) = expression(source) else {
+            scope.has_wrong_source = true;
             let message = format!("{} names no property of the composite", quoted(source));
             let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
                 .help("write `$name`, or `$name/part` for a part of a complex property");
@@ -121,6 +126,7 @@ impl<'a> Parameters<'a> {
             return Err(());
         };
         let Some(parameter) = scope.by_name.get_mut(name) else {
+            scope.has_wrong_source = true;
             let names = scope.names();
             let at = report.part(source, 1..1 + name.len());
             let message = format!("the composite has no property {}", quoted(name));
@@ -163,7 +169,7 @@ impl<'a> Parameters<'a> {
                             .help(format!("write it in the file, or give `--set {name}=...`")),
                     );
                 }
-                if !parameter.is_used {
+                if !parameter.is_used && !scope.has_wrong_source {
                     let message =
                         format!("the property {} of the composite is used by no component", quoted(name));
                     let one = Diagnostic::new(&codes::UNUSED_PROPERTY, name.location, message);

@@ -84,7 +84,7 @@ fn repeated<'a>(
         if let Some(first) = seen.get(name.as_str()) {
             let message = format!("the composite has two {}s {}", side.name(), quoted(name));
             let one = Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, name.location, message);
-            report.push(one.rule(rule).label(*first, "the first"));
+            report.push(one.rule(rule).label(*first, "the first").help("give each its own name"));
         } else {
             seen.insert(name, name.location);
         }

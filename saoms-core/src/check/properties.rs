@@ -89,7 +89,8 @@ pub(super) fn check<'a>(
             let message = format!("the property {} is given twice", quoted(&property.name));
             report.push(
                 Diagnostic::new(&codes::PROPERTY_REPEATED, property.name.location, message)
-                    .label(first.name.location, "first here"),
+                    .label(first.name.location, "first here")
+                    .help("keep one of them"),
             );
             is_sound = false;
             continue;
@@ -192,13 +193,18 @@ fn report_missing(
 ) {
     let component = member.component;
     let name = declaration.name.as_str();
-    let is_meant =
-        |given: &Property| class.property(&given.name).is_none() && nearest(&given.name, [name]).is_some();
-    if component.properties.iter().any(is_meant) {
-        // It is there, misspelt, and reported with the right name.
+    let element = component.origin.element(&fleet.composite_of(member).document);
+    let is_meant = |given: &Property| {
+        given.name.is_empty()
+            || class.property(&given.name).is_none() && nearest(&given.name, [name]).is_some()
+    };
+    let is_property = |child: &str| child != "property" && nearest(child, ["property"]).is_some();
+    if component.properties.iter().any(is_meant)
+        || element.children().any(|child| is_property(child.local_name()))
+    {
+        // It is there, misspelt, and that is reported.
         return;
     }
-    let element = component.origin.element(&fleet.composite_of(member).document);
     let tag = element.prefix().map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
     let message = format!("component {} lacks the property {}", quoted(&component.name), quoted(name));
     report.push(

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::classes::ClassIndex;
 use super::fleet::Fleet;
-use super::report::{Report, list};
+use super::report::{Report, escaped, list, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
@@ -103,9 +103,10 @@ pub(super) fn provider(
             quoted(&interface.name)
         );
         let one = Diagnostic::new(&codes::WIRE_INTERFACE, at, message);
-        report.push(match found.name == interface.name {
-            true => one.help("both have one name and different operations: build both from one version"),
-            false => one,
+        let fitting = class.services.iter().find(|service| service.interface == *interface);
+        report.push(match fitting {
+            Some(fitting) => one.suggest(replacing(name, &fitting.name), at, escaped(&fitting.name)),
+            None => one.help(offers(class, interface)),
         });
         return None;
     }
@@ -153,15 +154,7 @@ fn only_service(
                 quoted(&interface.name)
             );
             let one = Diagnostic::new(&codes::WIRE_INTERFACE, text.location, message);
-            let offers = class
-                .services
-                .iter()
-                .map(|service| format!("{} ({})", quoted(&service.name), service.interface.name));
-            let offers: Vec<String> = offers.collect();
-            report.push(match offers.is_empty() {
-                true => one.help("it offers no services"),
-                false => one.help(format!("it offers {}", offers.join(", "))),
-            });
+            report.push(one.help(offers(class, interface)));
             None
         }
         (Some(_), Some(_)) => {
@@ -176,5 +169,21 @@ fn only_service(
             report.push(Diagnostic::new(&codes::TARGET_AMBIGUOUS, text.location, message).help(help));
             None
         }
+    }
+}
+
+/// What a component offers in place of the interface that is asked for.
+fn offers(class: &ClassIndex<'_>, interface: &InterfaceDeclaration) -> String {
+    if class.services.iter().any(|service| service.interface.name == interface.name) {
+        return "it offers the interface with other operations: build both components from one version"
+            .to_owned();
+    }
+    let offers = class
+        .services
+        .iter()
+        .map(|service| format!("{} ({})", quoted(&service.name), service.interface.name));
+    match offers.collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => "it offers no services".to_owned(),
+        all => format!("it offers {all}"),
     }
 }

@@ -151,7 +151,8 @@ fn combinations(
             shown(deadline),
             shown(settings.period)
         );
-        let one = Diagnostic::new(&codes::DEADLINE, place("deadline").unwrap_or(component.tag()), message);
+        let one = Diagnostic::new(&codes::DEADLINE, place("deadline").unwrap_or(component.tag()), message)
+            .help("a deadline is at most the period");
         report.push(match place("period") {
             Some(period) => one.label(period, "the period"),
             None => one,
@@ -175,15 +176,18 @@ fn credentials(checked: &Checked, class: &ClassIndex<'_>, settings: &TaskSetting
     let given = |name: &str| checked.get(class, name).filter(|given| !is_empty(&given.value));
     let (user, password) = (given("user"), given("password"));
     let fault = match (user, password) {
-        (Some(user), None) => Some((user, "`user` is given without `password`".to_owned())),
-        (None, Some(password)) => Some((password, "`password` is given without `user`".to_owned())),
+        (Some(user), None) => Some((user, "`user` is given without `password`", "give both, or neither")),
+        (None, Some(password)) => {
+            Some((password, "`password` is given without `user`", "give both, or neither"))
+        }
         (Some(user), Some(_)) if settings.url.is_none() => Some((
             user,
-            "`user` and `password` have no effect: there is no `url` of a message broker".to_owned(),
+            "`user` and `password` have no effect: there is no `url` of a message broker",
+            "give the `url` of the broker, or leave them out",
         )),
         _ => None,
     };
-    if let Some((given, message)) = fault {
-        report.push(Diagnostic::new(&codes::CREDENTIALS, given.place, message));
+    if let Some((given, message, help)) = fault {
+        report.push(Diagnostic::new(&codes::CREDENTIALS, given.place, message).help(help));
     }
 }

@@ -223,7 +223,8 @@ impl Wire<'_> {
         report.push(
             Diagnostic::new(&codes::TOO_MANY_TARGETS, second.place, message)
                 .rule(if multiplicity.is_required() { "ASM50040" } else { "ASM50039" })
-                .label(first.place, "the first"),
+                .label(first.place, "the first")
+                .help("keep one of them"),
         );
     }
 

@@ -33,8 +33,8 @@ fn assembly(texts: &[&str], settings: &[&str]) -> String {
 fn values_presets_wires_and_tasks() {
     let text = fleet(
         r#"<property name="pace">250us</property>
-<component name="N"><implementation.rust class="test.Navigator"/><reference name="wheels" target="R"/></component>
-<component name="R"><implementation.java class="test.Robot001"/>
+<component name="N"><implementation.rust class="example.Navigator"/><reference name="wheels" target="R"/></component>
+<component name="R"><implementation.java class="example.Robot001"/>
 <property name="ID">Robot</property>
 <property name="period" source="$pace"/>
 <property name="charger"><y xmlns="">4</y><x xmlns="">3</x></property>
@@ -42,22 +42,22 @@ fn values_presets_wires_and_tasks() {
 <property name="topicRename">POSTOPIC::pos</property>
 <property name="restart">onFailure</property>
 <reference name="gps" target="G/position"/></component>
-<component name="G"><implementation.java class="test.Gps"/></component>
+<component name="G"><implementation.java class="example.Gps"/></component>
 <wire source="N/task" target="R/TaskInterface"/>"#,
     );
     expect![[r#"
-        0 N is a test.Navigator
-          wheels (test.Wheels) -> 1 move
+        0 N is a example.Navigator
+          wheels (example.Wheels) -> 1 move
           task (unibg.robotics.tca.TaskInterface) -> 1 TaskInterface
-        1 R is a test.Robot001
+        1 R is a example.Robot001
           ID = Text("Robot")
           charger = Complex([("x", Text("3")), ("y", Text("4"))])
           stops = Many([Text("1")])
           number = Text("1")
-          gps (test.Positions) -> 2 position
+          gps (example.Positions) -> 2 position
           TaskSettings { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, topic_rename: [("POSTOPIC", "pos")], overrun: Skip, restart: OnFailure { backoff: 100ms, limit: 5 }, deadline: None, queue: 1024, loss: Fail }
-        2 G is a test.Gps
-          other (test.Positions) -> nothing
+        2 G is a example.Gps
+          other (example.Positions) -> nothing
     "#]].assert_eq(&assembly(&[&text], &["pace=2 s"]));
 }
 
@@ -101,7 +101,7 @@ fn the_files_of_the_manual() {
         1 Robot001 is a robot.Robot001
           ID = Text("Robot001")
           number = Text("1")
-          gps (test.Positions) -> nothing
+          gps (example.Positions) -> nothing
           TaskSettings { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, topic_rename: [("POS001", "pos001"), ("POS002", "pos002")], overrun: Skip, restart: Never, deadline: None, queue: 1024, loss: Fail }
     "#]].assert_eq(&assembly(&[broker, &tasks], &[]));
 }

@@ -52,12 +52,12 @@ const ORDERS: Topic<Order> = Topic::event("ORDERS");
 const SHOUTED: Topic<Position> = Topic::event("POSTOPIC");
 const TRACKED: Topic<OtherPosition> = Topic::state("TRACKS");
 
-#[interface(name = "test.Wheels")]
+#[interface(name = "example.Wheels")]
 pub(crate) trait Wheels {
     fn r#move(&mut self, context: &mut Context<'_>, blocks: u32) -> Result<bool, Failure>;
 }
 
-#[interface(name = "test.Positions")]
+#[interface(name = "example.Positions")]
 pub(crate) trait Positions {
     fn position(&mut self, context: &mut Context<'_>) -> Result<i32, Failure>;
 }
@@ -65,7 +65,7 @@ pub(crate) trait Positions {
 mod old {
     use super::*;
 
-    #[interface(name = "test.Positions")]
+    #[interface(name = "example.Positions")]
     pub(crate) trait OldPositions {
         fn position(&mut self, context: &mut Context<'_>) -> Result<f64, Failure>;
     }
@@ -134,13 +134,13 @@ pub(crate) struct RobotProperties {
 /// Drives around.
 #[derive(Class)]
 #[class(
-    name = "test.Robot",
+    name = "example.Robot",
     periodic,
     publishes(POSITION),
     subscribes(POSITION, ORDERS),
     service("move": Wheels),
     reference("gps": Positions, optional),
-    also("test.Robot001", number = 1),
+    also("example.Robot001", number = 1),
     also("robot.Robot001", number = 1),
     also("robot.Robot002", number = 2)
 )]
@@ -162,7 +162,7 @@ offers!(Robot, Wheels, r#move(_blocks: u32) -> bool);
 /// Tells robots where to go.
 #[derive(Class)]
 #[class(
-    name = "test.Navigator",
+    name = "example.Navigator",
     passive,
     service("position": Positions),
     reference("wheels": Wheels),
@@ -174,21 +174,21 @@ component!(Navigator, ());
 offers!(Navigator, Positions, position() -> i32);
 
 #[derive(Class)]
-#[class(name = "test.Gps", passive, service("position": Positions), reference("other": Positions, optional))]
+#[class(name = "example.Gps", passive, service("position": Positions), reference("other": Positions, optional))]
 pub(crate) struct Gps;
 
 component!(Gps, ());
 offers!(Gps, Positions, position() -> i32);
 
 #[derive(Class)]
-#[class(name = "test.OldGps", passive, service("position": OldPositions))]
+#[class(name = "example.OldGps", passive, service("position": OldPositions))]
 pub(crate) struct OldGps;
 
 component!(OldGps, ());
 offers!(OldGps, OldPositions, position() -> f64);
 
 #[derive(Class)]
-#[class(name = "test.Twins", passive, service("left": Wheels), service("right": Wheels))]
+#[class(name = "example.Twins", passive, service("left": Wheels), service("right": Wheels))]
 pub(crate) struct Twins;
 
 component!(Twins, ());
@@ -196,7 +196,7 @@ offers!(Twins, Wheels, r#move(_blocks: u32) -> bool);
 
 /// Does nothing, periodically.
 #[derive(Class)]
-#[class(name = "test.Clock", periodic)]
+#[class(name = "example.Clock", periodic)]
 pub(crate) struct Clock;
 
 component!(Clock, ());
@@ -211,28 +211,28 @@ pub(crate) struct BrokerProperties {
 }
 
 #[derive(Class)]
-#[class(name = "test.Broker", passive, also("unibg.robotics.tca.MessageBrokerImpl"))]
+#[class(name = "example.Broker", passive, also("unibg.robotics.tca.MessageBrokerImpl"))]
 pub(crate) struct Broker;
 
 component!(Broker, BrokerProperties);
 
 /// Uses the robots' topic for events.
 #[derive(Class)]
-#[class(name = "test.Shouter", periodic, publishes(SHOUTED))]
+#[class(name = "example.Shouter", periodic, publishes(SHOUTED))]
 pub(crate) struct Shouter;
 
 component!(Shouter, ());
 
 /// Has other ideas of a position.
 #[derive(Class)]
-#[class(name = "test.Tracker", periodic, publishes(TRACKED))]
+#[class(name = "example.Tracker", periodic, publishes(TRACKED))]
 pub(crate) struct Tracker;
 
 component!(Tracker, ());
 
 /// Panics when somebody makes one.
 #[derive(Class)]
-#[class(name = "test.Fragile", passive)]
+#[class(name = "example.Fragile", passive)]
 pub(crate) struct Fragile;
 
 impl Component for Fragile {

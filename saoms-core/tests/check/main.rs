@@ -6,6 +6,7 @@ mod assemblies;
 mod classes;
 mod names;
 mod properties;
+mod reference;
 mod support;
 mod tasks;
 mod topics;

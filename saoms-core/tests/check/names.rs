@@ -4,7 +4,7 @@ use expect_test::expect;
 
 use crate::support::{faults, faults_of, fleet, fleet_1_0};
 
-const GPS: &str = r#"<component name="G"><implementation.java class="test.Gps"/></component>"#;
+const GPS: &str = r#"<component name="G"><implementation.java class="example.Gps"/></component>"#;
 
 #[test]
 fn names_are_unique_across_files() {
@@ -36,33 +36,35 @@ fn names_are_unique_across_files() {
 #[test]
 fn services_and_references_are_those_of_the_class() {
     expect![[r#"
-        3:16-19 error S2005: class `test.Robot001` has no service `mov`
+        3:16-19 error S2005: class `example.Robot001` has no service `mov`
           fix: replace `mov` with `move` [3:16-19 "move"]
-        4:49-59 error S2007: the interface of `move` is `test.Wheels`, not `test.Wheel`
-          fix: replace `test.Wheel` with `test.Wheels` [4:49-59 "test.Wheels"]
+        4:49-62 error S2007: the interface of `move` is `example.Wheels`, not `example.Wheel`
+          fix: replace `example.Wheel` with `example.Wheels` [4:49-62 "example.Wheels"]
         5:16-20 error S2004: component `R` has two services `move`
           4:16-20 the first
+          help: keep one of them
         6:94-104 warning S2009: `binding.ws` is not served: the service can be called within the program alone
-        7:18-21 error S2006: class `test.Robot001` has no reference `GPS`
+          help: remove it; other machines are reached through topics and the `url` of a message broker
+        7:18-21 error S2006: class `example.Robot001` has no reference `GPS`
           fix: replace `GPS` with `gps` [7:18-21 "gps"]
-        8:37-41 error S2008: the multiplicity of `gps` is `0..1` in class `test.Robot001`: `0..n` does not narrow it
+        8:37-41 error S2008: the multiplicity of `gps` is `0..1` in class `example.Robot001`: `0..n` does not narrow it
           help: it can be `0..1` or `1..1`
-        8:44-58 error S2007: the interface of `gps` is `test.Positions`, which this element cannot name
-          help: write `<interface.java interface="test.Positions"/>`, or leave it out
-        11:51-55 error S2008: the multiplicity of `wheels` is `1..1` in class `test.Navigator`: `0..1` does not narrow it
+        8:44-58 error S2007: the interface of `gps` is `example.Positions`, which this element cannot name
+          help: write `<interface.java interface="example.Positions"/>`, or leave it out
+        11:51-55 error S2008: the multiplicity of `wheels` is `1..1` in class `example.Navigator`: `0..1` does not narrow it
           help: leave `multiplicity` out: `1..1` is the default
-        13:16-29 error S2005: class `test.Navigator` has no service `TaskInterface`
+        13:16-29 error S2005: class `example.Navigator` has no service `TaskInterface`
           help: its services are `position`
     "#]].assert_eq(&faults(
-        r#"<component name="R"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">1</property>
+        r#"<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property>
 <service name="mov"/>
-<service name="move"><interface.java interface="test.Wheel"/></service>
+<service name="move"><interface.java interface="example.Wheel"/></service>
 <service name="move"/>
 <service name="TaskInterface"><interface.java interface="unibg.robotics.tca.TaskInterface"/><binding.ws uri="http://x"/></service>
 <reference name="GPS"/>
 <reference name="gps" multiplicity="0..n"><interface.wsdl interface="http://x#wsdl.interface(Y)"/><binding.sca/></reference>
 </component>
-<component name="N"><implementation.java class="test.Navigator"/>
+<component name="N"><implementation.java class="example.Navigator"/>
 <reference name="wheels" target="R" multiplicity="0..1"/>
 <reference name="task" multiplicity="1..1" target="R"/>
 <service name="TaskInterface"/></component>"#,
@@ -80,6 +82,7 @@ fn promotions_have_to_exist() {
           help: write `component` or `component/name`
         6:16-17 error S2003: the composite has two services `a`
           2:16-17 the first
+          help: give each its own name
         6:28-29 error S2021: component `T` has several services: say which is promoted
           help: write `T/` and one of `left` and `right`
         7:18-19 warning S2022: reference `r` of the composite is wired to nothing: calls through it fail
@@ -97,13 +100,14 @@ fn promotions_have_to_exist() {
 <reference name="r" promote="G/other N/wheels N/whels"/>
 <reference name="s" promote="T"/>
 {GPS}
-<component name="N"><implementation.java class="test.Navigator"/></component>
-<component name="T"><implementation.java class="test.Twins"/></component>"#
+<component name="N"><implementation.java class="example.Navigator"/></component>
+<component name="T"><implementation.java class="example.Twins"/></component>"#
     )));
     expect![[r#"
         2:30-31 error S2011: there is no component `X`
         2:51-52 error S2003: the composite has two references `a`
           2:18-19 the first
+          help: give each its own name
         2:63-64 error S2011: there is no component `X`
     "#]]
     .assert_eq(&faults_of(

@@ -7,7 +7,7 @@ use crate::support::{faults, faults_of, fleet, fleet_1_0};
 /// A robot with this inside its `<component>`, besides its class and what it has to have.
 fn robot(inside: &str) -> String {
     format!(
-        r#"<component name="R"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">100</property>
+        r#"<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">100</property>
 {inside}
 </component>"#
     )
@@ -30,18 +30,18 @@ fn a_right_composite_has_no_faults() {
 #[test]
 fn unknown_classes_are_offered_the_nearest() {
     expect![[r#"
-        2:49-61 error S3001: there is no class `test.Robt001`
+        2:49-64 error S3001: there is no class `example.Robt001`
           help: looked among the 14 classes linked into this program; `saoms components` lists them
-          fix: replace `test.Robt001` with `test.Robot001` [2:49-61 "test.Robot001"]
-          fix: replace `test.Robt001` with `test.Robot` [2:49-61 "test.Robot"]
+          fix: replace `example.Robt001` with `example.Robot001` [2:49-64 "example.Robot001"]
+          fix: replace `example.Robt001` with `example.Robot` [2:49-64 "example.Robot"]
         3:49-70 error S3001: there is no class `org.example.navigator`
           help: looked among the 14 classes linked into this program; `saoms components` lists them
-          fix: replace `org.example.navigator` with `test.Navigator` [3:49-70 "test.Navigator"]
+          fix: replace `org.example.navigator` with `example.Navigator` [3:49-70 "example.Navigator"]
         4:49-66 error S3001: there is no class `com.example.Wheel`
           help: looked among the 14 classes linked into this program; `saoms components` lists them
     "#]]
     .assert_eq(&faults(
-        r#"<component name="A"><implementation.java class="test.Robt001"/></component>
+        r#"<component name="A"><implementation.java class="example.Robt001"/></component>
 <component name="B"><implementation.rust class="org.example.navigator"/></component>
 <component name="C"><implementation.java class="com.example.Wheel"/></component>"#,
     ));
@@ -55,7 +55,7 @@ fn what_cannot_run_says_so() {
           help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
         3:22-41 error S3002: `implementation.bpel` cannot run here
           help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
-        4:68-77 error S3003: classes from plugins are not supported yet: `library` names one
+        4:71-80 error S3003: classes from plugins are not supported yet: `library` names one
           help: leave `library` out where the class is linked into the program
         5:2-9 error S3003: `include` is not supported yet
           help: name the included file on the command line, too: several files form one fleet
@@ -64,7 +64,7 @@ fn what_cannot_run_says_so() {
     "#]].assert_eq(&faults(
         r#"<component name="A"><implementation.composite name="inner"/></component>
 <component name="B"><implementation.bpel process="p"/></component>
-<component name="C"><implementation.rust class="test.Gps" library="libgps.so"/></component>
+<component name="C"><implementation.rust class="example.Gps" library="libgps.so"/></component>
 <include name="other"/>
 <component name="D"><x:implementation.script xmlns:x="urn:x" script="a.rb"/></component>"#,
     ));
@@ -72,7 +72,8 @@ fn what_cannot_run_says_so() {
         2:2-11 error S1010: the component `A` has no implementation
           help: write `<implementation.java class="..."/>` or `<implementation.rust class="..."/>` in it
           help: SCA 1.0 allows a component without an implementation, but it cannot run
-    "#]].assert_eq(&faults_of(&[&fleet_1_0(r#"<component name="A"/>"#)], &[]));
+    "#]]
+    .assert_eq(&faults_of(&[&fleet_1_0(r#"<component name="A"/>"#)], &[]));
     expect![[r#"
         2:2-11 error S1010: the component `A` has no implementation
           help: write `<implementation.java class="..."/>` or `<implementation.rust class="..."/>` in it
@@ -83,13 +84,14 @@ fn what_cannot_run_says_so() {
 #[test]
 fn unknown_and_repeated_properties() {
     expect![[r#"
-        3:17-21 error S3004: class `test.Robot001` has no property `sped`
+        3:17-21 error S3004: class `example.Robot001` has no property `sped`
           fix: replace `sped` with `speed` [3:17-21 "speed"]
         5:17-22 error S3005: the property `speed` is given twice
           4:17-22 first here
-        6:17-23 error S3004: class `test.Robot001` has no property `weight`
+          help: keep one of them
+        6:17-23 error S3004: class `example.Robot001` has no property `weight`
           help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
-        7:17-20 error S3004: class `test.Robot001` has no property `URL`
+        7:17-20 error S3004: class `example.Robot001` has no property `URL`
           fix: replace `URL` with `url` [7:17-20 "url"]
     "#]].assert_eq(&faults(&robot(
         r#"<property name="sped">1</property>
@@ -99,17 +101,17 @@ fn unknown_and_repeated_properties() {
 <property name="URL">localhost:61616</property>"#,
     )));
     expect![[r#"
-        3:17-23 error S3004: class `test.Navigator` has no property `period`
-          help: `test.Navigator` is passive: it is never executed and has no task properties
-        7:17-23 error S3004: class `test.Broker` has no property `period`
+        3:17-23 error S3004: class `example.Navigator` has no property `period`
+          help: `example.Navigator` is passive: it is never executed and has no task properties
+        7:17-23 error S3004: class `example.Broker` has no property `period`
           help: its properties are `IP` and `port`
-          help: `test.Broker` is passive: it is never executed and has no task properties
+          help: `example.Broker` is passive: it is never executed and has no task properties
     "#]].assert_eq(&faults(
-        r#"<component name="N"><implementation.java class="test.Navigator"/>
+        r#"<component name="N"><implementation.java class="example.Navigator"/>
 <property name="period">100</property>
 <reference name="wheels" target="R"/></component>
-<component name="R"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
-<component name="B"><implementation.java class="test.Broker"/><property name="IP">a</property><property name="port">1</property>
+<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
+<component name="B"><implementation.java class="example.Broker"/><property name="IP">a</property><property name="port">1</property>
 <property name="period">1</property></component>"#,
     ));
 }
@@ -123,13 +125,13 @@ fn missing_properties_stand_at_the_name_of_the_component() {
           help: add `<property name="number">...</property>`: a whole number from 1 to 99
         2:18-19 error S3006: component `R` lacks the property `period`
           help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
-        4:17-19 error S3004: class `test.Robot` has no property `Id`
+        4:17-19 error S3004: class `example.Robot` has no property `Id`
           fix: replace `Id` with `ID` [4:17-19 "ID"]
-        4:49-55 error S3004: class `test.Robot` has no property `peroid`
+        4:49-55 error S3004: class `example.Robot` has no property `peroid`
           fix: replace `peroid` with `period` [4:49-55 "period"]
     "#]].assert_eq(&faults(
-        r#"<component name="R"><implementation.java class="test.Robot"/></component>
-<component name="S"><implementation.java class="test.Robot"/>
+        r#"<component name="R"><implementation.java class="example.Robot"/></component>
+<component name="S"><implementation.java class="example.Robot"/>
 <property name="Id">S</property><property name="peroid">100</property><property name="number">5</property></component>"#,
     ));
     expect![[r#"
@@ -137,7 +139,7 @@ fn missing_properties_stand_at_the_name_of_the_component() {
           help: add `<s:property name="period">...</s:property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
     "#]].assert_eq(&faults_of(
         &[r#"<s:composite xmlns:s="http://www.osoa.org/xmlns/sca/1.0" targetNamespace="urn:t" name="fleet">
-<s:component name="C"><s:implementation.java class="test.Clock"/><s:property name="ID">C</s:property></s:component>
+<s:component name="C"><s:implementation.java class="example.Clock"/><s:property name="ID">C</s:property></s:component>
 </s:composite>"#],
         &[],
     ));
@@ -219,7 +221,7 @@ fn values_out_of_range_or_not_allowed() {
 fn absurd_periods() {
     let period = |text: &str| {
         faults(&format!(
-            r#"<component name="C"><implementation.java class="test.Clock"/><property name="ID">C</property><property name="period">{text}</property></component>"#
+            r#"<component name="C"><implementation.java class="example.Clock"/><property name="ID">C</property><property name="period">{text}</property></component>"#
         ))
     };
     let all: String = [
@@ -241,35 +243,35 @@ fn absurd_periods() {
     .concat();
     expect![[r#"
         0
-        2:118-119 error S3008: property `period`: `0` is out of range: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-122 error S3008: property `period`: `0` is out of range: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         -5
-        2:118-120 error S3008: property `period`: `-5` is negative: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-123 error S3008: property `period`: `-5` is negative: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         -1s
-        2:118-121 error S3008: property `period`: `-1s` is negative: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-124 error S3008: property `period`: `-1s` is negative: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         99us
-        2:118-122 error S3008: property `period`: `99us` is out of range: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-125 error S3008: property `period`: `99us` is out of range: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         25h
-        2:118-121 error S3008: property `period`: `25h` is out of range: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-124 error S3008: property `period`: `25h` is out of range: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         1e3
-        2:118-121 error S3007: property `period`: `1e3` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-124 error S3007: property `period`: `1e3` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         100 ms
         100us
         24h
         10 min
         inf
-        2:118-121 error S3007: property `period`: `inf` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-124 error S3007: property `period`: `inf` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         1 week
-        2:118-124 error S3007: property `period`: `1 week` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-127 error S3007: property `period`: `1 week` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         184467440737095516150000s
-        2:118-143 error S3007: property `period`: `184467440737095516150000s` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        2:121-146 error S3007: property `period`: `184467440737095516150000s` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
     "#]].assert_eq(&all);
 }
@@ -287,7 +289,7 @@ fn empty_values() {
           help: `delay`: From the start to the first due execution; the default is `0ms`
         7:2-10 error S3006: the property `charger.x` is missing: expected a whole number from -2147483648 to 2147483647
     "#]].assert_eq(&faults(
-        r#"<component name="R"><implementation.java class="test.Robot001"/>
+        r#"<component name="R"><implementation.java class="example.Robot001"/>
 <property name="ID"> </property>
 <property name="period"/>
 <property name="speed" value=""/>
@@ -358,12 +360,11 @@ fn sources_lead_to_composite_properties() {
         3:55-58 error S3008: property `number`: `300` is out of range: expected a whole number from 1 to 99
           10:33-47 used here as `number`
           help: `number`: The number of the robot
-        4:17-23 warning S2026: the property `unused` of the composite is used by no component
-          help: a component takes its value with `source="$unused"`
         6:17-21 error S2025: the property `must` of the composite has to be given a value
           help: write it in the file, or give `--set must=...`
         7:17-22 error S2003: the composite has two properties `speed`
           2:17-22 the first
+          help: give each its own name
         11:41-47 error S2023: there is no part `plaice`; the parts are `place`
         12:39-47 error S2023: `place[1]` is no element name, and others are not understood
         13:33-37 error S2024: the composite has no property `sped`
@@ -384,7 +385,7 @@ fn sources_lead_to_composite_properties() {
 <property name="must" mustSupply="true"/>
 <property name="speed">2</property>
 {}
-<component name="S"><implementation.java class="test.Robot"/><property name="ID">S</property>
+<component name="S"><implementation.java class="example.Robot"/><property name="ID">S</property>
 <property name="period" source="$nothing"/><property name="number" source="$must"/><property name="speed" source="$speed"/></component>"#,
         robot(
             r#"<property name="speed" source="$speed"/>
@@ -415,12 +416,14 @@ fn settings_take_the_place_of_composite_properties() {
           fix: replace `sped` with `speed` [--set:1:1-5 "speed"]
         --set:1:1-6 error S2028: `speed` is set twice
           --set:1:1-6 first here
+          help: keep one of them
         --set:1:1-6 error S2027: `speed` sets nothing: there is no `=`
           help: write `--set NAME=VALUE` with the name of a composite property
         --set:1:1-3 error S2027: there is no name before the `=`
           help: write `--set NAME=VALUE` with the name of a composite property
         --set:1:1-6 error S2028: `speed` is set twice
           --set:1:1-6 first here
+          help: keep one of them
     "#]]
         .assert_eq(&faults_of(&[&text], &["speed= 3", "sped=1", "speed=1", "speed", "=1", "speed ="]));
     let none = fleet(&robot(""));
@@ -434,21 +437,21 @@ fn settings_take_the_place_of_composite_properties() {
 #[test]
 fn unique_values_and_shared_ids() {
     expect![[r#"
-        3:82-83 error S3013: components `A` and `B` have the same `ID` `R`
-          2:85-86 the first
+        3:85-86 error S3013: components `A` and `B` have the same `ID` `R`
+          2:88-89 the first
           help: every robot needs its own
-        5:82-86 warning S4001: components `C` and `D` share the ID `MEMS`
-          4:82-86 the first
+        5:85-89 warning S4001: components `C` and `D` share the ID `MEMS`
+          4:85-89 the first
           help: messages and reports name tasks by their ID
-        6:82-83 warning S4001: components `A` and `E` share the ID `R`
-          2:85-86 the first
+        6:85-86 warning S4001: components `A` and `E` share the ID `R`
+          2:88-89 the first
           help: messages and reports name tasks by their ID
     "#]].assert_eq(&faults(
-        r#"<component name="A"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
-<component name="B"><implementation.java class="test.Robot"/><property name="ID">R</property><property name="period">1</property><property name="number">2</property></component>
-<component name="C"><implementation.java class="test.Clock"/><property name="ID">MEMS</property><property name="period">1</property></component>
-<component name="D"><implementation.java class="test.Clock"/><property name="ID">MEMS</property><property name="period">1</property></component>
-<component name="E"><implementation.java class="test.Clock"/><property name="ID">R</property><property name="period">1</property></component>"#,
+        r#"<component name="A"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
+<component name="B"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1</property><property name="number">2</property></component>
+<component name="C"><implementation.java class="example.Clock"/><property name="ID">MEMS</property><property name="period">1</property></component>
+<component name="D"><implementation.java class="example.Clock"/><property name="ID">MEMS</property><property name="period">1</property></component>
+<component name="E"><implementation.java class="example.Clock"/><property name="ID">R</property><property name="period">1</property></component>"#,
     ));
 }
 
@@ -456,10 +459,12 @@ fn unique_values_and_shared_ids() {
 fn constructors_have_the_last_word() {
     expect![[r#"
         2:18-19 error S3014: component `R`: a red robot drives at most 2 m/s
+          help: `saoms components example.Robot001` says what its properties mean
         5:18-19 error S3014: component `F`: its constructor panicked: do not touch
+          help: `saoms components example.Fragile` says what its properties mean
     "#]]
     .assert_eq(&faults(&format!(
-        "{}\n<component name=\"F\"><implementation.java class=\"test.Fragile\"/></component>",
+        "{}\n<component name=\"F\"><implementation.java class=\"example.Fragile\"/></component>",
         robot(r#"<property name="speed">2.5</property><property name="colour">red</property>"#)
     )));
 }

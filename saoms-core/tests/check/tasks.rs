@@ -6,7 +6,7 @@ use crate::support::faults;
 
 fn robot(inside: &str) -> String {
     faults(&format!(
-        r#"<component name="R"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">100</property>
+        r#"<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">100</property>
 {inside}</component>"#
     ))
 }
@@ -69,9 +69,9 @@ fn topic_renames() {
         3:30-49 error S4002: bad `topicRename`: 3 names where a pair has two
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPC, pos001::POS002, pos002
-        3:30-37 warning S4003: class `test.Robot001` uses no topic `POSTOPC`: nothing is renamed
+        3:30-37 warning S4003: class `example.Robot001` uses no topic `POSTOPC`: nothing is renamed
           fix: replace `POSTOPC` with `POSTOPIC` [3:30-37 "POSTOPIC"]
-        3:47-53 warning S4003: class `test.Robot001` uses no topic `POS002`: nothing is renamed
+        3:47-53 warning S4003: class `example.Robot001` uses no topic `POS002`: nothing is renamed
           help: its topics are `POSTOPIC` and `ORDERS`
         &#80;OSTOPIC,a::POSTOPIC,b
         3:30-56 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
@@ -147,7 +147,8 @@ fn settings_that_do_not_go_together() {
     "#]].assert_eq(&robot(r#"<property name="useJMS">false</property>"#));
     expect![[r#"
         3:27-32 warning S4007: the deadline of 150ms is behind the period of 100ms: the next execution is due before it
-          2:121-124 the period
+          2:124-127 the period
+          help: a deadline is at most the period
     "#]].assert_eq(&robot(r#"<property name="deadline">150ms</property>"#));
     expect![[r#"
         3:31-32 warning S4008: `restartLimit` has no effect: the component is never restarted
@@ -161,14 +162,17 @@ fn settings_that_do_not_go_together() {
     ));
     expect![[r#"
         3:23-25 warning S4006: `user` is given without `password`
+          help: give both, or neither
     "#]]
     .assert_eq(&robot(r#"<property name="user">me</property>"#));
     expect![[r#"
         3:27-33 warning S4006: `password` is given without `user`
+          help: give both, or neither
     "#]]
     .assert_eq(&robot(r#"<property name="password">secret</property><property name="url">a:1</property>"#));
     expect![[r#"
         3:23-25 warning S4006: `user` and `password` have no effect: there is no `url` of a message broker
+          help: give the `url` of the broker, or leave them out
     "#]]
     .assert_eq(&robot(r#"<property name="user">me</property><property name="password">secret</property>"#));
     assert_eq!(

@@ -6,7 +6,7 @@ use crate::support::faults;
 
 fn task(name: &str, class: &str, rename: &str) -> String {
     format!(
-        r#"<component name="{name}"><implementation.java class="test.{class}"/><property name="ID">{name}</property><property name="period">100</property>
+        r#"<component name="{name}"><implementation.java class="example.{class}"/><property name="ID">{name}</property><property name="period">100</property>
 <property name="topicRename">{rename}</property></component>
 "#
     )

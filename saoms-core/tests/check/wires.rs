@@ -8,16 +8,16 @@ use crate::support::{faults, faults_of, fleet, fleet_1_0};
 fn with(inside: &str) -> String {
     format!(
         r#"{inside}
-<component name="R"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
-<component name="G"><implementation.java class="test.Gps"/><service name="position"><binding.sca name="b"/></service></component>
-<component name="T"><implementation.java class="test.Twins"/></component>
-<component name="O"><implementation.java class="test.OldGps"/></component>"#
+<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
+<component name="G"><implementation.java class="example.Gps"/><service name="position"><binding.sca name="b"/></service></component>
+<component name="T"><implementation.java class="example.Twins"/></component>
+<component name="O"><implementation.java class="example.OldGps"/></component>"#
     )
 }
 
 fn navigator(reference: &str) -> String {
     with(&format!(
-        r#"<component name="N"><implementation.java class="test.Navigator"/>{reference}</component>"#
+        r#"<component name="N"><implementation.java class="example.Navigator"/>{reference}</component>"#
     ))
 }
 
@@ -58,18 +58,20 @@ fn targets_lead_to_services() {
         3:36-39 error S2012: component `R` has no service `mve`
           fix: replace `mve` with `move` [3:36-39 "move"]
         R/TaskInterface
-        3:36-49 error S2015: service `TaskInterface` of component `R` has the interface `unibg.robotics.tca.TaskInterface`, and the reference needs `test.Wheels`
+        3:36-49 error S2015: service `TaskInterface` of component `R` has the interface `unibg.robotics.tca.TaskInterface`, and the reference needs `example.Wheels`
+          fix: replace `TaskInterface` with `move` [3:36-49 "move"]
         R/move/b
         3:41-42 error S2013: service `move` of component `R` has no binding `b`
           help: its bindings are `move`
         T
-        3:34-35 error S2014: component `T` has several services with the interface `test.Wheels`
+        3:34-35 error S2014: component `T` has several services with the interface `example.Wheels`
           help: name one of `left` and `right`: `T/...`
         G
-        3:34-35 error S2015: component `G` offers no service with the interface `test.Wheels`
-          help: it offers `position` (test.Positions)
+        3:34-35 error S2015: component `G` offers no service with the interface `example.Wheels`
+          help: it offers `position` (example.Positions)
         G/position
-        3:36-44 error S2015: service `position` of component `G` has the interface `test.Positions`, and the reference needs `test.Wheels`
+        3:36-44 error S2015: service `position` of component `G` has the interface `example.Positions`, and the reference needs `example.Wheels`
+          help: it offers `position` (example.Positions)
         /move
         3:34-39 error S2010: `/move` has the wrong form
           help: write `component`, `component/service` or `component/service/binding`
@@ -82,6 +84,7 @@ fn targets_lead_to_services() {
         R T/left
         3:36-42 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           3:34-35 the first
+          help: keep one of them
         R R/move
     "#]].assert_eq(&all);
 }
@@ -90,7 +93,7 @@ fn targets_lead_to_services() {
 fn bindings_of_targets() {
     let other = |target: &str| {
         with(&format!(
-            r#"<component name="H"><implementation.java class="test.Gps"/>
+            r#"<component name="H"><implementation.java class="example.Gps"/>
 <reference name="other" target="{target}"/></component>"#
         ))
     };
@@ -101,24 +104,25 @@ fn bindings_of_targets() {
     "#]]
     .assert_eq(&faults(&other("G/position/c")));
     expect![[r#"
-        3:35-43 error S2015: service `position` of component `O` has the interface `test.Positions`, and the reference needs `test.Positions`
-          help: both have one name and different operations: build both from one version
+        3:35-43 error S2015: service `position` of component `O` has the interface `example.Positions`, and the reference needs `example.Positions`
+          help: it offers the interface with other operations: build both components from one version
     "#]].assert_eq(&faults(&other("O/position")));
     expect![[r#"
-        3:33-34 error S2015: component `O` offers no service with the interface `test.Positions`
-          help: it offers `position` (test.Positions)
+        3:33-34 error S2015: component `O` offers no service with the interface `example.Positions`
+          help: it offers the interface with other operations: build both components from one version
     "#]]
     .assert_eq(&faults(&other("O")));
     let by_binding = with(
-        r#"<component name="N"><implementation.java class="test.Navigator"/>
+        r#"<component name="N"><implementation.java class="example.Navigator"/>
 <reference name="wheels"><binding.sca uri="R/mve"/></reference></component>
-<component name="M"><implementation.java class="test.Navigator"/>
+<component name="M"><implementation.java class="example.Navigator"/>
 <reference name="wheels"><binding.ws uri="http://x"/></reference></component>"#,
     );
     expect![[r#"
         3:46-49 error S2012: component `R` has no service `mve`
           fix: replace `mve` with `move` [3:46-49 "move"]
         5:27-37 warning S2009: `binding.ws` is not served: calls through it fail
+          help: remove it; other machines are reached through topics and the `url` of a message broker
     "#]]
     .assert_eq(&faults(&by_binding));
 }
@@ -130,13 +134,14 @@ fn wires_of_composites() {
         r#"<wire source="N/wheels" target="R"/>"#,
         r#"<wire source="N/wheels" target="R/move"/><wire source="N/wheels" target="R"/>"#,
         r#"<wire source="N/wheels" target="T/left"/><wire source="N/wheels" target="R/move" replace="true"/>"#,
-        r#"<wire source="G" target="G2"/><wire source="N/wheels" target="T/right"/><component name="G2"><implementation.java class="test.Gps"/></component>"#,
+        r#"<wire source="G" target="G2"/><wire source="N/wheels" target="T/right"/><component name="G2"><implementation.java class="example.Gps"/></component>"#,
     ] {
         assert_eq!(wire(wires), "", "{wires}");
     }
     expect![[r#"
         3:33-39 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           2:33-39 the first
+          help: keep one of them
         4:15-16 error S2016: component `N` has several references
           help: name one of `wheels` and `task`: `N/...`
         5:17-22 error S2016: component `N` has no reference `whels`
@@ -146,8 +151,8 @@ fn wires_of_composites() {
         7:15-16 error S2016: component `T` has no references
         8:15-25 error S2010: `N/wheels/x` has the wrong form
           help: write `component` or `component/name`
-        9:32-33 error S2015: component `R` offers no service with the interface `test.Positions`
-          help: it offers `move` (test.Wheels), `TaskInterface` (unibg.robotics.tca.TaskInterface)
+        9:32-33 error S2015: component `R` offers no service with the interface `example.Positions`
+          help: it offers `move` (example.Wheels), `TaskInterface` (unibg.robotics.tca.TaskInterface)
     "#]]
     .assert_eq(&wire(
         r#"<wire source="N/wheels" target="T/left"/>
@@ -163,24 +168,24 @@ fn wires_of_composites() {
 
 #[test]
 fn a_reference_without_a_target() {
-    let text = r#"<component name="N"><implementation.java class="test.Navigator"/></component>
-<component name="M"><implementation.java class="test.Navigator"/>
+    let text = r#"<component name="N"><implementation.java class="example.Navigator"/></component>
+<component name="M"><implementation.java class="example.Navigator"/>
 <reference name="wheels"/></component>
-<component name="L"><implementation.java class="test.Navigator"/>
+<component name="L"><implementation.java class="example.Navigator"/>
 <reference name="wheels" wiredByImpl="true"/></component>"#;
     expect![[r#"
         2:18-19 error S2018: reference `wheels` of component `N` leads to no service
-          help: give it a target with the interface `test.Wheels`: `<reference name="wheels" target="..."/>`
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
         4:18-24 error S2018: reference `wheels` of component `M` leads to no service
-          help: give it a target with the interface `test.Wheels`: `<reference name="wheels" target="..."/>`
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&faults_of(&[&fleet(text)], &[]));
     expect![[r#"
         2:18-19 warning S2018: reference `wheels` of component `N` leads to no service
-          help: give it a target with the interface `test.Wheels`: `<reference name="wheels" target="..."/>`
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
           help: calls through it fail
         4:18-24 warning S2018: reference `wheels` of component `M` leads to no service
-          help: give it a target with the interface `test.Wheels`: `<reference name="wheels" target="..."/>`
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
           help: calls through it fail
     "#]]
     .assert_eq(&faults_of(&[&fleet_1_0(text)], &[]));
@@ -192,34 +197,34 @@ fn circles_of_calls() {
         5:34-35 error S2020: components call each other in a circle: `R` -> `N` -> `R`
           3:31-32 `R` calls `N` through `gps`
           help: a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic
-        6:92-93 error S2020: component `G` is wired to itself: it would call while it is busy
+        6:95-96 error S2020: component `G` is wired to itself: it would call while it is busy
           help: wire the reference to another component, or remove the target
     "#]].assert_eq(&faults(
-        r#"<component name="R"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">1</property>
+        r#"<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property>
 <reference name="gps" target="N"/></component>
-<component name="N"><implementation.java class="test.Navigator"/>
+<component name="N"><implementation.java class="example.Navigator"/>
 <reference name="wheels" target="R"/><reference name="task" target="R"/></component>
-<component name="G"><implementation.java class="test.Gps"/><reference name="other" target="G"/></component>"#,
+<component name="G"><implementation.java class="example.Gps"/><reference name="other" target="G"/></component>"#,
     ));
     let ring = |count: usize| -> String {
         let component = |number: usize| {
             format!(
-                "<component name=\"G{number}\"><implementation.java class=\"test.Gps\"/><reference name=\"other\" target=\"G{}\"/></component>\n",
+                "<component name=\"G{number}\"><implementation.java class=\"example.Gps\"/><reference name=\"other\" target=\"G{}\"/></component>\n",
                 (number + 1) % count
             )
         };
         (0..count).map(component).collect()
     };
     expect![[r#"
-        11:93-95 error S2020: components call each other in a circle: `G0` -> `G1` -> `G2` -> `G3` -> `G4` -> `G5` -> `G6` -> `G7` -> 2 more -> `G0`
-          2:93-95 `G0` calls `G1` through `other`
-          3:93-95 `G1` calls `G2` through `other`
-          4:93-95 `G2` calls `G3` through `other`
-          5:93-95 `G3` calls `G4` through `other`
-          6:93-95 `G4` calls `G5` through `other`
-          7:93-95 `G5` calls `G6` through `other`
-          8:93-95 `G6` calls `G7` through `other`
-          9:93-95 `G7` calls `G8` through `other`
+        11:96-98 error S2020: components call each other in a circle: `G0` -> `G1` -> `G2` -> `G3` -> `G4` -> `G5` -> `G6` -> `G7` -> 2 more -> `G0`
+          2:96-98 `G0` calls `G1` through `other`
+          3:96-98 `G1` calls `G2` through `other`
+          4:96-98 `G2` calls `G3` through `other`
+          5:96-98 `G3` calls `G4` through `other`
+          6:96-98 `G4` calls `G5` through `other`
+          7:96-98 `G5` calls `G6` through `other`
+          8:96-98 `G6` calls `G7` through `other`
+          9:96-98 `G7` calls `G8` through `other`
           help: a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic
     "#]].assert_eq(&faults(&ring(10)));
 }
@@ -228,17 +233,17 @@ fn circles_of_calls() {
 fn autowire_finds_the_only_fitting_service() {
     let text = |autowire: &str, more: &str| {
         fleet(&format!(
-            r#"<component name="N"><implementation.java class="test.Navigator"/>
+            r#"<component name="N"><implementation.java class="example.Navigator"/>
 <reference name="wheels" autowire="{autowire}"/></component>
 {more}"#
         ))
     };
-    let robot = r#"<component name="R"><implementation.java class="test.Robot001"/><property name="ID">R</property><property name="period">1</property></component>"#;
-    let twins = r#"<component name="T"><implementation.java class="test.Twins"/></component>"#;
+    let robot = r#"<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property></component>"#;
+    let twins = r#"<component name="T"><implementation.java class="example.Twins"/></component>"#;
     assert_eq!(faults_of(&[&text("true", robot)], &[]), "");
     expect![[r#"
         3:18-24 error S2018: reference `wheels` of component `N` leads to no service
-          help: give it a target with the interface `test.Wheels`: `<reference name="wheels" target="..."/>`
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&faults_of(
         &[&text("false", robot).replace("targetNamespace", "autowire=\"true\" targetNamespace")],
@@ -251,7 +256,7 @@ fn autowire_finds_the_only_fitting_service() {
     .assert_eq(&faults_of(&[&text("true", &format!("{robot}{twins}"))], &[]));
     expect![[r#"
         3:18-24 error S2018: reference `wheels` of component `N` leads to no service
-          help: give it a target with the interface `test.Wheels`: `<reference name="wheels" target="..."/>`
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
           help: autowire finds no service with this interface
     "#]]
     .assert_eq(&faults_of(&[&text("true", "")], &[]));

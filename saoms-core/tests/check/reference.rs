@@ -1,0 +1,171 @@
+//! `docs/diagnostics.md`: every diagnostic with an example, generated from the table of codes and the files in
+//! `examples/`, each of which has that one fault.
+//!
+//! `UPDATE_EXPECT=1 cargo test -p saoms-core --test check reference` writes the page anew.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use expect_test::expect_file;
+use saoms_core::check::{Setting, check};
+use saoms_core::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
+use saoms_core::load::{MAX_SIZE, load_file, read};
+use saoms_core::source::Sources;
+
+use crate::classes::registry;
+
+const HEAD: &str = "\
+# Diagnostics
+
+What `saoms check` and `saoms run` say about composites. Each code keeps its meaning for good. An error stops everything
+before anything starts; a warning stops nothing. Where a rule of the SCA Assembly specification says the same, it stands
+behind the code. `--format json` gives the same as data, with each suggestion as edits.
+
+| codes | about |
+| --- | --- |
+| `S00` | files |
+| `S01` | XML |
+| `S10` | the vocabulary of SCA |
+| `S20` | names, composite properties, services, references and wires |
+| `S30` | classes and properties |
+| `S40` | tasks and topics |
+
+The table of codes is `saoms-core/src/diagnostic/codes.rs`. The examples are the files in `saoms-core/tests/check/examples`;
+the classes that they name are those of the tests beside them. This page is generated from both.
+";
+
+#[test]
+fn every_diagnostic_is_documented_with_an_example() {
+    let mut page = HEAD.to_owned();
+    let mut is_complete = true;
+    for code in codes::ALL {
+        let severity = code.severity.name();
+        let rule = code.rule.map_or_else(String::new, |rule| format!(", {rule}"));
+        let _ = write!(page, "\n## {} {}\n\n*{severity}{rule}.* {}\n\n", code.id, code.name, code.meaning);
+        match example(code) {
+            Some(example) => _ = write!(page, "```text\n{example}```\n"),
+            None => is_complete = false,
+        }
+    }
+    assert!(is_complete, "each code has an example with its fault");
+    expect_file!["../../../docs/diagnostics.md"].assert_eq(&page);
+}
+
+#[test]
+fn codes_and_names_are_unique_and_meanings_are_sentences() {
+    let mut ids: Vec<_> = codes::ALL.iter().map(|code| code.id).collect();
+    assert!(ids.is_sorted(), "the table is in the order of the codes");
+    ids.dedup();
+    assert_eq!(ids.len(), codes::ALL.len());
+    let mut names: Vec<_> = codes::ALL.iter().map(|code| code.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), codes::ALL.len());
+    for code in codes::ALL {
+        assert!(code.meaning.ends_with('.'), "{}", code.id);
+        assert!(code.id.len() == 5 && code.id.starts_with('S'), "{}", code.id);
+    }
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/check/examples")
+}
+
+/// What the example of a code gives, as people see it; `None` when it has not that fault alone.
+fn example(code: &Code) -> Option<String> {
+    let (diagnostics, sources) = match code.id {
+        "S0001" | "S0002" | "S0003" | "S0004" | "S0005" | "S0006" | "S0007" => unreadable(code.id),
+        "S0008" => {
+            let components =
+                "<component name=\"Gps\"><implementation.java class=\"example.Gsp\"/></component>\n";
+            let text = crate::support::fleet(&components.repeat(1500));
+            checked(&[("fleet.composite".to_owned(), text)], &[])
+        }
+        id => from_files(id),
+    };
+    let found: Vec<Diagnostic> = diagnostics.iter().filter(|one| one.code == code).cloned().collect();
+    let others = if code.id == "S0008" { 0 } else { diagnostics.len() - found.len() };
+    if found.is_empty() || others > 0 {
+        let all: String = diagnostics.iter().map(|one| crate::support::shown(one, &sources)).collect();
+        eprintln!("the example of {} has to have this fault alone, and has\n{all}", code.id);
+        return None;
+    }
+    let says_what_to_do = !found[0].help.is_empty() || !found[0].suggestions.is_empty();
+    assert!(says_what_to_do || code.id < "S2", "{} does not say what to do", code.id);
+    Some(human(&found[..1], &sources, false))
+}
+
+/// Checks `ID.composite`, and `ID.more.composite` with it, with the lines of `ID.set` as settings, where there are any.
+fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
+    let read = |name: String| fs::read_to_string(folder().join(&name)).ok().map(|text| (name, text));
+    let names = [format!("{id}.composite"), format!("{id}.more.composite")];
+    let files: Vec<_> = names.into_iter().filter_map(read).collect();
+    assert!(!files.is_empty(), "there is no example of {id}");
+    let settings = fs::read_to_string(folder().join(format!("{id}.set"))).unwrap_or_default();
+    checked(&files, &settings.lines().collect::<Vec<_>>())
+}
+
+fn checked(files: &[(String, String)], settings: &[&str]) -> (Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let files: Vec<_> = files.iter().map(|(name, text)| sources.add(name.as_str(), text.as_str())).collect();
+    let settings: Vec<_> = settings
+        .iter()
+        .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
+        .collect();
+    let composites: Vec<_> =
+        files.into_iter().filter_map(|file| load_file(file, &sources, &mut diagnostics)).collect();
+    check(&composites, &registry(), &settings, &sources, &mut diagnostics);
+    (diagnostics.into_sorted(), sources)
+}
+
+/// Reads a file that cannot be read.
+fn unreadable(id: &str) -> (Vec<Diagnostic>, Sources) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fleet.composite");
+    let mut limit = MAX_SIZE;
+    let path = match id {
+        "S0001" => {
+            fs::write(path, " ").unwrap();
+            folder.path().join("flet.composite")
+        }
+        "S0002" => {
+            fs::write(path, " ").unwrap();
+            folder.path().to_owned()
+        }
+        // There is no memory at address 0.
+        "S0003" => PathBuf::from("/proc/self/mem"),
+        "S0004" => {
+            limit = 100;
+            fs::write(&path, "x".repeat(101)).unwrap();
+            path
+        }
+        "S0005" => {
+            fs::write(&path, "\n").unwrap();
+            path
+        }
+        "S0006" => {
+            fs::write(&path, b"\x7fELF\x02\x01\x01\0\0\0\0\0").unwrap();
+            path
+        }
+        _ => {
+            fs::write(&path, b"<composite name=\"Caf\xe9\"/>").unwrap();
+            path
+        }
+    };
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    assert!(read(&path, limit, &mut sources, &mut diagnostics).is_none());
+    // The page must not depend on where the folder for temporary files is.
+    let here = folder.path().display().to_string();
+    let shown = |text: &str| text.replace(&format!("{here}/"), "").replace(&here, "fleets");
+    let mut renamed = Sources::new();
+    for (_, file) in sources.iter() {
+        renamed.add(shown(file.path()), file.text().clone());
+    }
+    let mut diagnostics = diagnostics.into_sorted();
+    for one in &mut diagnostics {
+        one.message = shown(&one.message);
+        one.help = one.help.iter().map(|help| shown(help)).collect();
+    }
+    (diagnostics, renamed)
+}
