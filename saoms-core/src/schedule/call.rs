@@ -116,7 +116,7 @@ impl Engine {
             std::mem::forget(body);
             return;
         }
-        self.out -= 1;
+        self.came_back();
         if let Some(failure) = panic {
             self.fail(index, &mut body, Job::Execute, failure, now);
             self.slots[index as usize].body = Some(body);

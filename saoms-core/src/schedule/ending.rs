@@ -69,8 +69,8 @@ impl Engine {
             let stuck = slot.body.is_none() && slot.state != State::Abandoned;
             if stuck && only.is_none_or(|only| only == index) {
                 slot.state = State::Abandoned;
-                self.out -= 1;
                 self.reasons.push(format!("component `{}` {why}", slot.name));
+                self.came_back();
                 self.tell(now, index, Occurrence::Abandoned);
             }
         }

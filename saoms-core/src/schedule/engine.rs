@@ -241,6 +241,7 @@ impl Engine {
             }
         }
         slot.due = next;
+        slot.last_due = Some(due);
         part.due = due;
         part.execution = slot.execution;
         slot.execution += 1;
@@ -296,7 +297,7 @@ impl Engine {
             std::mem::forget(body);
             return;
         }
-        self.out -= 1;
+        self.came_back();
         let slot = &mut self.slots[index as usize];
         if job == Job::Execute && self.real {
             let slow = ended.saturating_sub(started) > self.budget;
@@ -332,6 +333,12 @@ impl Engine {
                 }
             }
         }
+    }
+
+    /// A body is back. At the end of a run the timer may wait for just that.
+    pub(super) fn came_back(&mut self) {
+        self.out -= 1;
+        self.wake |= self.phase == Phase::Stopping && self.roles.asleep_until != 0;
     }
 
     pub(super) fn is_abandoned(&self, index: u32) -> bool {

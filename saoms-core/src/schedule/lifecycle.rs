@@ -95,7 +95,6 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         if self.phase == Phase::Stopping {
             self.ending.push_back(index);
-            self.wake = true;
             return;
         }
         let waiting = std::mem::take(&mut slot.waiting);
@@ -123,6 +122,10 @@ impl Engine {
         self.tell(now, index, if again { Occurrence::Restarted { number } } else { Occurrence::Started });
         let slot = &mut self.slots[index as usize];
         slot.due = now.saturating_add(slot.policy.delay);
+        if let Some(last) = slot.last_due.filter(|last| slot.due <= *last) {
+            // One that schedules itself anew without a delay would never let time go on.
+            slot.due = last.saturating_add(slot.policy.period);
+        }
         if self.phase == Phase::Running && slot.wish == Wish::None {
             let when = slot.due.min(slot.until).max(now);
             self.enqueue(index, when);

@@ -27,6 +27,8 @@ mod shared;
 mod slot;
 mod start;
 mod sys;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 pub use fleet::{Fleet, Handle, UnknownComponent};

@@ -20,6 +20,8 @@ pub(super) struct Slot {
     pub(super) entry: u64,
     /// When the next execution is due.
     pub(super) due: u64,
+    /// When the last execution was due.
+    pub(super) last_due: Option<u64>,
     /// When it is unscheduled by itself.
     pub(super) until: u64,
     /// Executions of the present instance.
@@ -171,6 +173,7 @@ impl Slot {
             state: State::Idle,
             entry: NEVER,
             due: NEVER,
+            last_due: None,
             until: NEVER,
             execution: 0,
             wish: Wish::None,

@@ -4,6 +4,12 @@
 
 mod actor;
 mod bus;
+mod endings;
+mod failures;
 mod fleet;
 mod order;
+mod real_time;
+mod services;
 mod start;
+mod tasks;
+mod trace;

@@ -1,0 +1,143 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::Duration;
+
+use saoms_api::{Level, Time};
+
+use super::capture::{contained, install_hook};
+use super::observe::{Event, Events, Line, Occurrence, Progress};
+use super::queue::Queue;
+use super::slot::Apart;
+use super::sys::{self, Gate};
+
+#[test]
+fn a_component_comes_back_after_it_behaved_and_has_to_behave_longer_each_time() {
+    let mut apart = Apart::default();
+    for needed in [100, 200, 400] {
+        apart.send_away();
+        apart.ran(false);
+        apart.ran(true);
+        for execution in 1..=needed {
+            assert!(apart.now, "back after {execution} of {needed}");
+            apart.ran(false);
+        }
+        assert!(!apart.now, "{needed}");
+    }
+}
+
+#[test]
+fn what_is_due_comes_by_time_and_then_by_component() {
+    let mut queue = Queue::default();
+    for (when, component) in [(5, 1), (3, 2), (5, 0), (9, 0), (3, 1)] {
+        queue.push(when, component);
+    }
+    queue.retain(|when, component| (when, component) != (3, 2));
+    assert_eq!(queue.earliest(), Some(3));
+    let due: Vec<_> = std::iter::from_fn(|| queue.pop_due(5)).collect();
+    assert_eq!(due, [(3, 1), (5, 0), (5, 1)]);
+    assert_eq!(queue.len(), 1);
+}
+
+#[test]
+fn a_gate_opens_for_a_wake_and_at_its_time() {
+    let gate = Arc::new(Gate::default());
+    let ticket = gate.ticket();
+    gate.wake();
+    gate.wait(ticket, None);
+    gate.wait(gate.ticket(), Some(sys::monotonic()));
+    let (ticket, waker) = (gate.ticket(), Arc::clone(&gate));
+    let other = thread::spawn(move || {
+        thread::sleep(Duration::from_millis(5));
+        waker.wake();
+    });
+    while gate.ticket() == ticket {
+        gate.wait(ticket, None);
+    }
+    other.join().unwrap();
+    let until = sys::monotonic() + 2_000_000;
+    let ticket = gate.ticket();
+    while sys::monotonic() < until {
+        gate.wait(ticket, Some(until));
+    }
+}
+
+#[test]
+fn panics_are_contained_with_message_and_place() {
+    install_hook();
+    assert_eq!(contained(|| 5), Ok(5));
+    let text = |failure: Result<(), saoms_api::Failure>| failure.unwrap_err().to_string();
+    let plain = text(contained(|| panic!("plain")));
+    assert!(
+        plain.starts_with("panicked at ") && plain.contains("tests.rs:") && plain.ends_with(": plain"),
+        "{plain}"
+    );
+    let number = 5;
+    assert!(text(contained(|| panic!("number {number}"))).ends_with(": number 5"));
+    let inner = text(contained(|| {
+        let _ = contained(|| panic!("inner"));
+        panic!("outer")
+    }));
+    assert!(inner.ends_with(": outer"), "{inner}");
+    assert!(text(contained(|| std::panic::panic_any(5))).ends_with("panicked without a message"));
+}
+
+/// Listens slowly.
+#[derive(Default)]
+struct Listener {
+    told: Mutex<Vec<String>>,
+    progress: AtomicUsize,
+}
+
+impl Events for Listener {
+    fn event(&self, event: &Event) {
+        self.told.lock().unwrap().push(event.to_string());
+    }
+
+    fn progress_every(&self) -> Option<Duration> {
+        Some(Duration::from_millis(1))
+    }
+
+    fn progress(&self, _: &Progress) {
+        self.progress.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+fn event(number: usize) -> Event {
+    let what = Occurrence::Log { level: Level::Info, text: number.to_string() };
+    Event { time: Time::START, component: Some(Arc::from("A")), what }
+}
+
+#[test]
+fn events_beyond_the_bound_are_counted_and_lost_in_real_time() {
+    let listener = Arc::new(Listener::default());
+    let line = Line::new(listener.as_ref(), false);
+    for number in 0..70_000 {
+        line.put(event(number));
+    }
+    line.close();
+    line.tell(&(Arc::clone(&listener) as Arc<dyn Events>), Progress::default);
+    let told = listener.told.lock().unwrap();
+    assert_eq!(told.len(), 65_536 + 1);
+    assert_eq!(told[65_535], "[0.000 s] A: 65535");
+    assert_eq!(told[65_536], "[0.000 s] 4464 events came faster than they could be shown, and are lost");
+    assert!(listener.progress.load(Ordering::Relaxed) > 0);
+}
+
+#[test]
+fn events_beyond_the_bound_wait_in_virtual_time() {
+    let listener = Arc::new(Listener::default());
+    let line = Arc::new(Line::new(listener.as_ref(), true));
+    let teller = {
+        let (line, listener) = (Arc::clone(&line), Arc::clone(&listener) as Arc<dyn Events>);
+        thread::spawn(move || line.tell(&listener, Progress::default))
+    };
+    for number in 0..200_000 {
+        line.put(event(number));
+    }
+    line.close();
+    teller.join().unwrap();
+    let told = listener.told.lock().unwrap();
+    assert_eq!(told.len(), 200_000);
+    assert_eq!(told[199_999], "[0.000 s] A: 199999");
+}

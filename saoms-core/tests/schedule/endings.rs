@@ -1,0 +1,147 @@
+use saoms_core::report::Status;
+use serde_json::json;
+
+use crate::fleet::{check, of, outcome, run, simulated, start};
+
+#[test]
+fn the_run_ends_when_all_who_voted_see_no_work_left() {
+    check(
+        "A actor period=10 each=[0: open; 3: done] last=[log last]
+         B actor period=10 each=[1: done]
+         C actor period=10 each=[3: log never] last=[log last]",
+        1000,
+        "[0.030 s] C: last
+         [0.030 s] A: last
+         Done after 0.03 s",
+    );
+}
+
+#[test]
+fn who_sees_work_again_takes_its_vote_back() {
+    check(
+        "A actor period=10 each=[0: done; 2: done]
+         B actor period=10 first=[open] each=[1: done; 1: open; 4: done]",
+        1000,
+        "Done after 0.04 s",
+    );
+}
+
+#[test]
+fn a_vote_in_initialize_counts_when_the_fleet_has_started() {
+    check("A actor first=[done] each=[log never]", 1000, "Done after 0 s");
+}
+
+#[test]
+fn who_is_unscheduled_has_no_vote() {
+    check(
+        "A actor period=10 each=[0: open]
+         B actor period=10 task=A each=[0: done; 3: unschedule]",
+        1000,
+        "Done after 0.03 s",
+    );
+}
+
+#[test]
+fn nobody_voting_is_no_end() {
+    check("A actor period=10", 50, "Elapsed after 0.05 s");
+}
+
+#[test]
+fn in_virtual_time_a_fleet_without_scheduled_components_ends() {
+    let (fleet, diary) = start(
+        "A actor period=10 task=A each=[3: unschedule]\nB callee",
+        saoms_core::schedule::Settings::simulated(1),
+    );
+    let report = fleet.unwrap().run_to_end();
+    assert_eq!(outcome(&report), "Done after 0.03 s\n- no component is scheduled any more");
+    assert_eq!(diary.lines(), "");
+}
+
+#[test]
+fn a_fleet_of_passive_components_lasts_until_it_is_stopped() {
+    for settings in [saoms_core::schedule::Settings::simulated(1), saoms_core::schedule::Settings::default()]
+    {
+        let (fleet, diary) = start("A callee last=[log last]", settings);
+        let fleet = fleet.unwrap();
+        let handle = fleet.handle();
+        let stopper = std::thread::spawn(move || {
+            std::thread::sleep(std::time::Duration::from_millis(30));
+            handle.stop();
+        });
+        let report = fleet.run_to_end();
+        assert_eq!(report.outcome.status, Status::Interrupted);
+        assert!(diary.lines().ends_with("A: last\n"));
+        stopper.join().unwrap();
+    }
+}
+
+#[test]
+fn a_fleet_that_is_dropped_shuts_down() {
+    for settings in [simulated(1000), crate::fleet::real(60_000)] {
+        let (fleet, diary) = start("A actor each=[log a] last=[log last]", settings);
+        drop(fleet);
+        assert!(diary.lines().ends_with("A: last\n"), "{}", diary.lines());
+    }
+}
+
+#[test]
+fn a_stop_before_time_begins_ends_the_run_at_once() {
+    let (fleet, diary) = start("A actor each=[log never] last=[log last]", simulated(1000));
+    let fleet = fleet.unwrap();
+    fleet.handle().stop();
+    assert_eq!(outcome(&fleet.run_to_end()), "Interrupted after 0 s");
+    assert_eq!(diary.lines(), "[0.000 s] A: last\n");
+}
+
+#[test]
+fn a_component_that_does_not_return_ends_a_virtual_run_and_is_named() {
+    let settings = saoms_core::schedule::Settings {
+        virtual_watchdog: std::time::Duration::from_millis(60),
+        ..simulated(1000)
+    };
+    let (report, diary) = run(
+        "A actor period=10 last=[log last]
+         B actor period=10 each=[2: sleep 1500] last=[log never]
+         C actor period=10 last=[log last]",
+        settings,
+    );
+    assert_eq!(outcome(&report), "Failed after 0.02 s\n- component `B` did not return within 60ms");
+    assert_eq!(
+        diary.lines(),
+        "[0.020 s] B: did not end in time and is left behind\n[0.020 s] C: last\n[0.020 s] A: last\n"
+    );
+}
+
+#[test]
+fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
+    let (report, diary) = run(
+        "A actor period=10 each=[count luggage.delivered 2; count mine.number 1; report map.size 11; 0: count seed 5; 0: report outcome.x 5]
+         B actor period=10 each=[count luggage.delivered -1; report map.size 12; done]",
+        simulated(1000),
+    );
+    assert_eq!(
+        diary.lines(),
+        "[0.000 s] A: `seed` of the report is the program's own, and stays as it is\n\
+         [0.000 s] A: `outcome.x` of the report is the program's own, and stays as it is\n"
+    );
+    assert_eq!(of(&report, "A").class, "actor");
+    let json = serde_json::to_value(&report).unwrap();
+    assert_eq!(
+        json,
+        json!({
+            "seed": 7, "time_s": 0.0, "periods": 2,
+            "luggage": {"requested": 0, "delivered": 1}, "collisions": {"vertex": 0, "swap": 0}, "stranded": 0,
+            "mine": {"number": 1}, "map": {"size": 12},
+            "components": [
+                {"name": "A", "class": "actor", "executions": 1, "missed": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},
+                 "deadline_misses": 0, "slow": 0, "restarts": 0, "failures": 0, "dropped": 0, "messages": {"sent": 0, "received": 0}},
+                {"name": "B", "class": "actor", "executions": 1, "missed": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},
+                 "deadline_misses": 0, "slow": 0, "restarts": 0, "failures": 0, "dropped": 0, "messages": {"sent": 0, "received": 0}},
+            ],
+            "votes": {"done": 1, "open": []},
+            "outcome": {"status": "done", "reasons": []},
+            "trace_hash": report.trace_hash,
+        })
+    );
+    assert_eq!(serde_json::from_value::<saoms_core::report::RunReport>(json).unwrap(), report);
+}
