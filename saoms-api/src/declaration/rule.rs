@@ -183,6 +183,9 @@ fn why_not(kind: PropertyKind, text: &str) -> &'static str {
         },
         PropertyKind::Duration => match text.strip_prefix('-').map(parse_duration) {
             Some(Ok(_)) => "negative",
+            _ if parse_duration(text).is_err_and(|said| said.ends_with("longer than any run can last")) => {
+                "out of range"
+            }
             _ => "not a duration",
         },
         PropertyKind::String | PropertyKind::Enumeration => "not allowed",

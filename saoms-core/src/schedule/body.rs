@@ -3,10 +3,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use saoms_api::{CallError, Chance, Context, DynComponent, Failure, Invocation, SharedMessage, Work};
 
-use super::capture::contained;
 use super::host::ComponentHost;
 use super::shared::Shared;
 use crate::bus::{Subscription, TopicId};
+use crate::registry::contain::contained;
 
 /// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for others.
 pub(super) struct Body {

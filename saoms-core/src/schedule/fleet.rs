@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use saoms_api::Time;
 
-use super::capture;
 use super::clock::Clock;
 use super::drive;
 use super::engine::Phase;
@@ -18,6 +17,7 @@ use super::shared::Shared;
 use super::slot::NEVER;
 use super::start::{self, StartError};
 use crate::assembly::Assembly;
+use crate::registry::contain;
 use crate::report::RunReport;
 
 /// A fleet that runs.
@@ -87,7 +87,7 @@ impl Fleet {
         settings: Settings,
         events: Arc<dyn Events>,
     ) -> Result<Fleet, StartError> {
-        capture::install_hook();
+        contain::install_hook();
         let simulated = settings.clock == ClockKind::Virtual;
         if settings.realtime && !simulated {
             realtime::enter().map_err(StartError::Realtime)?;

@@ -10,7 +10,6 @@
 
 mod body;
 mod call;
-mod capture;
 mod clock;
 mod drive;
 mod ending;

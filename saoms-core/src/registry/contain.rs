@@ -1,3 +1,5 @@
+//! The code of components, kept apart from that of the host: its panics are failures.
+
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
@@ -16,7 +18,7 @@ thread_local! {
 ///
 /// What the code has left half changed is only seen by itself: a component that panicked is never called again.
 #[inline]
-pub(super) fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
+pub(crate) fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
     let outer = CAPTURING.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(code));
     CAPTURING.set(outer);
@@ -37,7 +39,7 @@ fn describe(payload: &(dyn Any + Send)) -> Failure {
 }
 
 /// Makes panics inside [`contained`] silent, once in the life of the process. All others go to the hook that was there before.
-pub(super) fn install_hook() {
+pub(crate) fn install_hook() {
     static INSTALLED: Once = Once::new();
     INSTALLED.call_once(|| {
         let before = panic::take_hook();
