@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use saoms_api::{Level, Time};
 
-use super::capture::{contained, install_hook};
 use super::observe::{Event, Events, Line, Occurrence, Progress};
 use super::queue::Queue;
 use super::slot::Apart;
 use super::sys::{self, Gate};
+use crate::registry::contain::{contained, install_hook};
 
 #[test]
 fn a_component_comes_back_after_it_behaved_and_has_to_behave_longer_each_time() {
