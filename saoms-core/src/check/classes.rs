@@ -96,6 +96,8 @@ pub(super) fn resolve<'r>(
 ) -> Vec<ClassIndex<'r>> {
     let mut classes = Vec::new();
     let mut known: HashMap<&str, usize> = HashMap::new();
+    // What is near an unknown name, which a whole fleet may have.
+    let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
     for place in 0..fleet.members.len() {
         let component = fleet.members[place].component;
         let Some(class) = runnable(component, report) else { continue };
@@ -108,7 +110,8 @@ pub(super) fn resolve<'r>(
                     classes.len() - 1
                 }
                 None => {
-                    report.push(unknown(class, registry));
+                    let near = near.entry(class).or_insert_with(|| registry.nearest(class));
+                    report.push(unknown(class, near, registry));
                     continue;
                 }
             },
@@ -158,11 +161,11 @@ fn runnable<'a>(component: &'a Component, report: &mut Report<'_>) -> Option<&'a
     }
 }
 
-fn unknown(class: &Text, registry: &Registry) -> Diagnostic {
+fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
     const SHOWN: usize = 6;
     let message = format!("there is no class {}", quoted(class));
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
-    for meant in registry.nearest(class) {
+    for meant in near {
         one = one.suggest(replacing(class, meant), class.location, escaped(meant));
     }
     let looked = match registry.len() {

@@ -4,6 +4,7 @@
 
 mod assemblies;
 mod classes;
+mod mutations;
 mod names;
 mod properties;
 mod reference;
