@@ -141,6 +141,8 @@ impl Engine {
     /// All have initialized: what they sent leaves, and time begins.
     fn commit(&mut self) {
         self.phase = Phase::Running;
+        // The timer sleeps without a term so far; where nobody is due, the end of the run still is.
+        self.wake = true;
         for index in 0..self.slots.len() as u32 {
             let slot = &mut self.slots[index as usize];
             let Some(mut body) = slot.body.take_if(|_| slot.state == State::Active) else { continue };

@@ -1,10 +1,12 @@
 //! In real time. No test here asserts how long something took: machines are noisy.
 
+use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use saoms_core::assembly::Assembly;
 use saoms_core::report::Status;
-use saoms_core::schedule::{Occurrence, Settings};
+use saoms_core::schedule::{Fleet, Occurrence, Quiet, Settings};
 
 use crate::fleet::{Diary, of, outcome, real, run, start};
 
@@ -294,4 +296,14 @@ fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
     let assembly = crate::fleet::assembly("A actor period=5 each=[log a]");
     let fleet = saoms_core::schedule::Fleet::start(assembly, real(60), std::sync::Arc::new(Clumsy)).unwrap();
     assert_eq!(fleet.run_to_end().outcome.status, Status::Elapsed);
+}
+
+/// The timer already sleeps when the fleet starts, and nobody who is due wakes it.
+#[test]
+fn a_fleet_without_tasks_ends_when_its_time_is_over() {
+    for _ in 0..50 {
+        let settings = Settings { limit: Some(Duration::from_millis(1)), ..Settings::default() };
+        let fleet = Fleet::start(Assembly::default(), settings, Arc::new(Quiet)).unwrap();
+        assert_eq!(fleet.run_to_end().outcome.status, Status::Elapsed);
+    }
 }
