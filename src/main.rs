@@ -1,2 +1,43 @@
-//! The command.
-fn main() {}
+//! The command `saoms`: loads composites, checks them, and runs the fleet that they describe.
+//!
+//! One file per subcommand; each returns the process's exit code. What the machine does is in `saoms-core`; the components that ship are in
+//! `saoms-components`, which is linked here and known nowhere else.
+
+mod arguments;
+mod check;
+mod components;
+mod console;
+mod fleet;
+mod output;
+mod run;
+mod summary;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use saoms_components as _;
+
+use crate::arguments::{Arguments, Command};
+
+/// How the process ends; documented in `saoms --help`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Exit {
+    /// Everything asked for was done.
+    Done = 0,
+    /// The run failed.
+    Failed = 1,
+    /// The input is wrong and nothing was started.
+    WrongInput = 2,
+    /// Ctrl-C ended the run.
+    Interrupted = 130,
+}
+
+fn main() -> ExitCode {
+    // clap itself ends with 2 on a wrong command line, which is wrong input too.
+    let exit = match Arguments::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Components(arguments) => components::components(&arguments),
+    };
+    ExitCode::from(exit as u8)
+}

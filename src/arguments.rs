@@ -1,0 +1,142 @@
+//! What the command line takes.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Deploys a fleet of self-adaptive robots from composite files.
+#[derive(Debug, Parser)]
+#[command(name = "saoms", version, after_help = EXIT_CODES)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done, also when --for elapsed with work left (the report says so)
+  1    the run failed: a component failed for good, a message was lost, a report could not be written
+  2    the input is wrong: a composite, a value, or the command line; nothing was started
+  130  ended by Ctrl-C";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Check composites and run the fleet that they describe together
+    #[command(after_help = EXIT_CODES)]
+    Run(RunArguments),
+    /// Check composites without running anything
+    #[command(after_help = EXIT_CODES)]
+    Check(CheckArguments),
+    /// List the component classes, or describe one: properties, topics, services, references
+    Components(ComponentsArguments),
+}
+
+/// What describes a fleet.
+#[derive(Debug, Args)]
+pub(crate) struct FleetArguments {
+    /// Composite files; several form one fleet
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Give a composite property another value; may be repeated
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub(crate) settings: Vec<String>,
+
+    /// How diagnostics are shown: for people on standard error, or as one JSON object on standard output (on standard error once a fleet runs)
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
+
+    /// Refuse larger files
+    #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
+    pub(crate) max_size: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Human,
+    Json,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
+
+    /// End the run after this time (a bare number is milliseconds; units us, ms, s, min, h)
+    #[arg(long = "for", value_name = "DURATION", value_parser = saoms_api::parse_duration)]
+    pub(crate) limit: Option<Duration>,
+
+    /// Run in virtual time: the same fleet, deterministic, as fast as the machine goes
+    #[arg(long = "virtual", conflicts_with = "realtime")]
+    pub(crate) virtual_time: bool,
+
+    /// Where chance starts: in virtual time the same seed gives the same run
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// Write the report as JSON to this file, `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+
+    /// Show nothing but errors
+    #[arg(long, conflicts_with = "console")]
+    pub(crate) quiet: bool,
+
+    /// Show what happens as `plain` lines, or as the `classic` console of the original
+    #[arg(long, value_enum, value_name = "STYLE", default_value_t = ConsoleStyle::Plain)]
+    pub(crate) console: ConsoleStyle,
+
+    /// Run the timer under SCHED_FIFO with locked memory
+    #[arg(long)]
+    pub(crate) realtime: bool,
+
+    /// How much later the kernel may wake the timer to save power; 1ns is the most punctual
+    #[arg(long, value_name = "DURATION", default_value = "50us", value_parser = saoms_api::parse_duration)]
+    pub(crate) timer_slack: Duration,
+
+    /// How long an execution may hold up the others before a spare thread takes over
+    #[arg(long, value_name = "DURATION", default_value = "1ms", value_parser = saoms_api::parse_duration)]
+    pub(crate) budget: Duration,
+
+    /// How long a component may take to end before it is abandoned
+    #[arg(long, value_name = "DURATION", default_value = "2s", value_parser = saoms_api::parse_duration)]
+    pub(crate) grace: Duration,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ConsoleStyle {
+    Plain,
+    Classic,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ComponentsArguments {
+    /// The class to describe, by any of its names
+    pub(crate) name: Option<String>,
+
+    /// Text for people, or JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
+}
+
+/// A size in bytes, or with one of the units kB, MB and GB.
+fn parse_size(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let scale = match text[digits.len()..].to_ascii_lowercase().as_str() {
+        "" | "b" => Some(1),
+        "k" | "kb" => Some(1_000),
+        "m" | "mb" => Some(1_000_000),
+        "g" | "gb" => Some(1_000_000_000),
+        _ => None,
+    };
+    let size =
+        digits.trim().parse::<u64>().ok().zip(scale).and_then(|(number, scale)| number.checked_mul(scale));
+    size.ok_or_else(|| "expected a number of bytes, or a number with one of the units kB, MB, GB".to_owned())
+}

@@ -1,0 +1,27 @@
+//! `saoms check`: finds every mistake, starts nothing.
+
+use saoms_core::diagnostic::Severity;
+
+use crate::Exit;
+use crate::arguments::{CheckArguments, Format};
+use crate::fleet::checked;
+use crate::output::{counted, eprint, print};
+
+pub(crate) fn check(arguments: &CheckArguments) -> Exit {
+    let outcome = checked(&arguments.fleet);
+    match arguments.fleet.format {
+        Format::Json => print(&outcome.json()),
+        Format::Human => {
+            eprint(&outcome.human(Severity::Note));
+            let errors = counted(outcome.count(Severity::Error), "error");
+            let warnings = counted(outcome.count(Severity::Warning), "warning");
+            print(&match &outcome.assembly {
+                Some(assembly) => {
+                    format!("{}: {errors}, {warnings}\n", counted(assembly.components.len(), "component"))
+                }
+                None => format!("{errors}, {warnings}\n"),
+            });
+        }
+    }
+    if outcome.assembly.is_some() { Exit::Done } else { Exit::WrongInput }
+}

@@ -1,0 +1,213 @@
+//! `saoms components`: what a composite can name, from the declarations alone.
+
+use std::fmt::Write;
+
+use saoms_api::Properties;
+use saoms_core::assembly::TaskProperties;
+use saoms_core::registry::{Class, InterfaceDeclaration, PropertyDeclaration, Registry, TopicDeclaration};
+use serde_json::{Value, json};
+
+use crate::Exit;
+use crate::arguments::{ComponentsArguments, Format};
+use crate::fleet::registry;
+use crate::output::{eprint, print};
+
+pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
+    let registry = registry();
+    let chosen: Vec<&Class> = match &arguments.name {
+        None => registry.iter().map(AsRef::as_ref).filter(|class| !class.is_alias()).collect(),
+        Some(name) => match registry.get(name) {
+            Some(class) => vec![class],
+            None => {
+                eprint(&unknown(name, &registry));
+                return Exit::WrongInput;
+            }
+        },
+    };
+    match arguments.format {
+        Format::Json => {
+            let classes: Vec<Value> = chosen.into_iter().map(as_json).collect();
+            print(&format!("{:#}\n", json!({ "components": classes })));
+        }
+        Format::Human if arguments.name.is_some() => {
+            chosen.into_iter().for_each(|class| print(&described(class)))
+        }
+        Format::Human => print(&listed(&chosen)),
+    }
+    Exit::Done
+}
+
+fn unknown(name: &str, registry: &Registry) -> String {
+    let mut text = format!("error: no component class is named `{name}`\n");
+    let nearest = registry.nearest(name);
+    if !nearest.is_empty() {
+        let _ = writeln!(text, "help: did you mean `{}`?", nearest.join("` or `"));
+    }
+    text.push_str("help: `saoms components` lists all classes\n");
+    text
+}
+
+/// A line per class.
+fn listed(classes: &[&Class]) -> String {
+    let width = classes.iter().map(|class| class.name().len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for class in classes {
+        let declaration = class.declaration();
+        let first = declaration.doc.split(". ").next().unwrap_or_default().trim_end_matches('.');
+        let _ = writeln!(text, "{:width$}  {:8}  {first}", class.name(), kind(class));
+        if !declaration.also.is_empty() {
+            let names: Vec<&str> = declaration.also.iter().map(|alias| alias.name.as_str()).collect();
+            for line in wrapped(&format!("also {}", names.join(", ")), 100) {
+                let _ = writeln!(text, "{:width$}            {line}", "");
+            }
+        }
+    }
+    text.push_str("\n`saoms components NAME` describes one of them.\n");
+    text
+}
+
+fn kind(class: &Class) -> &'static str {
+    if class.declaration().is_periodic() { "periodic" } else { "passive" }
+}
+
+/// Everything about one class.
+fn described(class: &Class) -> String {
+    let declaration = class.declaration();
+    let mut text = format!("{} ({})\n", class.name(), kind(class));
+    if class.is_alias() {
+        let _ = writeln!(text, "  another name of {}", declaration.name);
+    }
+    for line in wrapped(&declaration.doc, 100) {
+        let _ = writeln!(text, "  {line}");
+    }
+    let own = declaration.properties.iter().map(|property| (property, preset(class, &property.name)));
+    section(&mut text, "Properties", own.map(property_lines).collect());
+    if declaration.is_periodic() {
+        let task = TaskProperties::declarations().iter();
+        let task = task.filter(|property| declaration.property(&property.name).is_none());
+        let lines = task.map(|property| property_lines((property, preset(class, &property.name)))).collect();
+        section(&mut text, "Task properties", lines);
+    }
+    section(&mut text, "Publishes", declaration.publishes.iter().map(topic_line).collect());
+    section(&mut text, "Subscribes to", declaration.subscribes.iter().map(topic_line).collect());
+    let services = declaration.offers().map(|service| interface_lines(&service.name, "", &service.interface));
+    section(&mut text, "Services", services.collect());
+    let references = declaration.references.iter().map(|reference| {
+        interface_lines(
+            &reference.name,
+            if reference.optional { ", optional" } else { "" },
+            &reference.interface,
+        )
+    });
+    section(&mut text, "References", references.collect());
+    if !class.is_alias() {
+        let names = declaration.also.iter().map(|alias| {
+            let values: Vec<String> =
+                alias.preset.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            format!("  {}  {}\n", alias.name, values.join(" "))
+        });
+        section(&mut text, "Also known as", names.collect());
+    }
+    text
+}
+
+/// What the class's name presets for the property.
+fn preset<'a>(class: &'a Class, property: &str) -> Option<&'a str> {
+    let declaration = class.declaration();
+    let alias = declaration.also.iter().find(|alias| alias.name == class.name())?;
+    alias.preset.get(property).map(String::as_str)
+}
+
+fn section(text: &mut String, title: &str, entries: Vec<String>) {
+    if !entries.is_empty() {
+        let _ = writeln!(text, "\n{title}");
+        entries.iter().for_each(|entry| text.push_str(entry));
+    }
+}
+
+fn property_lines((property, preset): (&PropertyDeclaration, Option<&str>)) -> String {
+    let mut facts = vec![property.expected()];
+    if property.many {
+        facts.push("any number of values".to_owned());
+    }
+    match (preset, &property.default) {
+        (Some(preset), _) => facts.push(format!("preset {preset}")),
+        (None, Some(default)) if default.is_empty() => facts.push("default is empty".to_owned()),
+        (None, Some(default)) => facts.push(format!("default {default}")),
+        (None, None) if property.required => facts.push("required".to_owned()),
+        (None, None) => facts.push("optional".to_owned()),
+    }
+    if let Some(scope) = &property.unique {
+        facts.push(format!("unique as {scope}"));
+    }
+    let mut text = format!("  {}: {}\n", property.name, facts.join(", "));
+    for line in wrapped(&property.doc, 96) {
+        let _ = writeln!(text, "      {line}");
+    }
+    text
+}
+
+fn topic_line(topic: &TopicDeclaration) -> String {
+    format!("  {} ({} topic of {})\n", topic.name, topic.kind.name(), topic.message)
+}
+
+fn interface_lines(name: &str, more: &str, interface: &InterfaceDeclaration) -> String {
+    let mut text = format!("  {name}: {}{more}\n", interface.name);
+    for operation in interface.operations.as_array().into_iter().flatten() {
+        let arguments: Vec<String> = operation["arguments"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(|argument| format!("{}: {}", plain(&argument["name"]), type_name(&argument["type"])))
+            .collect();
+        let reply = match type_name(&operation["reply"]) {
+            reply if reply.is_empty() => reply,
+            reply => format!(" -> {reply}"),
+        };
+        let _ = writeln!(text, "      {}({}){reply}", plain(&operation["name"]), arguments.join(", "));
+    }
+    text
+}
+
+fn plain(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
+/// A field type of the contract in short: `int32`, `sequence of Block`.
+fn type_name(value: &Value) -> String {
+    match value {
+        Value::Object(object) => {
+            match (object.get("sequence"), object.get("name"), object.get("enumeration")) {
+                (Some(of), _, _) => format!("sequence of {}", type_name(of)),
+                (_, Some(name), _) => plain(name).to_owned(),
+                (_, _, Some(of)) => format!("one of a {} enumeration", plain(of)),
+                _ => String::new(),
+            }
+        }
+        other => plain(other).to_owned(),
+    }
+}
+
+/// The class's declaration, with the task properties of a periodic one beside its own.
+fn as_json(class: &Class) -> Value {
+    let mut declaration: Value = serde_json::from_str(class.declaration_json()).unwrap_or_default();
+    if class.declaration().is_periodic() {
+        declaration["taskProperties"] = serde_json::from_str(TaskProperties::DECLARATION).unwrap_or_default();
+    }
+    declaration
+}
+
+/// The text in lines of at most `width` characters, broken between words.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

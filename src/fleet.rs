@@ -1,0 +1,70 @@
+//! From composite files to an assembly, or to the diagnostics that say why there is none.
+
+use std::io::IsTerminal;
+
+use saoms_core::assembly::Assembly;
+use saoms_core::check::{Setting, check};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json};
+use saoms_core::load::{load_file, read};
+use saoms_core::registry::Registry;
+use saoms_core::source::Sources;
+
+use crate::Exit;
+use crate::arguments::FleetArguments;
+use crate::output::eprint;
+
+/// The outcome of loading and checking.
+pub(crate) struct Checked {
+    /// What is to run; absent where there was an error.
+    pub(crate) assembly: Option<Assembly>,
+    sources: Sources,
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// Loads the files and checks them as one fleet.
+pub(crate) fn checked(arguments: &FleetArguments) -> Checked {
+    let registry = registry();
+    let mut sources = Sources::new();
+    let mut diagnostics = Diagnostics::new();
+    let settings = arguments.settings.iter();
+    let settings: Vec<Setting> =
+        settings.filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics)).collect();
+    let mut composites = Vec::new();
+    for path in &arguments.files {
+        let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
+        composites.extend(file.and_then(|file| load_file(file, &sources, &mut diagnostics)));
+    }
+    let assembly = check(&composites, &registry, &settings, &sources, &mut diagnostics);
+    Checked { assembly, sources, diagnostics: diagnostics.into_sorted() }
+}
+
+impl Checked {
+    /// The diagnostics of at least this severity, as people read them.
+    pub(crate) fn human(&self, least: Severity) -> String {
+        let shown: Vec<Diagnostic> =
+            self.diagnostics.iter().filter(|one| one.severity >= least).cloned().collect();
+        human(&shown, &self.sources, std::io::stderr().is_terminal())
+    }
+
+    /// All diagnostics as one JSON object.
+    pub(crate) fn json(&self) -> String {
+        format!("{:#}\n", json(&self.diagnostics, &self.sources))
+    }
+
+    /// How many diagnostics are of this severity.
+    pub(crate) fn count(&self, severity: Severity) -> usize {
+        self.diagnostics.iter().filter(|one| one.severity == severity).count()
+    }
+}
+
+/// The classes that are linked into this program.
+pub(crate) fn registry() -> Registry {
+    match Registry::linked() {
+        Ok(registry) => registry,
+        Err(error) => {
+            // A fault of this build, not of the user: no composite could be checked.
+            eprint(&format!("error: {error}\n"));
+            std::process::exit(Exit::Failed as i32);
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! Writing to standard output and standard error, where a closed pipe is no reason to fail.
+
+use std::io::{self, Write};
+
+/// Writes text to standard output. A reader that went away (`saoms components | head`) is not an error.
+pub(crate) fn print(text: &str) {
+    let _ = io::stdout().lock().write_all(text.as_bytes());
+}
+
+/// Writes text to standard error.
+pub(crate) fn eprint(text: &str) {
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// `1 error`, `2 errors`.
+pub(crate) fn counted(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}

@@ -1,0 +1,103 @@
+//! `saoms run`: checks composites and runs the fleet that they describe.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::thread;
+
+use saoms_core::diagnostic::Severity;
+use saoms_core::report::{RunReport, Status};
+use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+
+use crate::Exit;
+use crate::arguments::{Format, RunArguments};
+use crate::console::Console;
+use crate::fleet::checked;
+use crate::output::{counted, eprint, print};
+use crate::summary::summary;
+
+pub(crate) fn run(arguments: &RunArguments) -> Exit {
+    let outcome = checked(&arguments.fleet);
+    // Standard output belongs to the run, unless there is none.
+    match (arguments.fleet.format, &outcome.assembly) {
+        (Format::Json, None) => print(&outcome.json()),
+        (Format::Json, Some(_)) => eprint(&outcome.json()),
+        (Format::Human, _) => {
+            eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
+        }
+    }
+    let Some(assembly) = outcome.assembly else {
+        if arguments.fleet.format == Format::Human {
+            eprint(&format!("\n{}: nothing was started\n", counted(outcome.count(Severity::Error), "error")));
+        }
+        return Exit::WrongInput;
+    };
+    let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(Console::new(arguments))) {
+        Ok(fleet) => fleet,
+        Err(error) => {
+            eprint(&format!("error: {error}\n"));
+            return Exit::Failed;
+        }
+    };
+    end_on_signals(fleet.handle());
+    let report = fleet.run_to_end();
+    if !arguments.quiet {
+        print(&summary(&report));
+    }
+    if let Some(path) = &arguments.report
+        && let Err(problem) = write(&report, path)
+    {
+        eprint(&format!("error: the report could not be written to `{}`: {problem}\n", path.display()));
+        return Exit::Failed;
+    }
+    match report.outcome.status {
+        Status::Done | Status::Elapsed => Exit::Done,
+        Status::Failed => Exit::Failed,
+        Status::Interrupted => Exit::Interrupted,
+    }
+}
+
+fn settings(arguments: &RunArguments) -> Settings {
+    Settings {
+        clock: if arguments.virtual_time { ClockKind::Virtual } else { ClockKind::Real },
+        seed: arguments.seed,
+        limit: arguments.limit,
+        budget: arguments.budget,
+        timer_slack: arguments.timer_slack,
+        realtime: arguments.realtime,
+        grace: arguments.grace,
+        ..Settings::default()
+    }
+}
+
+/// The first Ctrl-C ends every component through its shutdown, a second one ends the process at once.
+fn end_on_signals(stop: Handle) {
+    let signals = Signals::new([SIGINT, SIGTERM]);
+    let spawned = signals.and_then(|mut signals| {
+        thread::Builder::new().name("signals".to_owned()).spawn(move || {
+            let mut seen = false;
+            for _ in signals.forever() {
+                if seen {
+                    std::process::exit(Exit::Interrupted as i32);
+                }
+                seen = true;
+                stop.stop();
+            }
+        })
+    });
+    if let Err(error) = spawned {
+        eprint(&format!("warning: Ctrl-C will end the process without a report: {error}\n"));
+    }
+}
+
+/// Writes the report as JSON; `-` is standard output.
+fn write(report: &RunReport, path: &Path) -> std::io::Result<()> {
+    let mut text = serde_json::to_string_pretty(report)?;
+    text.push('\n');
+    if path == Path::new("-") {
+        print(&text);
+        return Ok(());
+    }
+    std::fs::write(path, text)
+}

@@ -1,0 +1,80 @@
+//! The report for people.
+
+use std::fmt::Write;
+
+use saoms_core::report::{ComponentReport, RunReport, Status};
+use serde_json::Value;
+
+use crate::output::counted;
+
+/// How many components the table shows; the report file has all.
+const ROWS: usize = 24;
+
+/// How the run ended, what was done, and a line per component.
+pub(crate) fn summary(report: &RunReport) -> String {
+    let how = match report.outcome.status {
+        Status::Done => "done",
+        Status::Elapsed => "time is over",
+        Status::Failed => "failed",
+        Status::Interrupted => "interrupted",
+    };
+    let mut text = format!("\n{how} after {:.3} s", report.time_s);
+    if number(report, "/luggage/requested") > 0 {
+        let _ = write!(
+            text,
+            ": {} of {} pieces of luggage delivered, {}, {} stranded",
+            number(report, "/luggage/delivered"),
+            number(report, "/luggage/requested"),
+            collisions(report),
+            number(report, "/stranded"),
+        );
+    }
+    text.push('\n');
+    for reason in &report.outcome.reasons {
+        let _ = writeln!(text, "  {reason}");
+    }
+    text.push('\n');
+    text.push_str(&table(&report.components));
+    if let Some(hash) = &report.trace_hash {
+        let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
+    }
+    text
+}
+
+fn collisions(report: &RunReport) -> String {
+    match number(report, "/collisions/vertex") + number(report, "/collisions/swap") {
+        0 => "no collision".to_owned(),
+        several => counted(usize::try_from(several).unwrap_or_default(), "collision"),
+    }
+}
+
+/// A whole number of a section; 0 where there is none.
+fn number(report: &RunReport, pointer: &str) -> i64 {
+    let mut parts = pointer.split('/').skip(1);
+    let section = parts.next().and_then(|name| report.sections.get(name));
+    let value = parts.fold(section, |value, name| value.and_then(|value| value.get(name)));
+    value.and_then(Value::as_i64).unwrap_or_default()
+}
+
+fn table(components: &[ComponentReport]) -> String {
+    let shown = &components[..components.len().min(ROWS)];
+    let name_width =
+        shown.iter().map(|one| one.name.chars().count()).max().unwrap_or(0).max("component".len());
+    let class_width = shown.iter().map(|one| one.class.chars().count()).max().unwrap_or(0).max("class".len());
+    let mut text = format!(
+        "{:name_width$}  {:class_width$}  executions  missed  late us p50/p99/max  restarts  dropped\n",
+        "component", "class"
+    );
+    for one in shown {
+        let late = format!("{}/{}/{}", one.late_us.p50, one.late_us.p99, one.late_us.max);
+        let _ = writeln!(
+            text,
+            "{:name_width$}  {:class_width$}  {:>10}  {:>6}  {late:>19}  {:>8}  {:>7}",
+            one.name, one.class, one.executions, one.missed, one.restarts, one.dropped
+        );
+    }
+    if components.len() > shown.len() {
+        let _ = writeln!(text, "and {} more: see --report", components.len() - shown.len());
+    }
+    text
+}
