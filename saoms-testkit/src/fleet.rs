@@ -1,0 +1,99 @@
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use saoms_core::assembly::Assembly;
+use saoms_core::check::{Setting, check};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, human};
+use saoms_core::load::{MAX_SIZE, load_file, read};
+use saoms_core::registry::Registry;
+use saoms_core::report::RunReport;
+use saoms_core::schedule::{Quiet, Settings};
+use saoms_core::source::Sources;
+
+/// A fleet under test: one or several composites, and values for their properties.
+#[derive(Clone, Debug, Default)]
+pub struct Fleet {
+    composites: Vec<Composite>,
+    settings: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+enum Composite {
+    File(PathBuf),
+    Text(String),
+}
+
+impl Fleet {
+    /// The fleet of a composite file.
+    pub fn of_file(path: impl Into<PathBuf>) -> Fleet {
+        Fleet::default().and_file(path)
+    }
+
+    /// The fleet of a composite that is given as text; its name in diagnostics is `text.composite`.
+    pub fn of_text(text: impl Into<String>) -> Fleet {
+        Fleet { composites: vec![Composite::Text(text.into())], settings: Vec::new() }
+    }
+
+    /// The same fleet with the components of a further file.
+    #[must_use]
+    pub fn and_file(mut self, path: impl Into<PathBuf>) -> Fleet {
+        self.composites.push(Composite::File(path.into()));
+        self
+    }
+
+    /// The same fleet with another value for a composite property, as `--set` gives it.
+    #[must_use]
+    pub fn set(mut self, name: &str, value: &str) -> Fleet {
+        self.settings.push(format!("{name}={value}"));
+        self
+    }
+
+    /// What the checker finds, a line each: `error S3001 5:32 there is no class ...`; empty where all is well.
+    pub fn diagnostics(&self) -> String {
+        let (_, sources, diagnostics) = self.checked();
+        let mut text = String::new();
+        for one in &diagnostics {
+            let place = sources.get(one.location.file).range(one.location.span).start;
+            let (severity, code) = (one.severity.name(), one.code.id);
+            let _ = writeln!(text, "{severity} {code} {}:{} {}", place.line, place.column, one.message);
+        }
+        text
+    }
+
+    /// Runs the fleet in virtual time, until it ends by itself or the time is over. Same seed, same run.
+    ///
+    /// # Panics
+    /// With all diagnostics when the composites have errors, and with the component's words when one does not start.
+    #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
+    pub fn run(&self, seed: u64, limit: Duration) -> RunReport {
+        let (assembly, sources, diagnostics) = self.checked();
+        let Some(assembly) = assembly else { panic!("{}", human(&diagnostics, &sources, false)) };
+        let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
+        match saoms_core::schedule::Fleet::start(assembly, settings, Arc::new(Quiet)) {
+            Ok(fleet) => fleet.run_to_end(),
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    #[expect(clippy::panic, reason = "two linked classes of one name are a fault of the test's own build")]
+    fn checked(&self) -> (Option<Assembly>, Sources, Vec<Diagnostic>) {
+        let registry = Registry::linked().unwrap_or_else(|error| panic!("{error}"));
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let mut settings = Vec::new();
+        for setting in &self.settings {
+            settings.extend(Setting::parse("set", setting, &mut sources, &mut diagnostics));
+        }
+        let mut composites = Vec::new();
+        for composite in &self.composites {
+            let file = match composite {
+                Composite::File(path) => read(path, MAX_SIZE, &mut sources, &mut diagnostics),
+                Composite::Text(text) => Some(sources.add("text.composite", text.trim_start())),
+            };
+            composites.extend(file.and_then(|file| load_file(file, &sources, &mut diagnostics)));
+        }
+        let assembly = check(&composites, &registry, &settings, &sources, &mut diagnostics);
+        (assembly, sources, diagnostics.into_sorted())
+    }
+}
