@@ -45,6 +45,12 @@ impl Engine {
         self.ending = self.order_of_end.iter().copied().collect();
     }
 
+    /// The engine itself is at fault: nothing can go on.
+    pub(super) fn break_down(&mut self) {
+        self.phase = Phase::Ended;
+        self.reasons.push("a fault of the program itself, told on standard error, ended the run".to_owned());
+    }
+
     /// The order in which the components of an assembly end.
     pub(super) fn order_of_end(assembly: &Assembly) -> Vec<u32> {
         Plan::between(assembly, &Assembly::default()).remove.into_iter().map(|place| place as u32).collect()

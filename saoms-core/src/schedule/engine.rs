@@ -133,7 +133,8 @@ impl Engine {
         loop {
             match self.phase {
                 Phase::Running => {
-                    if now >= self.limit {
+                    // What was due before the limit still runs, however late it is.
+                    if now >= self.limit && self.queue.earliest().is_none_or(|when| when >= self.limit) {
                         self.begin_stop(Cause::Elapsed, self.limit);
                         continue;
                     }
@@ -235,9 +236,9 @@ impl Engine {
         if self.real {
             slot.statistics.late.record(late);
             if late >= period && overrun == Overrun::Skip {
-                let missed = late / period;
-                slot.statistics.missed += missed;
-                next += missed * period;
+                next += late / period * period;
+                // What would have been due after the end of the run is not missed.
+                slot.statistics.missed += now.min(self.limit.saturating_sub(1)).saturating_sub(due) / period;
             }
         }
         slot.due = next;

@@ -1,10 +1,11 @@
 use std::fmt;
+use std::fs::File;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use saoms_api::Time;
+use saoms_api::{Level, Time};
 
 use super::clock::Clock;
 use super::drive;
@@ -43,6 +44,8 @@ use crate::report::RunReport;
 #[derive(Debug)]
 pub struct Fleet {
     handle: Handle,
+    /// Under `realtime`, what keeps the processors awake.
+    _awake: Option<File>,
     teller: Option<JoinHandle<()>>,
 }
 
@@ -88,10 +91,13 @@ impl Fleet {
         events: Arc<dyn Events>,
     ) -> Result<Fleet, StartError> {
         contain::install_hook();
+        let settings = settings.checked();
         let simulated = settings.clock == ClockKind::Virtual;
-        if settings.realtime && !simulated {
+        let realtime = settings.realtime && !simulated;
+        if realtime {
             realtime::enter().map_err(StartError::Realtime)?;
         }
+        let awake = realtime.then(realtime::keep_awake).transpose();
         let clock = if simulated { Clock::simulated() } else { Clock::real() };
         let line = Line::new(events.as_ref(), simulated);
         let shared = Arc::new(Shared::new(assembly, settings, clock, line));
@@ -101,7 +107,14 @@ impl Fleet {
             .spawn(move || teller.line.tell(&events, || teller.progress()))
             .map_err(StartError::Thread)?;
         // From here on, dropping the fleet ends whatever has begun.
-        let fleet = Fleet { handle: Handle { shared }, teller: Some(teller) };
+        let handle = Handle { shared };
+        if let Err(error) = &awake {
+            let text = format!(
+                "processors that sleep will be slow to wake, /dev/cpu_dma_latency cannot be held: {error}"
+            );
+            handle.shared.note(Level::Warning, text);
+        }
+        let fleet = Fleet { handle, _awake: awake.unwrap_or_default(), teller: Some(teller) };
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
         start::start(shared)?;

@@ -1,6 +1,6 @@
 use std::fmt;
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Write as _};
 
 use super::sys;
 
@@ -63,6 +63,14 @@ pub(super) fn enter() -> Result<(), RealtimeError> {
         return Err(memory(io::Error::other(format!("at most {} kB may be locked", limit / 1024))));
     }
     sys::lock_memory().map_err(memory)
+}
+
+/// Keeps the processors out of their deep idle states as long as the file is open: waking from those takes tens of microseconds, most of
+/// the lateness of a few tasks. This is the kernel's interface for it (Documentation/power/pm_qos_interface.rst).
+pub(super) fn keep_awake() -> io::Result<File> {
+    let mut file = fs::OpenOptions::new().write(true).open("/dev/cpu_dma_latency")?;
+    file.write_all(&0_i32.to_ne_bytes())?;
+    Ok(file)
 }
 
 /// Whether the process has the capability CAP_IPC_LOCK, which is number 14.

@@ -9,16 +9,18 @@ pub struct Settings {
     pub seed: u64,
     /// When the run ends at the latest, in its own time. Executions due at that very instant are not run any more.
     pub limit: Option<Duration>,
-    /// How long an execution may hold up the others: after that another thread goes on with them. Real time only.
+    /// How long an execution may hold up the others: after that another thread goes on with them. At least 10 us. Real time only.
     pub budget: Duration,
     /// How much later than asked the kernel may end the timer's sleeps to save energy. At most the shortest period should bear it; 1 ns is
     /// the least. Real time only, and without effect under `realtime`.
     pub timer_slack: Duration,
-    /// Whether the timer runs under `SCHED_FIFO` with all memory locked. Real time only.
+    /// Whether the timer runs under `SCHED_FIFO`, with all memory locked and, where that is permitted, the processors kept out of their
+    /// deep idle states. Real time only. It is for fleets that leave the processor much time: one that never pauses loses its priority, and
+    /// the kernel lets real-time threads have 95 % of the time at most.
     pub realtime: bool,
     /// How long components may take to end; who takes longer is abandoned.
     pub grace: Duration,
-    /// How long, on the machine's clock, an execution in virtual time may take before the run ends as failed.
+    /// How long, on the machine's clock, an execution in virtual time may take before the run ends as failed. At least 10 ms.
     pub virtual_watchdog: Duration,
 }
 
@@ -51,6 +53,15 @@ impl Settings {
     /// The usual settings in virtual time with this seed.
     pub fn simulated(seed: u64) -> Settings {
         Settings { clock: ClockKind::Virtual, seed, ..Settings::default() }
+    }
+}
+
+impl Settings {
+    /// With values that work.
+    pub(super) fn checked(mut self) -> Settings {
+        self.budget = self.budget.max(Duration::from_micros(10));
+        self.virtual_watchdog = self.virtual_watchdog.max(Duration::from_millis(10));
+        self
     }
 }
 

@@ -31,12 +31,14 @@ fn wait_for(what: &str, happened: impl Fn() -> bool) {
 fn executions_follow_the_clock() {
     let (report, _) = run("A actor period=10\nB actor period=25 delay=30\nC actor period=500us", real(200));
     assert_eq!(report.outcome.status, Status::Elapsed);
-    assert!(report.time_s >= 0.2);
+    assert_eq!(report.time_s, 0.2);
     for (name, due) in [("A", 20), ("B", 7), ("C", 400)] {
+        // Each due execution has run or is counted as missed; the last one may have been so late that later ones are counted, too.
         let component = of(&report, name);
-        let all = component.executions + component.missed;
-        assert!(all <= due, "{component:?}");
-        assert!(all + 4 >= due.min(component.missed + 4) && component.executions > 0, "{component:?}");
+        assert!(
+            component.executions <= due && component.executions + component.missed >= due,
+            "{component:?}"
+        );
     }
 }
 

@@ -7,6 +7,7 @@ mod watchdog;
 mod workers;
 
 use std::io;
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread;
@@ -45,7 +46,14 @@ fn spawn_thread(
     run: impl FnOnce(&Arc<Shared>) + Send + 'static,
 ) -> io::Result<()> {
     let shared = Arc::clone(shared);
-    thread::Builder::new().name(name.to_owned()).spawn(move || run(&shared)).map(drop)
+    let contained = move || {
+        // Component code is contained elsewhere: this is a fault of the engine itself, which must not leave the program waiting.
+        if panic::catch_unwind(AssertUnwindSafe(|| run(&shared))).is_err() {
+            shared.lock().break_down();
+            announce_end(&shared);
+        }
+    };
+    thread::Builder::new().name(name.to_owned()).spawn(contained).map(drop)
 }
 
 /// Gives the calling thread the sleep precision and the priority of its role.

@@ -1,0 +1,170 @@
+//! What the engine costs beside the components: `cargo bench -p saoms-core --bench engine`.
+//!
+//! In virtual time, on one core, the best of five: ns per execution of an empty component, ns per delivery of a message from `send` to `receive`, and
+//! bytes per idle component. A delivery is one message that one reader has received; its cost is the time of a fleet that sends, less that of
+//! the same fleet when it does not, the digest of the trace included.
+
+use std::hint::black_box;
+use std::sync::Arc;
+use std::time::Instant;
+
+use saoms_api::{
+    Class, Component, Context, Failure, Message, Properties, PropertyValue, Publisher, Registration,
+    Subscription, Time, Topic,
+};
+use saoms_core::assembly::{Assembly, ComponentSpec, TaskSettings};
+use saoms_core::registry::Registry;
+use saoms_core::schedule::{Fleet, Quiet, Settings};
+
+/// Where a robot is: what the robots of the airport send most.
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Position {
+    robot: u32,
+    x: i32,
+    y: i32,
+}
+
+const EVENT: Topic<Position> = Topic::event("EVENT");
+const STATE: Topic<Position> = Topic::state("STATE");
+
+#[derive(Properties)]
+struct Load {
+    /// How many messages to send in each execution.
+    #[property(default = 0)]
+    sends: u32,
+    #[property(default = false)]
+    receives: bool,
+    #[property(default = false)]
+    state: bool,
+}
+
+/// Sends and receives.
+#[derive(Class)]
+#[class(name = "load", periodic, publishes(EVENT, STATE), subscribes(EVENT, STATE))]
+struct Robot {
+    load: Load,
+    publisher: Publisher<Position>,
+    subscription: Subscription<Position>,
+    sum: i64,
+}
+
+impl Component for Robot {
+    type Properties = Load;
+
+    fn new(load: Load) -> Result<Self, Failure> {
+        Ok(Robot { load, publisher: Publisher::default(), subscription: Subscription::default(), sum: 0 })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let topic = if self.load.state { &STATE } else { &EVENT };
+        self.publisher = context.publish(topic)?;
+        if self.load.receives {
+            self.subscription = context.subscribe(topic)?;
+        }
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for message in context.receive(&self.subscription) {
+            self.sum += i64::from(message.x);
+        }
+        for number in 0..self.load.sends {
+            context.send(&self.publisher, Position { robot: number, x: 1, y: 2 })?;
+        }
+        black_box(self.sum);
+        Ok(())
+    }
+}
+
+/// A fleet of equal periods.
+struct Shape {
+    senders: usize,
+    receivers: usize,
+    /// The senders are the receivers.
+    all: bool,
+    sends: u32,
+    state: bool,
+}
+
+#[expect(clippy::print_stdout, reason = "a benchmark tells its result")]
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // First, while the process has no memory to use again.
+    let (before, count) = (resident(), 10_000);
+    let fleet = start(&Shape { senders: count, receivers: 0, all: true, sends: 0, state: false })?;
+    fleet.run_until(Time::from_nanos(5_000_000_000));
+    println!("{:6.0} bytes per idle component, its assembly included", (resident() - before) / count as f64);
+    drop(fleet);
+    for count in [1, 10, 100, 1000, 10_000] {
+        let shape = Shape { senders: count, receivers: 0, all: false, sends: 0, state: false };
+        println!("{:6.1} ns per execution, {count} components", best(&shape)? / count as f64);
+    }
+    let shapes = [
+        ("1 -> 1", 1, 1, false),
+        ("1 -> 10", 1, 10, false),
+        ("1 -> 1000", 1, 1000, false),
+        ("100 <-> 100", 100, 100, true),
+    ];
+    for (name, senders, receivers, all) in shapes {
+        // Of a state each reader gets only the newest message of each publisher.
+        for (sends, state) in [(1, false), (16, false), (1, true)] {
+            let shape = Shape { senders, receivers, all, sends, state };
+            let net = best(&shape)? - best(&Shape { sends: 0, ..shape })?;
+            let kind = if state { "states" } else { "events" };
+            let deliveries = (senders * receivers * sends as usize) as f64;
+            println!("{:6.1} ns per delivery, {name}, {sends} {kind} in each execution", net / deliveries);
+        }
+    }
+    Ok(())
+}
+
+/// Nanoseconds per period of the fleet, the best of five.
+fn best(shape: &Shape) -> Result<f64, Box<dyn std::error::Error>> {
+    let components = if shape.all { shape.senders } else { shape.senders + shape.receivers };
+    let per_period = components + shape.senders * shape.receivers * shape.sends as usize;
+    let periods = (2_000_000 / per_period).max(20) as u64;
+    let fleet = start(shape)?;
+    let mut best = f64::INFINITY;
+    let warm = periods / 4 + 1;
+    fleet.run_until(Time::from_nanos(warm * 1_000_000_000));
+    for round in 0..5 {
+        let begin = Instant::now();
+        fleet.run_until(Time::from_nanos((warm + (round + 1) * periods) * 1_000_000_000));
+        best = best.min(begin.elapsed().as_nanos() as f64 / periods as f64);
+    }
+    Ok(best)
+}
+
+fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Robot>())?;
+    let class = registry.get("load").ok_or("the class is registered")?;
+    let mut components = Vec::new();
+    let count = if shape.all { shape.senders } else { shape.senders + shape.receivers };
+    for number in 0..count {
+        let task = [("ID", "load"), ("period", "1s"), ("queue", "100000")];
+        let task = task.map(|(name, value)| (name.to_owned(), PropertyValue::from(value)));
+        let sends = if number < shape.senders { shape.sends } else { 0 };
+        let receives = (shape.all && shape.receivers > 0) || number >= shape.senders;
+        let values = [
+            ("sends", sends.to_string()),
+            ("receives", receives.to_string()),
+            ("state", shape.state.to_string()),
+        ];
+        components.push(ComponentSpec {
+            path: format!("Robot{number}"),
+            class: Arc::clone(class),
+            values: values
+                .map(|(name, value)| (name.to_owned(), PropertyValue::from(value.as_str())))
+                .to_vec(),
+            task: Some(TaskSettings::from_values(&task, Vec::new())?),
+            references: Vec::new(),
+        });
+    }
+    Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Arc::new(Quiet))?)
+}
+
+/// The memory of this process, in bytes.
+fn resident() -> f64 {
+    let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    statm.split(' ').nth(1).and_then(|pages| pages.parse::<f64>().ok()).unwrap_or(0.0) * 4096.0
+}
