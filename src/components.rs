@@ -53,8 +53,13 @@ fn listed(classes: &[&Class]) -> String {
     let mut text = String::new();
     for class in classes {
         let declaration = class.declaration();
-        let first = declaration.doc.split(". ").next().unwrap_or_default().trim_end_matches('.');
-        let _ = writeln!(text, "{:width$}  {:8}  {first}", class.name(), kind(class));
+        let _ = writeln!(
+            text,
+            "{:width$}  {:8}  {}",
+            class.name(),
+            kind(class),
+            first_sentence(&declaration.doc)
+        );
         if !declaration.also.is_empty() {
             let names: Vec<&str> = declaration.also.iter().map(|alias| alias.name.as_str()).collect();
             for line in wrapped(&format!("also {}", names.join(", ")), 100) {
@@ -64,6 +69,12 @@ fn listed(classes: &[&Class]) -> String {
     }
     text.push_str("\n`saoms components NAME` describes one of them.\n");
     text
+}
+
+fn first_sentence(doc: &str) -> String {
+    let words: Vec<&str> = doc.split_whitespace().collect();
+    let end = words.iter().position(|word| word.ends_with('.')).map_or(words.len(), |last| last + 1);
+    words[..end].join(" ").trim_end_matches('.').to_owned()
 }
 
 fn kind(class: &Class) -> &'static str {

@@ -7,8 +7,8 @@ use crate::source::{Location, Sources};
 
 /// One object with all diagnostics, each with 1-based lines and columns in Unicode scalars, ends exclusive.
 ///
-/// `rule` is null when the diagnostic stems from no rule of the SCA specification, `help` when there is none; several
-/// lines of help are joined by line feeds.
+/// `rule` is null when the diagnostic stems from no rule of the SCA specification. `help` holds what people are shown below
+/// the picture, the descriptions of suggestions included, a line each; it is null when there is nothing.
 pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
     let all: Vec<Value> = diagnostics.iter().map(|one| diagnostic(one, sources)).collect();
     json!({ "diagnostics": all })
@@ -22,7 +22,9 @@ fn diagnostic(one: &Diagnostic, sources: &Sources) -> Value {
             edits.map(|edit| placed(edit.location, sources, "replacement", &edit.replacement)).collect();
         json!({ "description": suggestion.description, "edits": edits })
     });
-    let help = (!one.help.is_empty()).then(|| one.help.join("\n"));
+    let help = one.suggestions.iter().map(|suggestion| suggestion.description.as_str());
+    let help: Vec<&str> = help.chain(one.help.iter().map(String::as_str)).collect();
+    let help = (!help.is_empty()).then(|| help.join("\n"));
     let mut object = placed(one.location, sources, "message", &one.message);
     object["severity"] = one.severity.name().into();
     object["code"] = one.code.id.into();

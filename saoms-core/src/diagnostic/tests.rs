@@ -67,7 +67,7 @@ fn machines_see_the_same() {
     expected["severity"] = "error".into();
     expected["code"] = "S0105".into();
     expected["rule"] = "ASM13001".into();
-    expected["help"] = "attributes are name and autowire".into();
+    expected["help"] = "replace `nmae` with `name`\nattributes are name and autowire".into();
     expected["labels"] = json!([at(12, 3, "text", "in this component")]);
     expected["suggestions"] =
         json!([{"description": "replace `nmae` with `name`", "edits": [at(30, 26, "replacement", "name")]}]);
