@@ -346,7 +346,7 @@ impl Engine {
         self.slots[index as usize].state == State::Abandoned
     }
 
-    /// Lets the messages of an outbox go to their topics.
+    /// Lets the messages of an outbox go to their topics. At the end of a run nobody reads them any more, so that no queue can overflow either.
     #[inline]
     pub(super) fn deliver(&mut self, part: &mut Part, now: u64) {
         self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
@@ -354,7 +354,9 @@ impl Engine {
             if let Some(trace) = &mut self.trace {
                 trace.message(now, part.index, self.bus.name_hash(topic), &message);
             }
-            self.bus.publish(topic, message);
+            if self.phase == Phase::Running {
+                self.bus.publish(topic, message);
+            }
         }
     }
 

@@ -7,10 +7,21 @@ pub(super) struct Pulse {
     begun: AtomicU64,
     /// When the present piece began, on the machine's clock; 0 is none.
     since: AtomicU64,
-    /// When the timer wants to be awake again, on the machine's clock.
+    /// When the timer woke, or wants to be awake again, on the machine's clock.
     next: AtomicU64,
     /// Until when the watcher sleeps, on the machine's clock.
     watch: AtomicU64,
+}
+
+/// What the timer does at one moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Present {
+    /// The number of the piece of component code that runs, or was the last to run.
+    pub(super) piece: u64,
+    /// Since when it runs.
+    pub(super) since: Option<u64>,
+    /// When the timer woke, or wants to be awake again.
+    pub(super) next: u64,
 }
 
 impl Default for Pulse {
@@ -39,23 +50,23 @@ impl Pulse {
         self.since.store(0, Ordering::Release);
     }
 
-    /// The timer is about to sleep.
-    pub(super) fn sleep(&self, until: u64) {
-        self.next.store(until, Ordering::Release);
+    /// The timer is about to sleep, or has just woken and is awake from now on.
+    pub(super) fn awake_at(&self, time: u64) {
+        self.next.store(time, Ordering::Release);
     }
 
-    /// The number of the present piece, and since when it runs.
-    pub(super) fn present(&self) -> (u64, Option<u64>) {
+    /// What the timer does at present.
+    pub(super) fn present(&self) -> Present {
         let since = self.since.load(Ordering::Acquire);
-        (self.begun.load(Ordering::Acquire), (since != 0).then_some(since))
+        Present {
+            piece: self.begun.load(Ordering::Acquire),
+            since: (since != 0).then_some(since),
+            next: self.next.load(Ordering::Acquire),
+        }
     }
 
     pub(super) fn begun(&self) -> u64 {
         self.begun.load(Ordering::Acquire)
-    }
-
-    pub(super) fn next(&self) -> u64 {
-        self.next.load(Ordering::Acquire)
     }
 
     /// The watcher is about to sleep.

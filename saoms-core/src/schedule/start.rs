@@ -97,10 +97,12 @@ fn initialize(shared: &Arc<Shared>, index: u32) -> Result<(), (u32, Failure)> {
         Ok(()) => {
             engine.finish(index, body, Job::Start, Ok(()), 0, 0);
             // A failure in this phase can only be that of a component that was called.
-            let culprit = engine.slots.iter().position(|slot| slot.state == State::Failed);
-            match engine.reasons.pop().zip(culprit) {
+            match engine.reasons.pop() {
                 None => Ok(()),
-                Some((reason, culprit)) => Err((culprit as u32, Failure::new(reason))),
+                Some(reason) => {
+                    let culprit = engine.slots.iter().position(|slot| slot.state == State::Failed);
+                    Err((culprit.unwrap_or(index as usize) as u32, Failure::new(reason)))
+                }
             }
         }
         Err(failure) => {

@@ -145,3 +145,33 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
     );
     assert_eq!(serde_json::from_value::<saoms_core::report::RunReport>(json).unwrap(), report);
 }
+
+#[test]
+fn what_is_sent_at_the_end_overflows_no_queue() {
+    let senders: String =
+        (0..20).map(|n| format!("A{n} actor publishes=TALK subscribes=TALK queue=4 last=[say bye]\n")).collect();
+    let (report, _) = run(&senders, simulated(50));
+    assert_eq!(outcome(&report), "Elapsed after 0.05 s");
+    assert!(report.components.iter().all(|component| component.dropped == 0 && component.messages.sent == 1));
+}
+
+#[test]
+fn a_program_that_listens_slowly_does_not_make_a_component_look_stuck() {
+    struct Slow(std::sync::atomic::AtomicUsize);
+    impl saoms_core::schedule::Events for Slow {
+        fn event(&self, _: &saoms_core::schedule::Event) {
+            if self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) == 0 {
+                std::thread::sleep(std::time::Duration::from_millis(300));
+            }
+        }
+    }
+    let settings = saoms_core::schedule::Settings {
+        virtual_watchdog: std::time::Duration::from_millis(30),
+        ..simulated(70_000)
+    };
+    let assembly = crate::fleet::assembly("A actor period=1 each=[log a]");
+    let slow = std::sync::Arc::new(Slow(std::sync::atomic::AtomicUsize::new(0)));
+    let fleet = saoms_core::schedule::Fleet::start(assembly, settings, slow.clone()).unwrap();
+    assert_eq!(outcome(&fleet.run_to_end()), "Elapsed after 70 s");
+    assert_eq!(slow.0.load(std::sync::atomic::Ordering::Relaxed), 70_002);
+}

@@ -3,7 +3,7 @@ use std::sync::atomic::{Ordering, fence};
 
 use saoms_api::Level;
 
-use super::super::engine::{Engine, Next};
+use super::super::engine::{Engine, Next, Phase};
 use super::super::realtime::TIMER_PRIORITY;
 use super::super::settings::nanos;
 use super::super::shared::Shared;
@@ -60,6 +60,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 engine = shared.lock();
                 engine.roles.asleep_until = 0;
                 now = shared.clock.now();
+                shared.pulse.awake_at(shared.clock.on_machine(now));
                 woke = true;
                 load.has_slept(shared, now);
             }
@@ -73,9 +74,13 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
 fn sleep(shared: &Shared, mut engine: std::sync::MutexGuard<'_, Engine>, until: u64) {
     // Whoever has something new for the timer does it under the lock, and then changes the ticket.
     let ticket = shared.timer.ticket();
+    if shared.stop.load(Ordering::SeqCst) && engine.phase == Phase::Running {
+        // That came after the last look, and before the ticket.
+        return shared.release(engine);
+    }
     engine.roles.asleep_until = until;
     let until = if until == NEVER { NEVER } else { shared.clock.on_machine(until) };
-    shared.pulse.sleep(until);
+    shared.pulse.awake_at(until);
     shared.release(engine);
     shared.timer.wait(ticket, (until != NEVER).then_some(until));
 }

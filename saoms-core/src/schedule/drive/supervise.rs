@@ -71,7 +71,8 @@ impl Stuck {
         let now = sys::monotonic();
         let allowed = nanos(shared.settings.virtual_watchdog);
         let piece = shared.pulse.begun();
-        if piece != self.piece || engine.roles.running.is_none() {
+        // Who waits for a program that does not listen is not stuck by itself.
+        if piece != self.piece || engine.roles.running.is_none() || shared.line.is_jammed() {
             *self = Stuck { piece, since: now };
         }
         let culprit = engine.roles.running.filter(|_| now - self.since >= allowed);

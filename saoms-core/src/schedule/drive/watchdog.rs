@@ -26,12 +26,12 @@ fn watch(shared: &Arc<Shared>) {
     let mut least = 0;
     while !shared.ended.load(Ordering::Acquire) {
         let ticket = shared.spare.ticket();
-        let (piece, since) = shared.pulse.present();
-        let from = since.unwrap_or_else(|| shared.pulse.next());
+        let present = shared.pulse.present();
+        let from = present.since.unwrap_or(present.next);
         let until = if from == NEVER { NEVER } else { from.saturating_add(budget).max(least) };
         shared.pulse.watch_from(until);
         fence(Ordering::SeqCst);
-        if shared.pulse.present() != (piece, since) {
+        if shared.pulse.present() != present {
             continue;
         }
         let now = sys::monotonic();
@@ -39,9 +39,9 @@ fn watch(shared: &Arc<Shared>) {
             shared.spare.wait(ticket, (until != NEVER).then_some(until));
             continue;
         }
-        if since.is_some() {
+        if present.since.is_some() {
             let engine = shared.lock();
-            if shared.pulse.present() == (piece, since) && engine.roles.running.is_some() {
+            if shared.pulse.present() == present && engine.roles.running.is_some() {
                 return take_over(shared, engine);
             }
         }

@@ -4,6 +4,7 @@ use saoms_api::Level;
 
 use super::super::engine::{Engine, Phase};
 use super::super::shared::{Shared, relock};
+use super::super::sys;
 use super::spawn_thread;
 
 /// How many worker threads may wait for work.
@@ -13,6 +14,10 @@ const WORKERS: usize = 256;
 
 /// Runs components that took too long before, until there are enough idle workers. The caller is counted among the workers.
 pub(super) fn work(shared: &Arc<Shared>) {
+    if shared.settings.realtime {
+        // A thread inherits the priority of the one that starts it. Giving it up is always allowed.
+        let _ = sys::set_normal(sys::thread_id());
+    }
     let mut engine = shared.lock();
     while engine.phase == Phase::Running {
         let Some(index) = engine.roles.work.pop_front() else {

@@ -74,6 +74,11 @@ impl Line {
         }
     }
 
+    /// Whether somebody who has an event waits for room.
+    pub(in crate::schedule) fn is_jammed(&self) -> bool {
+        self.lock().writers_sleep
+    }
+
     /// Nothing more comes: [`tell`](Line::tell) returns when it has told what is there.
     pub(in crate::schedule) fn close(&self) {
         self.lock().closed = true;
