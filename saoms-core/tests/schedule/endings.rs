@@ -148,8 +148,9 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
 
 #[test]
 fn what_is_sent_at_the_end_overflows_no_queue() {
-    let senders: String =
-        (0..20).map(|n| format!("A{n} actor publishes=TALK subscribes=TALK queue=4 last=[say bye]\n")).collect();
+    let senders: String = (0..20)
+        .map(|n| format!("A{n} actor publishes=TALK subscribes=TALK queue=4 last=[say bye]\n"))
+        .collect();
     let (report, _) = run(&senders, simulated(50));
     assert_eq!(outcome(&report), "Elapsed after 0.05 s");
     assert!(report.components.iter().all(|component| component.dropped == 0 && component.messages.sent == 1));

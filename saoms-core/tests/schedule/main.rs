@@ -4,6 +4,7 @@
 
 mod actor;
 mod bus;
+mod chaos;
 mod endings;
 mod failures;
 mod fleet;
