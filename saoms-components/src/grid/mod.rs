@@ -6,6 +6,6 @@ mod map;
 mod read;
 
 pub use block::Block;
-pub use distances::{Distances, UNREACHABLE};
+pub use distances::{Distances, MOVE, UNREACHABLE};
 pub use map::Map;
 pub use read::MapError;

@@ -2,6 +2,8 @@ use std::fmt;
 
 use saoms_api::Message;
 
+use crate::grid::Block;
+
 /// That a robot is there, or no longer is.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(key = "robot")]
@@ -14,6 +16,10 @@ pub struct RobotList {
     pub battery: f64,
     /// Whether it is at its charger and in charge.
     pub in_charge: bool,
+    /// Where its charger is: a block that others keep off.
+    pub charger: Block,
+    /// How often it acts: the time from one execution to the next, in microseconds.
+    pub period: u64,
 }
 
 impl fmt::Display for RobotList {

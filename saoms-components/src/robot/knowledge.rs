@@ -9,6 +9,8 @@ pub struct Knowledge {
     pub name: String,
     /// Its number.
     pub number: u32,
+    /// The time from one of its executions to the next, in microseconds.
+    pub period: u64,
     /// Where it is.
     pub block: Block,
     /// Where it moves next; the same as `block` while it does not.
@@ -33,6 +35,7 @@ impl Knowledge {
         Knowledge {
             name,
             number,
+            period: 0,
             block: charge_block,
             next: charge_block,
             charge_block,

@@ -94,6 +94,7 @@ impl Component for Robot {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.topics = Topics::new(context)?;
         self.hooks = Hooks::new(context)?;
+        self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
         self.enter(context)?;
         if matches!(self.rules, Rules::Safe(_)) {
@@ -104,8 +105,9 @@ impl Component for Robot {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let entered = self.enter(context)?;
         self.topics.listen(context, &mut self.knowledge);
-        if !self.enter(context)? {
+        if !entered {
             return Ok(());
         }
         context.console(format_args!(

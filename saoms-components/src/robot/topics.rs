@@ -41,6 +41,7 @@ impl Topics {
         let lists = &mut knowledge.lists;
         for robot in context.receive(&self.robots_heard) {
             lists.hear_robot(robot);
+            knowledge.routes.learn_charger(robot.charger);
         }
         lists.peers.hear(context.receive(&self.positions_heard));
         for (header, event) in context.receive(&self.luggage_heard).with_headers() {
@@ -60,6 +61,8 @@ impl Topics {
             active,
             battery: knowledge.battery.percent(),
             in_charge: knowledge.variables.in_charge,
+            charger: knowledge.charge_block,
+            period: knowledge.period,
         };
         self.said_robot = Some(robot.clone());
         context.send(&self.robots, robot)

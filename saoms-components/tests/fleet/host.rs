@@ -225,6 +225,10 @@ impl Fleet {
         })
     }
 
+    pub(crate) fn time(&self) -> Time {
+        self.now
+    }
+
     pub(crate) fn count(&self, path: &str) -> i64 {
         self.counts.get(path).copied().unwrap_or(0)
     }

@@ -4,3 +4,4 @@
 
 mod classic;
 mod host;
+mod safe;

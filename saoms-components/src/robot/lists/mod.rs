@@ -26,6 +26,11 @@ impl Lists {
         Lists { number, active: Vec::new(), requests: Requests::new(number), peers: Peers::new(number) }
     }
 
+    /// The longest time from one execution to the next of the other robots, in microseconds.
+    pub fn slowest_period(&self) -> u64 {
+        self.active.iter().map(|robot| robot.period).max().unwrap_or(0)
+    }
+
     /// Takes in that a robot is active, or no longer is.
     pub fn hear_robot(&mut self, robot: &RobotList) {
         if robot.robot == self.number {

@@ -8,23 +8,27 @@ use crate::robot::Body;
 use crate::robot::actions::Outcome;
 
 use super::traffic::Claim;
-use super::{Safe, is_at_destination};
+use super::{Safe, Urgency, is_at_destination};
 
 impl Safe {
     pub(super) fn drive(&mut self, body: &mut Body<'_, '_>) -> Result<(), Failure> {
         self.traffic.look(&body.knowledge.lists.peers, body.knowledge.next);
-        self.go(body)?;
-        let knowledge = &*body.knowledge;
+        let goes_on = self.go(body)?;
+        self.energy.pace().note_way(self.leg.urgency != Urgency::None, goes_on);
+        let knowledge = &mut *body.knowledge;
         let at = knowledge.next;
-        let stays =
-            is_at_destination(body) && !self.energy.must_charge() || self.energy.holds_charger(knowledge);
+        let works = is_at_destination(knowledge) && !self.energy.must_charge();
+        let stays = works || self.energy.holds_charger(knowledge);
         let (wanted, priority) = if stays {
             self.traffic.stay(at);
             (at, IMMOVABLE)
         } else {
             let own = self.leg.priority(knowledge.number);
             let priority = self.traffic.inherited(own, at);
-            let claim = Claim { robot: knowledge.number, at, goal: self.leg.goal, priority };
+            let y_first = self.leg.goal == Some(knowledge.charge_block);
+            let moves = knowledge.block != at;
+            let tempo = if moves { 0 } else { self.energy.tempo(knowledge) };
+            let claim = Claim { robot: knowledge.number, at, goal: self.leg.goal, y_first, priority, tempo };
             (self.traffic.choose(&claim, own, &knowledge.routes, body.context.chance()), priority)
         };
         if wanted != at {
@@ -35,21 +39,16 @@ impl Safe {
     }
 
     /// Goes to the block that was wanted in an earlier execution, if it is clear now.
-    fn go(&mut self, body: &mut Body<'_, '_>) -> Result<(), Failure> {
+    fn go(&mut self, body: &mut Body<'_, '_>) -> Result<bool, Failure> {
         let from = body.knowledge.next;
-        let Some(wanted) = self.traffic.wanted(from).filter(|wanted| self.traffic.is_clear(*wanted)) else {
-            return Ok(());
-        };
-        if body.knowledge.block != from {
-            return Ok(());
+        let wanted = self.traffic.wanted(from).filter(|wanted| self.traffic.is_clear(*wanted));
+        let Some(wanted) = wanted.filter(|_| body.knowledge.block == from) else { return Ok(false) };
+        let outcome = body.begin(Action::move_to(wanted))?;
+        let goes_on = matches!(outcome, Outcome::Done | Outcome::Running);
+        if goes_on {
+            self.traffic.went(from);
+            self.traffic.look(&body.knowledge.lists.peers, wanted);
         }
-        match body.begin(Action::move_to(wanted))? {
-            Outcome::Done | Outcome::Running => {
-                self.traffic.went(from);
-                self.traffic.look(&body.knowledge.lists.peers, wanted);
-            }
-            Outcome::NotBegun | Outcome::Failed => {}
-        }
-        Ok(())
+        Ok(goes_on)
     }
 }

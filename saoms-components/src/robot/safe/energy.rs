@@ -1,15 +1,16 @@
 //! Whether the battery lasts.
 
 use crate::grid::{Block, UNREACHABLE};
-use crate::hardware::{Action, ActionKind};
-use crate::robot::actions::Outcome;
 use crate::robot::{Body, Job, Knowledge};
 
-/// Executions that are kept back for waiting, whatever the distance.
-const RESERVE: u32 = 6;
+use super::pace::Pace;
 
-/// For so many moves to the charger one more execution is kept back.
-const RESERVE_SHARE: u32 = 4;
+/// Moves that are kept back for waiting and making way on the way to the charger, where the battery allows. Simulated fleets of the
+/// tests strand robots now and then with less than 12.
+const RESERVE: u32 = 14;
+
+/// Executions that are always kept back.
+const LEAST_RESERVE: u32 = 2;
 
 /// A robot in charge makes way for others when its battery lasts for so many executions.
 const YIELD_FROM: u32 = 15;
@@ -19,17 +20,14 @@ const YIELD_FROM: u32 = 15;
 pub(super) struct Energy {
     must_charge: bool,
     stranded: bool,
-    /// The most executions that a move took so far.
-    pace: u32,
-    /// The most executions that collecting or depositing took so far.
-    handling: u32,
-    /// The executions of the running action.
-    running: u32,
+    pace: Pace,
+    /// Executions that are kept back now: less than usual on a way that takes nearly the whole battery.
+    reserve: u32,
 }
 
 impl Default for Energy {
     fn default() -> Energy {
-        Energy { must_charge: false, stranded: false, pace: 1, handling: 1, running: 0 }
+        Energy { must_charge: false, stranded: false, pace: Pace::default(), reserve: RESERVE }
     }
 }
 
@@ -79,15 +77,9 @@ impl Energy {
         }
     }
 
-    /// Learns how many executions the hardware takes.
-    pub(super) fn note_pace(&mut self, polled: Option<(Action, Outcome)>) {
-        let Some((action, outcome)) = polled else { return self.running = 0 };
-        self.running += 1;
-        let longest = if action.kind == ActionKind::Move { &mut self.pace } else { &mut self.handling };
-        *longest = (*longest).max(self.running);
-        if matches!(outcome, Outcome::Done | Outcome::Failed) {
-            self.running = 0;
-        }
+    /// What the robot learns about its speed.
+    pub(super) fn pace(&mut self) -> &mut Pace {
+        &mut self.pace
     }
 
     /// Decides whether to charge, and whether it is too late for that.
@@ -99,17 +91,19 @@ impl Energy {
             }
             return;
         }
-        let battery = &knowledge.battery;
-        if battery.is_empty() && !self.stranded {
+        let left = knowledge.battery.executions_left();
+        if knowledge.battery.is_empty() && !self.stranded {
             self.stranded = true;
             body.context.count("stranded", 1);
             body.context.log(
                 saoms_api::Level::Error,
                 format_args!("is stranded at {}: its battery is empty", knowledge.block),
             );
-        } else if !self.must_charge && battery.executions_left() <= self.home(knowledge, knowledge.next) {
+        } else if !self.must_charge
+            && left < self.home(knowledge, knowledge.next).saturating_add(self.reserve)
+        {
             self.must_charge = true;
-            let name = &knowledge.name;
+            let (name, battery) = (&knowledge.name, &knowledge.battery);
             body.context.console(format_args!("{name} has low battery and is going under charge..."));
             body.context.info(format_args!("has low battery ({battery} %): goes to charge"));
         }
@@ -117,53 +111,84 @@ impl Energy {
 
     /// What the battery allows of a job that starts here and now.
     pub(super) fn means(&self, knowledge: &mut Knowledge, job: &Job) -> Means {
-        let battery = &knowledge.battery;
-        let (left, full) = (battery.executions_left(), battery.executions_when_full());
-        let needs = self.job_from(knowledge, knowledge.next, job, false);
-        if needs == UNREACHABLE {
-            Means::Never
-        } else if needs <= left || (left == full && self.in_two_charges(knowledge, job, full)) {
-            Means::Enough
-        } else if needs <= full || self.in_two_charges(knowledge, job, full) {
-            Means::Needs(needs.min(full))
-        } else {
-            Means::Never
+        let (left, full) = (knowledge.battery.executions_left(), knowledge.battery.executions_when_full());
+        let usual = self.job(knowledge, job, false).saturating_add(self.usual_reserve(knowledge));
+        if usual <= left {
+            return Means::Enough;
+        }
+        match (self.is_within(knowledge, job, full), left == full) {
+            (false, _) => Means::Never,
+            (true, true) => Means::Enough,
+            (true, false) => Means::Needs(usual.min(full)),
         }
     }
 
+    /// Starts a job, or goes on with it after charging: decides what to keep back. A robot that would come too low charges between collecting
+    /// and depositing.
+    pub(super) fn set_out(&mut self, knowledge: &mut Knowledge, job: &Job) {
+        let next = if knowledge.variables.has_luggage { job.to } else { job.from };
+        let way = knowledge.routes.between(knowledge.next, next);
+        let first = self.pace.job(way, 1).saturating_add(self.home(knowledge, next));
+        let spare = knowledge.battery.executions_left().saturating_sub(first);
+        self.reserve = (spare / 4 * 3).clamp(LEAST_RESERVE, self.usual_reserve(knowledge));
+    }
+
+    /// Without a job nothing speaks against the usual reserve.
+    pub(super) fn is_free(&mut self, knowledge: &Knowledge) {
+        self.reserve = self.usual_reserve(knowledge);
+    }
+
     /// Whether a charged robot can go on: what is left suffices for the rest of its job, or more is not to be had.
-    fn may_leave(&self, knowledge: &mut Knowledge) -> bool {
+    fn may_leave(&mut self, knowledge: &mut Knowledge) -> bool {
         let Some(job) = knowledge.job.filter(|_| knowledge.variables.busy) else { return true };
-        let has_luggage = knowledge.variables.has_luggage;
-        let needs = self.job_from(knowledge, knowledge.next, &job, has_luggage);
-        knowledge.battery.is_full() || knowledge.battery.executions_left() >= needs
+        let needs = self.job(knowledge, &job, knowledge.variables.has_luggage);
+        let usual = needs.saturating_add(self.usual_reserve(knowledge));
+        let may = knowledge.battery.is_full() || knowledge.battery.executions_left() >= usual;
+        if may {
+            self.set_out(knowledge, &job);
+        }
+        may
     }
 
-    /// Executions for the rest of a job and the way to the charger.
-    fn job_from(&self, knowledge: &mut Knowledge, start: Block, job: &Job, has_luggage: bool) -> u32 {
-        let (way, handling) = if has_luggage {
-            (knowledge.routes.between(start, job.to), self.handling)
+    /// How many executions another robot may take for one move.
+    pub(super) fn tempo(&self, knowledge: &Knowledge) -> u32 {
+        let slower = knowledge.lists.slowest_period().checked_div(knowledge.period).unwrap_or(1).max(1);
+        self.pace.moving.saturating_mul(u32::try_from(slower).unwrap_or(u32::MAX))
+    }
+
+    fn usual_reserve(&self, knowledge: &Knowledge) -> u32 {
+        let most = knowledge.battery.executions_when_full() / 3;
+        RESERVE.saturating_mul(self.tempo(knowledge)).min(most)
+    }
+
+    /// Executions for the rest of a job from here, and the way to the charger.
+    fn job(&self, knowledge: &mut Knowledge, job: &Job, has_luggage: bool) -> u32 {
+        let start = knowledge.next;
+        let executions = if has_luggage {
+            self.pace.job(knowledge.routes.between(start, job.to), 1)
         } else {
-            let first = knowledge.routes.between(start, job.from);
-            (first.saturating_add(knowledge.routes.between(job.from, job.to)), 2 * self.handling)
+            let way = knowledge.routes.between(start, job.from);
+            self.pace.job(way.saturating_add(knowledge.routes.between(job.from, job.to)), 2)
         };
-        let moves = way.saturating_mul(self.pace).saturating_add(handling);
-        moves.saturating_add(self.home(knowledge, job.to))
+        executions.saturating_add(self.home(knowledge, job.to))
     }
 
-    /// Whether each half of the job starts and ends at the charger with one full battery.
-    fn in_two_charges(&self, knowledge: &Knowledge, job: &Job, full: u32) -> bool {
-        [job.from, job.to].into_iter().all(|block| {
-            let way = knowledge.routes.to_charger(block, knowledge.charge_block);
-            let there = way.saturating_mul(self.pace).saturating_add(self.handling);
-            there.saturating_add(self.home(knowledge, block)) <= full
-        })
+    /// Whether a full battery lasts for the whole job, or for each half from the charger and back, where nothing is in the way.
+    fn is_within(&self, knowledge: &mut Knowledge, job: &Job, full: u32) -> bool {
+        let Pace { moving, handling, .. } = self.pace;
+        let limit = full.saturating_sub(LEAST_RESERVE);
+        let executions =
+            |moves: u32, handlings: u32| moves.saturating_mul(moving).saturating_add(handlings * handling);
+        let charger = knowledge.charge_block;
+        let [out, back] = [job.from, job.to].map(|block| knowledge.routes.to_charger(block, charger));
+        let across = knowledge.routes.between(job.from, job.to);
+        let whole = out.saturating_add(across).saturating_add(back);
+        let half = |way: u32| executions(way.saturating_mul(2), 1) <= limit;
+        executions(whole, 2) <= limit || (across != UNREACHABLE && half(out) && half(back))
     }
 
-    /// Executions from a block to the charger, with a reserve for waiting.
-    fn home(&self, knowledge: &Knowledge, from: Block) -> u32 {
-        let way = knowledge.routes.to_charger(from, knowledge.charge_block);
-        let reserve = RESERVE.saturating_add(way / RESERVE_SHARE);
-        way.saturating_add(reserve).saturating_mul(self.pace)
+    /// Executions from a block to the charger.
+    fn home(&self, knowledge: &mut Knowledge, from: Block) -> u32 {
+        self.pace.job(knowledge.routes.to_charger(from, knowledge.charge_block), 0)
     }
 }

@@ -23,7 +23,7 @@ pub(super) struct Jobs {
 }
 
 impl Jobs {
-    pub(super) fn manage(&mut self, body: &mut Body<'_, '_>, energy: &Energy) -> Result<(), Failure> {
+    pub(super) fn manage(&mut self, body: &mut Body<'_, '_>, energy: &mut Energy) -> Result<(), Failure> {
         let variables = &body.knowledge.variables;
         if variables.busy {
             return Ok(());
@@ -33,6 +33,7 @@ impl Jobs {
         } else if energy.must_charge() {
             Ok(())
         } else {
+            energy.is_free(body.knowledge);
             self.take_interest(body, energy)
         }
     }
@@ -75,7 +76,7 @@ impl Jobs {
         body.respond(&job, LuggageStage::Interest)
     }
 
-    fn decide(&mut self, body: &mut Body<'_, '_>, energy: &Energy) -> Result<(), Failure> {
+    fn decide(&mut self, body: &mut Body<'_, '_>, energy: &mut Energy) -> Result<(), Failure> {
         let knowledge = &mut *body.knowledge;
         let Some(request) = knowledge.lists.requests.claimed() else {
             // Another robot took it.
@@ -95,6 +96,7 @@ impl Jobs {
         knowledge.lists.requests.settle();
         knowledge.variables.busy = true;
         knowledge.job = Some(job);
+        energy.set_out(knowledge, &job);
         body.context.info(format_args!("takes luggage {} from {} to {}", job.luggage, job.from, job.to));
         body.respond(&job, LuggageStage::Taken)
     }

@@ -9,6 +9,7 @@
 mod drive;
 mod energy;
 mod jobs;
+mod pace;
 mod traffic;
 
 use saoms_api::{Failure, Time};
@@ -17,8 +18,8 @@ use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
 use crate::messages::{IMMOVABLE, Priority};
 
-use super::Body;
 use super::actions::Outcome;
+use super::{Body, Knowledge};
 use energy::Energy;
 use jobs::Jobs;
 use traffic::Traffic;
@@ -55,10 +56,12 @@ enum Urgency {
 }
 
 impl Leg {
-    /// The more urgent way goes first; of two alike, the one that lasts longer.
+    /// The more urgent way goes first; of two alike, the one that lasts longer. It stays the same on the whole way: robots that swap their
+    /// priorities would push each other to and fro.
     fn priority(&self, robot: u32) -> Priority {
-        const YOUNGEST: u64 = (1 << 56) - 1;
-        let age = YOUNGEST - (self.since.as_nanos() >> 8).min(YOUNGEST);
+        const MOST: u64 = (1 << 56) - 1;
+        // Quarters of microseconds: the time of a run fits for more than 500 years.
+        let age = MOST - (self.since.as_nanos() >> 8).min(MOST);
         Priority { rank: (self.urgency as u64) << 56 | age, robot }
     }
 }
@@ -68,15 +71,16 @@ impl Safe {
         body.show_lists();
         self.energy.use_battery(body);
         let polled = body.poll()?;
-        self.energy.note_pace(polled);
+        self.energy.pace().note_action(polled);
         self.energy.watch(body);
         body.topics.say_robot_if_news(body.context, body.knowledge)?;
         match polled {
             Some((Action { kind: ActionKind::Move, .. }, Outcome::Running | Outcome::NotBegun)) => {}
             Some((_, Outcome::Running | Outcome::NotBegun)) => return self.stay(body),
             _ => {
-                self.jobs.manage(body, &self.energy)?;
-                if self.energy.is_stranded() || self.handle_luggage(body)? {
+                let handles = self.handle_luggage(body)?;
+                self.jobs.manage(body, &mut self.energy)?;
+                if handles || self.energy.is_stranded() {
                     return self.stay(body);
                 }
             }
@@ -90,7 +94,7 @@ impl Safe {
     /// Collects or deposits where the robot stands; `true` while that goes on.
     fn handle_luggage(&mut self, body: &mut Body<'_, '_>) -> Result<bool, Failure> {
         let knowledge = &*body.knowledge;
-        let Some(job) = knowledge.job.filter(|_| is_at_destination(body) && !self.energy.must_charge())
+        let Some(job) = knowledge.job.filter(|_| is_at_destination(knowledge) && !self.energy.must_charge())
         else {
             return Ok(false);
         };
@@ -125,9 +129,9 @@ impl Safe {
         let urgency = if arrived { Urgency::None } else { urgency };
         if (goal, urgency) != (self.leg.goal, self.leg.urgency) {
             self.leg = Leg { goal, urgency, since: body.context.now() };
-            if let Some(goal) = goal {
-                knowledge.routes.head_for(goal);
-            }
+        }
+        if let Some(goal) = goal {
+            knowledge.routes.head_for(goal);
         }
         let variables = &mut knowledge.variables;
         variables.ready_to_go_under_charge = self.energy.must_charge();
@@ -136,7 +140,6 @@ impl Safe {
 }
 
 /// Whether the robot stands where its job leads next.
-fn is_at_destination(body: &Body<'_, '_>) -> bool {
-    let knowledge = &*body.knowledge;
+fn is_at_destination(knowledge: &Knowledge) -> bool {
     knowledge.next == knowledge.block && knowledge.destination() == Some(knowledge.block)
 }

@@ -12,15 +12,15 @@ use std::cmp::Reverse;
 
 use saoms_api::Chance;
 
-use crate::grid::{Block, UNREACHABLE};
+use crate::grid::{Block, MOVE, UNREACHABLE};
 use crate::messages::{IMMOVABLE, Position, Priority};
 use crate::robot::{Peers, Routes};
 
-/// A robot that waited for so many executions tries another way.
-const PATIENCE: u32 = 4;
+/// A robot that waited for so many executions for others to make way tries another way.
+const PATIENCE: u32 = 8;
 
-/// For so many executions it does not want the block again that it waited for.
-const DETOUR: u32 = 12;
+/// The same for a robot that nobody makes way for.
+const SHORT_PATIENCE: u32 = 3;
 
 /// A robot's view of the robots around it, and what it wants.
 #[derive(Debug, Default)]
@@ -30,7 +30,8 @@ pub(super) struct Traffic {
     /// The block that it left last: not the first choice when another one is as good.
     previous: Option<Block>,
     waited: u32,
-    detour: Option<(Block, u32)>,
+    /// The block that it does not try again while the same robot holds it.
+    avoided: Option<(Block, u32)>,
 }
 
 /// What a robot brings to the choice of its next block.
@@ -40,7 +41,11 @@ pub(super) struct Claim {
     /// The block from which it goes on.
     pub(super) at: Block,
     pub(super) goal: Option<Block>,
+    /// Whether to go along y first where both ways are as short.
+    pub(super) y_first: bool,
     pub(super) priority: Priority,
+    /// How many executions others may take for what this robot does in one; 0 while it moves and so waits for nobody.
+    pub(super) tempo: u32,
 }
 
 /// How a block stands, the best first.
@@ -52,6 +57,17 @@ enum Standing {
     Leaving,
     /// Its holder has to make way.
     Yielding,
+}
+
+impl Standing {
+    /// What waiting for the block is worth, in parts of a move.
+    fn delay(self) -> u32 {
+        match self {
+            Standing::Free => 0,
+            Standing::Leaving => 1,
+            Standing::Yielding => MOVE,
+        }
+    }
 }
 
 impl Traffic {
@@ -69,6 +85,7 @@ impl Traffic {
     /// Wants nothing but the block that it holds.
     pub(super) fn stay(&mut self, at: Block) {
         self.wanted = Some(at);
+        self.previous = None;
         self.waited = 0;
     }
 
@@ -104,29 +121,43 @@ impl Traffic {
             self.stay(at);
             return at;
         }
-        self.waited += 1;
-        self.detour = self.detour.and_then(|(block, left)| Some((block, left.checked_sub(1)?)));
-        let impatient = self.waited > PATIENCE;
+        self.waited += u32::from(claim.tempo > 0);
+        self.avoided = self.avoided.filter(|(block, robot)| self.holder(*block) == Some(*robot));
+        let patience = if self.wanted(at).is_some() { PATIENCE } else { SHORT_PATIENCE };
+        let impatient = self.waited > patience.saturating_mul(claim.tempo) && claim.tempo > 0;
         if impatient {
             self.give_up(claim, routes, chance);
         }
         let here = goal.map_or(0, |goal| routes.to_goal(at, goal));
+        let ahead = self.ahead_of_asker(at);
         let best = at
             .neighbours()
             .into_iter()
             .filter(|block| {
-                routes.is_free(*block) && self.detour.is_none_or(|(avoided, _)| avoided != *block)
+                routes.is_free(*block) && self.avoided.is_none_or(|(avoided, _)| avoided != *block)
             })
             .filter_map(|block| {
                 let standing = self.standing(block, claim)?;
-                let moves = goal.map_or(0, |goal| routes.to_goal(block, goal));
+                let cost = goal.map_or(0, |goal| routes.to_goal(block, goal));
+                let goes_back = Some(block) == self.previous;
                 let aside = impatient && standing == Standing::Free;
-                if !makes_way && (moves == UNREACHABLE || (moves >= here && !aside)) {
+                if !makes_way
+                    && (cost == UNREACHABLE
+                        || (cost >= here && !aside)
+                        || (goes_back && self.avoided.is_some()))
+                {
                     return None;
                 }
-                let rank = if makes_way { (standing as u32, moves) } else { (moves, standing as u32) };
+                let rank = if makes_way {
+                    // Straight ahead is where the asking robot is likely to want to go next.
+                    let ahead = if ahead == Some(block) { 2 * MOVE } else { 0 };
+                    (standing as u32, cost.saturating_add(ahead))
+                } else {
+                    (cost.saturating_add(standing.delay()), 0)
+                };
                 let settled = Some(block) != self.wanted;
-                Some(((rank, settled, Some(block) == self.previous), block))
+                let turned = (block.x == at.x) != claim.y_first;
+                Some(((rank, settled, goes_back, turned), block))
             })
             .min_by_key(|(score, _)| *score);
         let wanted = best.map_or(at, |(_, block)| block);
@@ -134,16 +165,28 @@ impl Traffic {
         wanted
     }
 
-    /// After waiting in vain: not the same block again for a while.
+    /// After waiting in vain: not the same block again while the same robot holds it.
     fn give_up(&mut self, claim: &Claim, routes: &Routes, chance: &mut Chance) {
         let toward = |block: &Block| claim.goal.map_or(0, |goal| routes.to_goal(*block, goal));
         let first =
             || claim.at.neighbours().into_iter().filter(|block| routes.is_free(*block)).min_by_key(toward);
         let blocked = self.wanted(claim.at).or_else(first);
-        self.detour = blocked.map(|block| (block, DETOUR));
+        self.avoided = blocked.and_then(|block| Some((block, self.holder(block)?)));
         self.wanted = None;
         // Two robots in each other's way must not give up at the same time for ever.
-        self.waited = u32::try_from(chance.below(u64::from(PATIENCE))).unwrap_or(0);
+        self.waited = u32::try_from(chance.below(u64::from(SHORT_PATIENCE))).unwrap_or(0);
+    }
+
+    /// The block on the other side of the robot that asks for this one with the most right.
+    fn ahead_of_asker(&self, at: Block) -> Option<Block> {
+        let asking = self.near.iter().filter(|peer| peer.wanted == at && !peer.holds(at));
+        let asker = asking.max_by_key(|peer| peer.priority)?.next;
+        Some(Block::new(2 * at.x - asker.x, 2 * at.y - asker.y))
+    }
+
+    /// A robot that holds a block.
+    fn holder(&self, block: Block) -> Option<u32> {
+        self.near.iter().find(|peer| peer.holds(block)).map(|peer| peer.robot)
     }
 
     /// How a block stands; `None` where the robot cannot have it.

@@ -1,0 +1,66 @@
+//! How fast a robot gets on.
+
+use crate::hardware::{Action, ActionKind};
+use crate::robot::actions::Outcome;
+
+/// Waiting is counted in so many parts of an execution.
+const PARTS: u32 = 16;
+
+/// The newest move has one part in so many of the average.
+const MEMORY: u32 = 8;
+
+/// What a robot learnt about the executions that its actions take.
+#[derive(Debug)]
+pub(super) struct Pace {
+    /// The most executions that a move took so far.
+    pub(super) moving: u32,
+    /// The most executions that collecting or depositing took so far.
+    pub(super) handling: u32,
+    /// The executions of the running action.
+    running: u32,
+    /// The executions since the last move on the present way.
+    since: u32,
+    /// How long the robot waited before a move, on average, in parts of an execution.
+    waiting: u32,
+}
+
+impl Default for Pace {
+    fn default() -> Pace {
+        Pace { moving: 1, handling: 1, running: 0, since: 0, waiting: PARTS / 4 }
+    }
+}
+
+impl Pace {
+    /// Takes in what became of the running action in this execution.
+    pub(super) fn note_action(&mut self, polled: Option<(Action, Outcome)>) {
+        let Some((action, outcome)) = polled else { return self.running = 0 };
+        self.running += 1;
+        let longest = if action.kind == ActionKind::Move { &mut self.moving } else { &mut self.handling };
+        *longest = (*longest).max(self.running);
+        if matches!(outcome, Outcome::Done | Outcome::Failed) {
+            self.running = 0;
+        }
+    }
+
+    /// Takes in whether the robot is on a way in this execution, and whether it goes on to the next block.
+    pub(super) fn note_way(&mut self, on_the_way: bool, goes_on: bool) {
+        self.since = if on_the_way { self.since.saturating_add(1) } else { 0 };
+        if goes_on {
+            let waited = self.since.saturating_sub(self.moving).min(1000) * PARTS;
+            self.waiting = (self.waiting * (MEMORY - 1) + waited) / MEMORY;
+            self.since = 0;
+        }
+    }
+
+    /// Executions for so many moves and so often collecting or depositing.
+    pub(super) fn job(&self, moves: u32, handlings: u32) -> u32 {
+        self.way(moves, self.waiting).saturating_add(handlings * self.handling)
+    }
+
+    fn way(&self, moves: u32, waiting: u32) -> u32 {
+        moves
+            .saturating_mul(self.moving)
+            .saturating_add((moves / PARTS).saturating_mul(waiting))
+            .saturating_add((moves % PARTS * waiting).div_ceil(PARTS))
+    }
+}
