@@ -1,9 +1,16 @@
-//! What the benchmarks share: the machine they ran on, and what a process used of it.
+//! What the benchmarks share: fleets to measure, the machine they run on, what a process uses of it, and how results are shown.
+//!
+//! Each benchmark is a program of its own and uses a part of this.
 
+pub(crate) mod child;
+pub(crate) mod composite;
+pub(crate) mod deploy;
 mod machine;
+mod page;
 mod process;
 
 pub(crate) use machine::{Busy, description};
+pub(crate) use page::{median, verdict, write};
 pub(crate) use process::{Memory, cpu_time, memory};
 
 /// What a benchmark returns: any failure ends it with its text.

@@ -4,11 +4,14 @@ use std::env;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
+
+use saoms_core::schedule::Settings;
 
 use crate::common::Outcome;
-use crate::cyclictest;
 use crate::probe::Plan;
 use crate::run::{self, Run};
+use crate::{cyclictest, interval, saoms};
 
 /// One way to start tasks periodically.
 pub(crate) struct Contender {
@@ -17,6 +20,8 @@ pub(crate) struct Contender {
     /// Its name in the tables.
     pub(crate) title: &'static str,
     kind: Kind,
+    /// Whether it runs unless others are asked for.
+    pub(crate) usual: bool,
 }
 
 enum Kind {
@@ -28,8 +33,11 @@ enum Kind {
         mode: &'static str,
     },
     /// This program again, so that processor time and memory are the contender's own.
-    Inside,
+    Inside(fn(&Plan) -> Outcome<()>),
 }
+
+/// Beyond this many threads the measurement is one of thread creation, and the process or the machine can run out of them.
+const MOST_THREADS: u32 = 2000;
 
 /// All contenders, in the order of the tables.
 pub(crate) const ALL: &[Contender] = &[
@@ -37,24 +45,53 @@ pub(crate) const ALL: &[Contender] = &[
         name: "cyclictest-fifo",
         title: "cyclictest, SCHED_FIFO",
         kind: Kind::Cyclictest { fifo: true, tuned: true },
+        usual: true,
     },
     Contender {
         name: "cyclictest-fifo-untuned",
         title: "cyclictest, SCHED_FIFO, processor idle states left alone",
         kind: Kind::Cyclictest { fifo: true, tuned: false },
+        usual: false,
+    },
+    Contender {
+        name: "saoms-fifo",
+        title: "SAOMS, SCHED_FIFO (`--realtime`)",
+        kind: Kind::Inside(|plan| saoms::run(plan, Settings { realtime: true, ..Settings::default() })),
+        usual: true,
     },
     Contender {
         name: "cyclictest",
         title: "cyclictest, normal priority",
         kind: Kind::Cyclictest { fifo: false, tuned: true },
+        usual: true,
     },
-    Contender { name: "tokio", title: "tokio `interval`", kind: Kind::Inside },
+    Contender {
+        name: "saoms",
+        title: "SAOMS, normal priority, timer slack 1 ns",
+        kind: Kind::Inside(|plan| {
+            saoms::run(plan, Settings { timer_slack: Duration::from_nanos(1), ..Settings::default() })
+        }),
+        usual: true,
+    },
+    Contender {
+        name: "saoms-50us",
+        title: "SAOMS, normal priority, timer slack 50 us (default)",
+        kind: Kind::Inside(|plan| saoms::run(plan, Settings::default())),
+        usual: true,
+    },
+    Contender { name: "tokio", title: "tokio `interval`", kind: Kind::Inside(interval::run), usual: true },
     Contender {
         name: "java-per-task",
         title: "Java, a ScheduledThreadPool(1) per task",
         kind: Kind::Java { mode: "per-task" },
+        usual: true,
     },
-    Contender { name: "java-pool", title: "Java, one pool of 2", kind: Kind::Java { mode: "pool" } },
+    Contender {
+        name: "java-pool",
+        title: "Java, one pool of 2",
+        kind: Kind::Java { mode: "pool" },
+        usual: true,
+    },
 ];
 
 impl Contender {
@@ -63,7 +100,7 @@ impl Contender {
         let (tool, package) = match self.kind {
             Kind::Cyclictest { .. } => ("cyclictest", "Debian package rt-tests"),
             Kind::Java { .. } => ("javac", "a JDK"),
-            Kind::Inside => return None,
+            Kind::Inside(_) => return None,
         };
         let paths = env::var_os("PATH").unwrap_or_default();
         let found = env::split_paths(&paths).any(|folder| folder.join(tool).is_file());
@@ -72,10 +109,22 @@ impl Contender {
 
     /// Measures the contender once.
     pub(crate) fn run(&self, plan: &Plan) -> Outcome<Run> {
+        let thread_per_task = matches!(self.kind, Kind::Cyclictest { .. } | Kind::Java { mode: "per-task" });
+        if thread_per_task && plan.size.tasks > MOST_THREADS {
+            return Err(format!("a thread per task: not run with more than {MOST_THREADS}").into());
+        }
         match self.kind {
             Kind::Cyclictest { fifo, tuned } => cyclictest::run(plan, fifo, tuned),
             Kind::Java { mode } => run::run(java(plan, mode)?, plan),
-            Kind::Inside => run::run(again(plan, self.name)?, plan),
+            Kind::Inside(_) => run::run(again(plan, self.name)?, plan),
+        }
+    }
+
+    /// Is the contender, in a process of its own.
+    pub(crate) fn be(&self, plan: &Plan) -> Outcome<()> {
+        match self.kind {
+            Kind::Inside(run) => run(plan),
+            _ => Err(format!("contender `{}` is another program", self.name).into()),
         }
     }
 }

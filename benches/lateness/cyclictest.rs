@@ -11,8 +11,6 @@ use crate::common::{Outcome, RESULTS, memory};
 use crate::probe::Plan;
 use crate::run::{Run, Sample, limited};
 
-/// Beyond this many threads the measurement is one of thread creation.
-const MOST_THREADS: u32 = 2000;
 /// The largest lateness that it tells apart, in us.
 const RANGE_US: u64 = 20_000;
 /// Each thread's histogram is locked memory, so many threads get shorter ones.
@@ -21,9 +19,6 @@ const RANGE_US_OF_MANY: u64 = 5_000;
 /// Measures one run. `tuned` lets it hold the processors out of their idle states, as it does unless told otherwise.
 pub(crate) fn run(plan: &Plan, fifo: bool, tuned: bool) -> Outcome<Run> {
     let size = plan.size;
-    if size.tasks > MOST_THREADS {
-        return Err(format!("not run with more than {MOST_THREADS} threads").into());
-    }
     let result = Path::new(RESULTS).join("cyclictest.json");
     let range = if size.tasks > 100 { RANGE_US_OF_MANY } else { RANGE_US };
     let loops = (plan.lead() + plan.warm_up + plan.measured).as_nanos() / size.period.as_nanos();

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use crate::report::{Figure, cpu, median, p99};
+use crate::common::{median, verdict};
+use crate::report::{Figure, cpu, p99};
 use crate::rounds::{AtSize, Measured};
 
 /// At a size, one contender's figure is at most so many times another's.
@@ -104,7 +105,7 @@ pub(crate) fn table(page: &mut String, measured: &Measured) -> std::fmt::Result 
         };
         let lowest = ratios.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = ratios.iter().copied().fold(0.0, f64::max);
-        let verdict = if middle <= goal.limit { "met" } else { "missed" };
+        let verdict = verdict(middle <= goal.limit);
         writeln!(page, "| {middle:.2} | {lowest:.2} to {highest:.2} | {} | {verdict} |", goal.limit)?;
     }
     Ok(())

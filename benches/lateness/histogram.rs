@@ -58,12 +58,6 @@ impl Histogram {
         self.total += count;
     }
 
-    pub(crate) fn merge(&mut self, other: &Self) {
-        for (ns, count) in &other.counts {
-            self.add(*ns, *count);
-        }
-    }
-
     pub(crate) fn total(&self) -> u64 {
         self.total
     }

@@ -14,8 +14,10 @@ mod probe;
 mod report;
 mod rounds;
 mod run;
+mod saoms;
 mod size;
 
+#[allow(dead_code, unused_imports, reason = "each benchmark uses a part")]
 #[path = "../common/mod.rs"]
 mod common;
 
@@ -33,19 +35,19 @@ use size::Size;
 #[derive(Parser)]
 #[command(name = "cargo bench --bench lateness --")]
 struct Arguments {
-    /// Rounds; in each one all contenders run forwards and then backwards (A B B A).
+    /// Rounds; all contenders run forwards in one and backwards in the next (A B B A).
     #[arg(long, default_value_t = 5)]
     rounds: u32,
     /// Measured time of one run, in seconds.
-    #[arg(long, default_value = "5", value_parser = seconds)]
+    #[arg(long, default_value = "2.5", value_parser = seconds)]
     seconds: Duration,
     /// Time before that counts for nothing, in seconds.
-    #[arg(long, default_value = "2", value_parser = seconds)]
+    #[arg(long, default_value = "1", value_parser = seconds)]
     warm_up: Duration,
     /// Sizes, as TASKSxPERIOD.
     #[arg(long, value_delimiter = ',', default_value = "10x100ms,100x10ms,1000x10ms,1000x100ms,10000x100ms")]
     sizes: Vec<Size>,
-    /// Contenders by name; all of them unless given.
+    /// Contenders by name; the usual ones unless given.
     #[arg(long, value_delimiter = ',')]
     contenders: Vec<String>,
     /// Be this contender, for the driver.
@@ -65,10 +67,7 @@ fn main() -> Outcome<()> {
     let plans: Vec<Plan> = arguments.sizes.iter().map(|size| plan(*size, &arguments)).collect();
     if let Some(name) = &arguments.inside {
         let plan = plans.first().ok_or("no size")?;
-        return match name.as_str() {
-            "tokio" => interval::run(plan),
-            _ => Err(format!("there is no contender `{name}` inside this program").into()),
-        };
+        return named(name)?.be(plan);
     }
     fs::create_dir_all(RESULTS)?;
     let contenders = chosen(&arguments.contenders)?;
@@ -90,14 +89,19 @@ fn seconds(text: &str) -> Result<Duration, String> {
     time.ok_or_else(|| "expected seconds above 0, such as 2.5".to_owned())
 }
 
+fn named(name: &str) -> Outcome<&'static Contender> {
+    contender::ALL.iter().find(|contender| contender.name == name).ok_or_else(|| {
+        let known: Vec<&str> = contender::ALL.iter().map(|contender| contender.name).collect();
+        format!("there is no contender `{name}`; there are {}", known.join(", ")).into()
+    })
+}
+
 fn chosen(names: &[String]) -> Outcome<Vec<&'static Contender>> {
-    for name in names {
-        if !contender::ALL.iter().any(|contender| contender.name == name) {
-            let known: Vec<&str> = contender::ALL.iter().map(|contender| contender.name).collect();
-            return Err(format!("there is no contender `{name}`; there are {}", known.join(", ")).into());
-        }
-    }
-    let wanted = |contender: &&Contender| names.is_empty() || names.iter().any(|name| name == contender.name);
+    let usual = || contender::ALL.iter().filter(|contender| contender.usual).collect();
+    let wanted: Vec<_> = match names {
+        [] => usual(),
+        names => names.iter().map(|name| named(name)).collect::<Outcome<_>>()?,
+    };
     let available = |contender: &&Contender| {
         let reason = contender.unavailable();
         if let Some(reason) = &reason {
@@ -105,5 +109,5 @@ fn chosen(names: &[String]) -> Outcome<Vec<&'static Contender>> {
         }
         reason.is_none()
     };
-    Ok(contender::ALL.iter().filter(wanted).filter(available).collect())
+    Ok(wanted.into_iter().filter(available).collect())
 }

@@ -1,13 +1,10 @@
 //! What was measured, as a page of tables and as JSON.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::io::Write as _;
-use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::common::{Outcome, RESULTS};
+use crate::common::{self, Outcome, median};
 use crate::goals;
 use crate::rounds::{AtSize, Measured, OfContender};
 use crate::run::Run;
@@ -28,23 +25,9 @@ pub(crate) fn cpu(run: &Run) -> f64 {
     run.cpu.as_secs_f64() * 1e6 / run.executions as f64
 }
 
-/// The middle of some values; of an even number of them, the mean of the two in the middle.
-pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    let upper = values.get(values.len() / 2)?;
-    let lower = values.get(values.len().saturating_sub(1) / 2)?;
-    Some(f64::midpoint(*lower, *upper))
-}
-
-/// Writes `lateness.md` and `lateness.json`, and shows the page.
+/// Shows the page and keeps it.
 pub(crate) fn write(measured: &Measured) -> Outcome<()> {
-    let page = page(measured)?;
-    let folder = Path::new(RESULTS);
-    fs::write(folder.join("lateness.md"), &page)?;
-    fs::write(folder.join("lateness.json"), serde_json::to_vec_pretty(&raw(measured))?)?;
-    std::io::stdout().write_all(page.as_bytes())?;
-    Ok(())
+    common::write("lateness", &page(measured)?, &raw(measured))
 }
 
 fn page(measured: &Measured) -> Result<String, std::fmt::Error> {
@@ -52,7 +35,7 @@ fn page(measured: &Measured) -> Result<String, std::fmt::Error> {
     writeln!(page, "Lateness of a periodic start. {}.", measured.machine)?;
     writeln!(
         page,
-        "{} rounds, forwards and backwards, {} s measured after {} s of warm-up; medians over the rounds.",
+        "{} rounds, forwards and backwards in turn, {} s measured after {} s of warm-up; medians over the rounds.",
         measured.rounds, measured.seconds, measured.warm_up
     )?;
     for size in &measured.sizes {

@@ -1,6 +1,6 @@
-//! The driver: all contenders at all sizes, forwards and backwards in each round.
+//! The driver: all contenders at all sizes, forwards in one round and backwards in the next.
 
-use crate::common::{Memory, description};
+use crate::common::description;
 use crate::contender::Contender;
 use crate::probe::Plan;
 use crate::run::Run;
@@ -24,7 +24,7 @@ pub(crate) struct AtSize {
 /// One contender at one size.
 pub(crate) struct OfContender {
     pub(crate) contender: &'static Contender,
-    /// One entry per round: its two runs put together. `None` where one of them failed.
+    /// One entry per round; `None` where it failed.
     pub(crate) rounds: Vec<Option<Run>>,
     pub(crate) failure: Option<String>,
 }
@@ -45,29 +45,31 @@ fn at_size(plan: &Plan, contenders: &[&'static Contender], rounds: u32) -> AtSiz
     let start = |contender: &&'static Contender| OfContender { contender, rounds: Vec::new(), failure: None };
     let mut results: Vec<OfContender> = contenders.iter().map(start).collect();
     for round in 1..=rounds {
-        let mut runs: Vec<Vec<Run>> = vec![Vec::new(); results.len()];
-        let there = 0..results.len();
-        for index in there.clone().chain(there.rev()) {
-            let result = &mut results[index];
+        for result in &mut results {
             // What failed once (too many threads, no permission) would only take time again.
             if result.failure.is_some() {
+                result.rounds.push(None);
                 continue;
             }
             let name = result.contender.name;
-            match result.contender.run(plan) {
+            let run = match result.contender.run(plan) {
                 Ok(run) => {
                     eprintln!("{} round {round}: {name} {}", plan.size, line(&run));
-                    runs[index].push(run);
+                    Some(run)
                 }
                 Err(error) => {
                     eprintln!("{} round {round}: {name} failed: {error}", plan.size);
                     result.failure = Some(error.to_string());
+                    None
                 }
-            }
+            };
+            result.rounds.push(run);
         }
-        for (result, runs) in results.iter_mut().zip(runs) {
-            result.rounds.push((runs.len() == 2).then(|| together(&runs)));
-        }
+        // A drift of the machine falls on all alike.
+        results.reverse();
+    }
+    if rounds % 2 == 1 {
+        results.reverse();
     }
     AtSize { size: plan.size, results }
 }
@@ -80,22 +82,4 @@ fn line(run: &Run) -> String {
         late(0.99),
         run.others * 100.0
     )
-}
-
-/// The two runs of a round as one.
-fn together(runs: &[Run]) -> Run {
-    let mut sum = Run { missed: Some(0), ..Run::default() };
-    for run in runs {
-        sum.latenesses.merge(&run.latenesses);
-        sum.missed = sum.missed.zip(run.missed).map(|(left, right)| left + right);
-        sum.executions += run.executions;
-        sum.cpu += run.cpu;
-        sum.memory = Memory {
-            resident_kb: sum.memory.resident_kb.max(run.memory.resident_kb),
-            peak_kb: sum.memory.peak_kb.max(run.memory.peak_kb),
-        };
-        sum.others += run.others / runs.len() as f64;
-        sum.stolen += run.stolen / runs.len() as f64;
-    }
-    sum
 }
