@@ -2,9 +2,18 @@
 
 use std::io::{self, Write};
 
-/// Writes text to standard output. A reader that went away (`saoms components | head`) is not an error.
+/// Writes text to standard output.
 pub(crate) fn print(text: &str) {
-    let _ = io::stdout().lock().write_all(text.as_bytes());
+    let _ = try_print(text);
+}
+
+/// Writes text to standard output. A reader that went away (`saoms components | head`) is not an error.
+pub(crate) fn try_print(text: &str) -> io::Result<()> {
+    let mut output = io::stdout().lock();
+    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
 }
 
 /// Writes text to standard error.

@@ -14,7 +14,7 @@ use crate::Exit;
 use crate::arguments::{Format, RunArguments};
 use crate::console::Console;
 use crate::fleet::checked;
-use crate::output::{counted, eprint, print};
+use crate::output::{counted, eprint, print, try_print};
 use crate::summary::summary;
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
@@ -96,8 +96,7 @@ fn write(report: &RunReport, path: &Path) -> std::io::Result<()> {
     let mut text = serde_json::to_string_pretty(report)?;
     text.push('\n');
     if path == Path::new("-") {
-        print(&text);
-        return Ok(());
+        return try_print(&text);
     }
     std::fs::write(path, text)
 }

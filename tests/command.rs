@@ -253,6 +253,13 @@ fn a_report_that_cannot_be_written_fails_the_run() {
     ]);
     assert_eq!(code(&output), 1);
     assert!(stderr(&output).contains("no/such/folder/report.json"));
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = command(&["run", "composites/airport.composite", "--virtual", "--report", "-"])
+        .stdout(full)
+        .output()
+        .unwrap();
+    assert_eq!(code(&output), 1);
+    assert!(stderr(&output).contains("`-`"), "{}", stderr(&output));
 }
 
 #[test]

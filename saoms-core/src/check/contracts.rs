@@ -108,7 +108,9 @@ fn interface(
     let Some(given) = given else { return };
     let (of, expected) = (quoted(of), quoted(&declared.name));
     let one = match &given.interface {
-        Some(name) if matches!(given.kind, InterfaceKind::Java | InterfaceKind::Other) => {
+        Some(name)
+            if matches!(given.kind, InterfaceKind::Java | InterfaceKind::Rust | InterfaceKind::Other) =>
+        {
             if name.as_str() == declared.name {
                 return;
             }
@@ -120,7 +122,7 @@ fn interface(
             )
         }
         // One without its name, which is reported.
-        None if given.kind == InterfaceKind::Java => return,
+        None if matches!(given.kind, InterfaceKind::Java | InterfaceKind::Rust) => return,
         _ => {
             let message = format!("the interface of {of} is {expected}, which this element cannot name");
             Diagnostic::new(&codes::INTERFACE_DIFFERS, given.tag(), message)

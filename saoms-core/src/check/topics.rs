@@ -51,7 +51,9 @@ impl<'a> Topics<'a> {
         }
         let declaration: &'a crate::registry::ClassDeclaration = class.class.declaration();
         let published = declaration.publishes.iter().map(|topic| ("publishes", topic));
-        let subscribed = declaration.subscribes.iter().map(|topic| ("subscribes to", topic));
+        // What is published as well has been held against the others once.
+        let subscribed = declaration.subscribes.iter().filter(|topic| !declaration.publishes.contains(topic));
+        let subscribed = subscribed.map(|topic| ("subscribes to", topic));
         for (verb, topic) in published.chain(subscribed) {
             let renamed = renames.iter().position(|(old, _)| *old == topic.name);
             let name = renamed.map_or(topic.name.as_str(), |place| renames[place].1.as_str());
@@ -87,12 +89,15 @@ fn compare(name: &str, first: &End<'_>, second: &End<'_>, report: &mut Report<'_
         return;
     };
     let message = format!(
-        "component {} {} topic {} as {}, and component {} as {}",
+        "component {} {} topic {} as {}, and {} as {}",
         quoted(second.component),
         second.verb,
         quoted(name),
         difference.1,
-        quoted(first.component),
+        match first.component == second.component {
+            true => "itself".to_owned(),
+            false => format!("component {}", quoted(first.component)),
+        },
         difference.0
     );
     report.push(

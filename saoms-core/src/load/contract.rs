@@ -3,7 +3,8 @@
 use super::Loader;
 use super::children::{Family, is_defined, variant};
 use super::vocabulary::{
-    BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_WSDL, Kind,
+    BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST,
+    INTERFACE_WSDL, Kind,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
@@ -100,6 +101,7 @@ impl Loader<'_> {
                 (Family::Sca, name) if name.starts_with("interface.") && is_defined(child) => {
                     self.interface(child, family, kind, &mut contract);
                 }
+                (Family::Own, "interface.rust") => self.interface(child, family, kind, &mut contract),
                 (Family::Foreign, name) if name.starts_with("interface.") => {
                     self.interface(child, family, kind, &mut contract);
                 }
@@ -135,6 +137,11 @@ impl Loader<'_> {
                 required = true;
                 InterfaceKind::Java
             }
+            (Family::Sca | Family::Own, "interface.rust") => {
+                self.parts_of(element, &INTERFACE_RUST);
+                required = true;
+                InterfaceKind::Rust
+            }
             (Family::Sca, "interface.wsdl") => {
                 self.parts_of(element, &INTERFACE_WSDL);
                 required = true;
@@ -156,7 +163,7 @@ impl Loader<'_> {
                 self.optional(element, names.0)
             },
             callback_interface: self.optional(element, names.1),
-            remotable: if family == Family::Sca { self.boolean(element, "remotable") } else { None },
+            remotable: if family != Family::Foreign { self.boolean(element, "remotable") } else { None },
             policy: self.policy(element),
         }));
     }

@@ -191,6 +191,9 @@ const INTERFACE_ATTRIBUTES: &[Known] =
 pub(super) static INTERFACE_JAVA: Kind =
     Kind { name: "interface.java", attributes: INTERFACE_ATTRIBUTES, children: POLICY_CHILDREN };
 
+pub(super) static INTERFACE_RUST: Kind =
+    Kind { name: "interface.rust", attributes: INTERFACE_ATTRIBUTES, children: POLICY_CHILDREN };
+
 pub(super) static INTERFACE_WSDL: Kind =
     Kind { name: "interface.wsdl", attributes: INTERFACE_ATTRIBUTES, children: POLICY_CHILDREN };
 
@@ -245,7 +248,14 @@ pub(super) const VARIANTS: &[(&str, &[&str])] = &[
     ),
     (
         "interface.",
-        &["interface.java", "interface.wsdl", "interface.c", "interface.cpp", "interface.partnerLinkType"],
+        &[
+            "interface.java",
+            "interface.rust",
+            "interface.wsdl",
+            "interface.c",
+            "interface.cpp",
+            "interface.partnerLinkType",
+        ],
     ),
     ("binding.", &["binding.sca", "binding.ws", "binding.jms", "binding.jca", "binding.ejb"]),
     ("wireFormat.", &["wireFormat.jmsDefault", "wireFormat.jmsdefault"]),
@@ -253,7 +263,7 @@ pub(super) const VARIANTS: &[(&str, &[&str])] = &[
 ];
 
 /// The elements that SAOMS adds in its own namespace.
-pub(super) const OWN_ELEMENTS: &[&str] = &["implementation.rust"];
+pub(super) const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust"];
 
 /// The elements that `kind` can hold, all variants by name.
 pub(super) fn children(kind: &Kind) -> impl Iterator<Item = &'static str> {

@@ -153,6 +153,8 @@ pub struct Interface {
 pub enum InterfaceKind {
     /// `interface.java`
     Java,
+    /// `interface.rust`, in the SCA namespace or in that of SAOMS.
+    Rust,
     /// `interface.wsdl`
     Wsdl,
     /// `interface.c`

@@ -2,7 +2,7 @@
 
 use super::Origin;
 use super::origin::parts;
-use crate::source::{Located, Location, Text};
+use crate::source::{Located, Text};
 use crate::xml::ElementId;
 
 /// A property: of a component, where it gives a value, or of a composite, where it is declared.
@@ -118,11 +118,5 @@ impl Property {
             || !self.content().is_empty()
             || self.source().is_some()
             || self.file().is_some()
-    }
-
-    /// Where its value is, for a diagnostic about it; its tag when it has none.
-    pub fn value_location(&self) -> Location {
-        let first = self.simple_values().next().or(self.source()).or(self.file());
-        first.map_or(self.origin.tag, |text| text.location)
     }
 }

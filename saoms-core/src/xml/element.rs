@@ -78,11 +78,6 @@ impl<'a> Element<'a> {
         self.name_span().in_file(self.document.file)
     }
 
-    /// Whether it is written as one tag, `<a/>`.
-    pub fn is_empty_tag(self) -> bool {
-        self.node().tag_end == self.node().end
-    }
-
     /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
     pub fn content_span(self) -> Span {
         let Node { tag_end, end, is_closed, name_len, .. } = *self.node();

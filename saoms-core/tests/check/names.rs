@@ -34,6 +34,24 @@ fn names_are_unique_across_files() {
 }
 
 #[test]
+fn interfaces_are_named_as_java_or_as_rust() {
+    let navigator = |interface: &str| {
+        faults(&format!(
+            r#"<component name="N"><implementation.rust class="example.Navigator"/><service name="position">{interface}</service>
+<reference name="wheels" target="T/left"/></component><component name="T"><implementation.rust class="example.Twins"/></component>"#
+        ))
+    };
+    assert_eq!(navigator(r#"<interface.java interface="example.Positions"/>"#), "");
+    assert_eq!(navigator(r#"<interface.rust interface="example.Positions"/>"#), "");
+    assert_eq!(navigator(r#"<interface.rust xmlns="urn:saoms:1" interface="example.Positions"/>"#), "");
+    expect![[r#"
+        2:121-137 error S2007: the interface of `position` is `example.Positions`, not `example.Position`
+          fix: replace `example.Position` with `example.Positions` [2:121-137 "example.Positions"]
+    "#]]
+    .assert_eq(&navigator(r#"<interface.rust interface="example.Position"/>"#));
+}
+
+#[test]
 fn services_and_references_are_those_of_the_class() {
     expect![[r#"
         3:16-19 error S2005: class `example.Robot001` has no service `mov`

@@ -29,8 +29,14 @@ fn ends_agree_in_kind_and_schema() {
           help: all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart
     "#]].assert_eq(&faults(&(robots.clone() + &task("T", "Tracker", "TRACKS,POSTOPIC"))));
     expect![[r#"
-        3:49-50 error S4009: component `A` subscribes to topic `x` as an event topic, and component `A` as a state topic
+        3:49-50 error S4009: component `A` subscribes to topic `x` as an event topic, and itself as a state topic
           3:39-40 publishes it as a state topic
           help: all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart
     "#]].assert_eq(&faults(&task("A", "Robot001", "POSTOPIC,x::ORDERS,x")));
+}
+
+#[test]
+fn a_topic_that_is_published_and_subscribed_is_told_once() {
+    let both = task("S", "Shouter", "") + &task("A", "Robot001", "");
+    assert_eq!(faults(&both).matches(" error ").count(), 1, "{}", faults(&both));
 }

@@ -59,7 +59,7 @@ const FLEET: &str = r#"<sca:composite xmlns:sca="http://docs.oasis-open.org/ns/o
     requires="t:a t:b" policySets="t:c" f:kept="yes">
   <sca:include name="t:base"/>
   <sca:property name="currency" type="xsd:string" many="false" mustSupply="true"> EUR </sca:property>
-  <sca:service name="Move" promote="Robot/Move"><sca:interface.java interface="a.Move"/></sca:service>
+  <sca:service name="Move" promote="Robot/Move"><saoms:interface.rust interface="a.Move"/></sca:service>
   <sca:reference name="gps" promote="Robot/gps
       Other/gps" multiplicity="0..n"/>
   <sca:component name="Robot" autowire="1">
@@ -112,6 +112,7 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
     assert_eq!((both(currency.r#type().unwrap()).1, *currency.many().unwrap()), ("xsd:string", false));
     assert!(*currency.must_supply().unwrap());
     assert_eq!(both(composite.services[0].promote.as_ref().unwrap()).1, "Robot/Move");
+    assert_eq!(composite.services[0].interface.as_ref().unwrap().kind, InterfaceKind::Rust);
     assert_eq!(words(composite.references[0].promote()), ["Robot/gps", "Other/gps"]);
     assert_eq!(*composite.references[0].multiplicity.unwrap(), Multiplicity::Any);
 
