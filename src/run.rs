@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 
+use saoms_core::assembly::Assembly;
 use saoms_core::diagnostic::Severity;
 use saoms_core::report::{RunReport, Status};
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
@@ -18,21 +19,7 @@ use crate::output::{counted, eprint, print, try_print};
 use crate::summary::summary;
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
-    let outcome = checked(&arguments.fleet);
-    // Standard output belongs to the run, unless there is none.
-    match (arguments.fleet.format, &outcome.assembly) {
-        (Format::Json, None) => print(&outcome.json()),
-        (Format::Json, Some(_)) => eprint(&outcome.json()),
-        (Format::Human, _) => {
-            eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
-        }
-    }
-    let Some(assembly) = outcome.assembly else {
-        if arguments.fleet.format == Format::Human {
-            eprint(&format!("\n{}: nothing was started\n", counted(outcome.count(Severity::Error), "error")));
-        }
-        return Exit::WrongInput;
-    };
+    let Some(assembly) = assembly(arguments) else { return Exit::WrongInput };
     let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(Console::new(arguments))) {
         Ok(fleet) => fleet,
         Err(error) => {
@@ -56,6 +43,23 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         Status::Failed => Exit::Failed,
         Status::Interrupted => Exit::Interrupted,
     }
+}
+
+/// The fleet to run; without one, what is wrong has been shown. Texts and diagnostics do not outlive this: a run may last for days.
+fn assembly(arguments: &RunArguments) -> Option<Assembly> {
+    let outcome = checked(&arguments.fleet);
+    // Standard output belongs to the run, unless there is none.
+    match (arguments.fleet.format, &outcome.assembly) {
+        (Format::Json, None) => print(&outcome.json()),
+        (Format::Json, Some(_)) => eprint(&outcome.json()),
+        (Format::Human, _) => {
+            eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
+        }
+    }
+    if outcome.assembly.is_none() && arguments.fleet.format == Format::Human {
+        eprint(&format!("\n{}: nothing was started\n", counted(outcome.count(Severity::Error), "error")));
+    }
+    outcome.assembly
 }
 
 fn settings(arguments: &RunArguments) -> Settings {
