@@ -116,15 +116,14 @@ fn components<'a>(
         let checked = properties::check(fleet, member, class, &mut parameters, &mut values, report);
         unique.add(member, class, &checked, report);
         let is_periodic = class.class.declaration().is_periodic();
-        let task =
-            (is_periodic && checked.is_sound).then(|| task::check(member.component, class, &checked, report));
-        let task = task.flatten();
+        let task = is_periodic.then(|| task::check(member.component, class, &checked, report));
         topics.add(member, index, class, task.as_ref(), report);
+        let task = task.and_then(|task| task.settings);
         all.push((checked.is_sound && is_periodic == task.is_some()).then(|| {
             let mut values = checked.values(class, |slot| slot.own);
             let absent = class.class.presets().iter().filter(|(name, _)| checked.get(class, name).is_none());
             values.extend(absent.cloned());
-            Resolved { values, task: task.map(|task| task.settings) }
+            Resolved { values, task }
         }));
     }
     parameters.finish(report);

@@ -71,6 +71,8 @@ pub(super) fn check<'a>(
     let mut given: Vec<Option<Given>> =
         std::iter::repeat_with(|| None).take(class.properties.len()).collect();
     let mut first: Vec<Option<&Property>> = vec![None; class.properties.len()];
+    // Those whose `source` is right, and has no value.
+    let mut unset: Vec<&Text> = Vec::new();
     let mut is_sound = true;
     for property in &component.properties {
         if property.name.is_empty() {
@@ -98,6 +100,7 @@ pub(super) fn check<'a>(
         first[place] = Some(property);
         let slot = &class.properties[place];
         match value(fleet, member, property, slot, parameters, values, report) {
+            Ok(None) => unset.push(&property.name),
             Ok(value) => given[place] = value,
             Err(()) => is_sound = false,
         }
@@ -112,10 +115,10 @@ pub(super) fn check<'a>(
             continue;
         }
         is_sound = false;
-        // What is given wrongly is reported already; what `source` leads to may just have no value.
+        // What is given wrongly is reported already.
         match first[place] {
             None => report_missing(fleet, member, declaration, class, report),
-            Some(property) if property.source().is_some() => {
+            Some(property) if unset.contains(&&property.name) => {
                 let message = format!("the property {} has no value: its source has none", quoted(name));
                 let at = property.source().map_or(property.tag(), |source| source.location);
                 report.push(Diagnostic::new(&codes::PROPERTY_MISSING, at, message));

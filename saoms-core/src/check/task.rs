@@ -1,6 +1,6 @@
 //! The task properties of a component: what goes beyond each value alone.
 
-use saoms_api::PropertyValue;
+use saoms_api::{PropertyField, PropertyValue};
 
 use super::classes::ClassIndex;
 use super::properties::Checked;
@@ -14,28 +14,44 @@ use crate::source::{Location, Text};
 
 /// How a component runs, and where its topics got their names.
 pub(super) struct Task {
-    pub(super) settings: TaskSettings,
-    /// Where each pair of `settings.topic_rename` has its new name.
+    /// `None` where the properties are not sound.
+    pub(super) settings: Option<TaskSettings>,
+    /// The old and the new name of each topic that is renamed.
+    pub(super) renames: Vec<(String, String)>,
+    /// Where each of `renames` has its new name.
     pub(super) renamed_at: Vec<Location>,
 }
 
-/// The settings of a component of a periodic class whose properties are sound. Faults are reported.
+/// What the task properties of a component of a periodic class come to. Faults are reported.
 pub(super) fn check(
     component: &Component,
     class: &ClassIndex<'_>,
     checked: &Checked,
     report: &mut Report<'_>,
-) -> Option<Task> {
+) -> Task {
     let text = |name: &str| {
         checked.get(class, name).and_then(|given| given.text()).filter(|text| !text.trim().is_empty())
     };
     if let Some(url) = text("url") {
         check_url(&url, report);
     }
-    let (pairs, renamed_at) = match text("topicRename") {
+    let (renames, renamed_at) = match text("topicRename") {
         Some(text) => renames(&text, class, report),
         None => (Vec::new(), Vec::new()),
     };
+    use_jms(component, class, checked, report);
+    let settings = checked.is_sound.then(|| settings(component, class, checked, &renames, report)).flatten();
+    Task { settings, renames, renamed_at }
+}
+
+/// The settings of a component whose properties are sound.
+fn settings(
+    component: &Component,
+    class: &ClassIndex<'_>,
+    checked: &Checked,
+    renames: &[(String, String)],
+    report: &mut Report<'_>,
+) -> Option<TaskSettings> {
     let mut values = checked.values(class, |slot| slot.task);
     for (name, value) in class.class.presets() {
         if class
@@ -45,7 +61,7 @@ pub(super) fn check(
             values.push((name.clone(), value.clone()));
         }
     }
-    let settings = match TaskSettings::from_values(&values, pairs) {
+    let settings = match TaskSettings::from_values(&values, renames.to_vec()) {
         Ok(settings) => settings,
         // Not reached with sound properties; and if it is, somebody hears of it.
         Err(failure) => {
@@ -55,7 +71,7 @@ pub(super) fn check(
         }
     };
     combinations(component, class, checked, &settings, report);
-    Some(Task { settings, renamed_at })
+    Some(settings)
 }
 
 fn check_url(url: &Text, report: &mut Report<'_>) {
@@ -115,6 +131,28 @@ fn renames(
     (names.collect(), places)
 }
 
+/// Reports a component that has topics and must not use them.
+fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, report: &mut Report<'_>) {
+    let Some(given) = checked.get(class, "useJMS") else { return };
+    if !class.has_topics() || bool::from_value(&given.value) != Ok(false) {
+        return;
+    }
+    let declaration = class.class.declaration();
+    let mut uses = Vec::new();
+    for (verb, topics) in [("publishes", &declaration.publishes), ("subscribes to", &declaration.subscribes)]
+    {
+        if !topics.is_empty() {
+            uses.push(format!("{verb} {}", list(topics.iter().map(|topic| topic.name.as_str()))));
+        }
+    }
+    let message =
+        format!("`useJMS` is false, and component {} {}", quoted(&component.name), uses.join(" and "));
+    report.push(
+        Diagnostic::new(&codes::USE_JMS, given.place, message)
+            .help("set `useJMS` to true: without it a component cannot publish or subscribe"),
+    );
+}
+
 /// Settings that do not go together.
 fn combinations(
     component: &Component,
@@ -124,24 +162,6 @@ fn combinations(
     report: &mut Report<'_>,
 ) {
     let place = |name: &str| checked.get(class, name).map(|given| given.place);
-    let name = quoted(&component.name);
-    if !settings.use_jms && class.has_topics() {
-        let declaration = class.class.declaration();
-        let mut uses = Vec::new();
-        for (verb, topics) in
-            [("publishes", &declaration.publishes), ("subscribes to", &declaration.subscribes)]
-        {
-            if !topics.is_empty() {
-                uses.push(format!("{verb} {}", list(topics.iter().map(|topic| topic.name.as_str()))));
-            }
-        }
-        let message = format!("`useJMS` is false, and component {name} {}", uses.join(" and "));
-        let at = place("useJMS").unwrap_or(component.tag());
-        report.push(
-            Diagnostic::new(&codes::USE_JMS, at, message)
-                .help("set `useJMS` to true: without it a component cannot publish or subscribe"),
-        );
-    }
     if let Some(deadline) = settings.deadline
         && deadline > settings.period
     {

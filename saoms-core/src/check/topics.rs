@@ -39,7 +39,7 @@ impl<'a> Topics<'a> {
         task: Option<&Task>,
         report: &mut Report<'_>,
     ) {
-        let renames = task.map_or(&[][..], |task| &task.settings.topic_rename);
+        let renames = task.map_or(&[][..], |task| &task.renames[..]);
         if renames.is_empty() {
             // All components of a class say the same: the first speaks for them.
             if self.plain.len() <= index {

@@ -426,6 +426,14 @@ fn settings_take_the_place_of_composite_properties() {
           help: keep one of them
     "#]]
         .assert_eq(&faults_of(&[&text], &["speed= 3", "sped=1", "speed=1", "speed", "=1", "speed ="]));
+    let period = r#"<property name="period">1</property><component name="C"><implementation.java class="example.Clock"/>
+<property name="ID">C</property><property name="period" source="$period"/></component>"#;
+    expect![[r#"
+        --set:1:8-12 error S3007: property `period`: `soon` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          3:65-72 used here as `period`
+          help: `period`: From one due execution to the next; a number without a unit is in ms
+    "#]]
+    .assert_eq(&faults_of(&[&fleet(period)], &["period=soon"]));
     let none = fleet(&robot(""));
     expect![[r#"
         --set:1:1-6 error S2029: no composite has a property `speed`

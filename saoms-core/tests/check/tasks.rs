@@ -140,6 +140,35 @@ fn addresses_of_message_brokers() {
 }
 
 #[test]
+fn faults_of_other_properties_hide_none_of_these() {
+    expect![[r#"
+        3:24-28 error S3007: property `delay`: `soon` is not a duration: expected a duration from 0ms to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `delay`: From the start to the first due execution; the default is `0ms`
+        4:22-31 error S4005: `localhost` is no address of a message broker: there is no port
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        4:66-71 error S4004: `useJMS` is false, and component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
+          help: set `useJMS` to true: without it a component cannot publish or subscribe
+        5:30-42 error S4002: bad `topicRename`: 3 names where a pair has two
+          help: write `OLD,new` for each topic, and `::` between two of them
+    "#]]
+    .assert_eq(&robot(
+        r#"<property name="delay">soon</property>
+<property name="url">localhost</property><property name="useJMS">false</property>
+<property name="topicRename">POSTOPIC,a,b</property>"#,
+    ));
+    // Nor does a topic have its old name then.
+    let shouter = r#"<component name="S"><implementation.java class="example.Shouter"/><property name="ID">S</property><property name="period">1</property></component>"#;
+    expect![[r#"
+        3:76-80 error S3007: property `delay`: `soon` is not a duration: expected a duration from 0ms to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `delay`: From the start to the first due execution; the default is `0ms`
+    "#]]
+    .assert_eq(&robot(&format!(
+        r#"<property name="topicRename">POSTOPIC,pos</property><property name="delay">soon</property></component>{}"#,
+        shouter.trim_end_matches("</component>")
+    )));
+}
+
+#[test]
 fn settings_that_do_not_go_together() {
     expect![[r#"
         3:25-30 error S4004: `useJMS` is false, and component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
