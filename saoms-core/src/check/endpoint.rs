@@ -1,6 +1,6 @@
 //! The address of a message broker, `host:port`.
 
-use std::net::Ipv6Addr;
+use std::net::{IpAddr, Ipv6Addr};
 use std::ops::Range;
 
 /// What is wrong with an address.
@@ -56,4 +56,11 @@ pub(super) fn fault(text: &str) -> Option<Fault> {
         _ if digits => at(colon + 1..text.len(), format!("port {port} is outside 1 to 65535")),
         _ => at(colon + 1..text.len(), format!("`{port}` is no port")),
     }
+}
+
+/// Whether an address without fault is of this machine.
+pub(super) fn is_loopback(text: &str) -> bool {
+    let host = text.rsplit_once(':').map_or(text, |(host, _)| host);
+    let address = host.trim_start_matches('[').trim_end_matches(']').parse::<IpAddr>();
+    host.eq_ignore_ascii_case("localhost") || address.is_ok_and(|address| address.is_loopback())
 }

@@ -7,7 +7,7 @@ use super::properties::Checked;
 use super::report::{Report, list};
 use super::{endpoint, rename};
 use crate::assembly::{Restart, TaskSettings};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Component, Part};
 use crate::registry::TopicDeclaration;
 use crate::source::{Location, Text};
@@ -75,7 +75,18 @@ fn settings(
 }
 
 fn check_url(url: &Text, report: &mut Report<'_>) {
-    let Some(fault) = endpoint::fault(url) else { return };
+    let Some(fault) = endpoint::fault(url) else {
+        if !endpoint::is_loopback(url) {
+            let message =
+                format!("messages do not leave this program yet: {} is not connected to", quoted(url));
+            report.push(
+                Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message)
+                    .severity(Severity::Warning)
+                    .help("the topics are served inside the program: let it run the whole fleet"),
+            );
+        }
+        return;
+    };
     let at = report.part(url, fault.at);
     let message = format!("{} is no address of a message broker: {}", quoted(url), fault.message);
     let one = Diagnostic::new(&codes::BROKER_URL, at, message)
