@@ -16,8 +16,8 @@ pub(crate) struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done, also when --for elapsed with work left (the report says so)
-  1    the run failed: a component failed for good, a message was lost, a report could not be written
-  2    the input is wrong: a composite, a value, or the command line; nothing was started
+  1    the run failed: a component failed for good, a message was lost, a finished report could not be written
+  2    the input is wrong: a composite, a value, the command line, a place where no report can be; nothing was started
   130  ended by Ctrl-C";
 
 #[derive(Debug, Subcommand)]
@@ -70,7 +70,7 @@ pub(crate) struct RunArguments {
     pub(crate) fleet: FleetArguments,
 
     /// End the run after this time (a bare number is milliseconds; units us, ms, s, min, h)
-    #[arg(long = "for", value_name = "DURATION", value_parser = saoms_api::parse_duration)]
+    #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
     pub(crate) limit: Option<Duration>,
 
     /// Run in virtual time: the same fleet, deterministic, as fast as the machine goes
@@ -78,7 +78,7 @@ pub(crate) struct RunArguments {
     pub(crate) virtual_time: bool,
 
     /// Where chance starts: in virtual time the same seed gives the same run
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
     pub(crate) seed: u64,
 
     /// Write the report as JSON to this file, `-` for standard output
@@ -98,15 +98,15 @@ pub(crate) struct RunArguments {
     pub(crate) realtime: bool,
 
     /// How much later the kernel may wake the timer to save power; 1ns is the most punctual
-    #[arg(long, value_name = "DURATION", default_value = "50us", value_parser = saoms_api::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
     pub(crate) timer_slack: Duration,
 
     /// How long an execution may hold up the others before a spare thread takes over
-    #[arg(long, value_name = "DURATION", default_value = "1ms", value_parser = saoms_api::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
     pub(crate) budget: Duration,
 
     /// How long a component may take to end before it is abandoned
-    #[arg(long, value_name = "DURATION", default_value = "2s", value_parser = saoms_api::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
     pub(crate) grace: Duration,
 }
 

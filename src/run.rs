@@ -1,5 +1,7 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
+use std::fs::File;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 use std::thread;
@@ -20,6 +22,17 @@ use crate::summary::summary;
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let Some(assembly) = assembly(arguments) else { return Exit::WrongInput };
+    if let Some(path) = &arguments.report
+        && let Err(problem) = writable(path)
+    {
+        eprint(&format!(
+            "error: the report cannot be written to `{}`: {problem}\n\n1 error: nothing was started\n",
+            path.display()
+        ));
+        return Exit::WrongInput;
+    }
+    // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
+    let signals = Signals::new([SIGINT, SIGTERM]);
     let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(Console::new(arguments))) {
         Ok(fleet) => fleet,
         Err(error) => {
@@ -27,7 +40,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
             return Exit::Failed;
         }
     };
-    end_on_signals(fleet.handle());
+    end_on_signals(signals, fleet.handle());
     let report = fleet.run_to_end();
     if !arguments.quiet {
         print(&summary(&report));
@@ -76,8 +89,7 @@ fn settings(arguments: &RunArguments) -> Settings {
 }
 
 /// The first Ctrl-C ends every component through its shutdown, a second one ends the process at once.
-fn end_on_signals(stop: Handle) {
-    let signals = Signals::new([SIGINT, SIGTERM]);
+fn end_on_signals(signals: io::Result<Signals>, stop: Handle) {
     let spawned = signals.and_then(|mut signals| {
         thread::Builder::new().name("signals".to_owned()).spawn(move || {
             let mut seen = false;
@@ -95,8 +107,16 @@ fn end_on_signals(stop: Handle) {
     }
 }
 
+/// Whether the report can be written there, asked before a run that may last for days. What the file holds stays until there is a report.
+fn writable(path: &Path) -> io::Result<()> {
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    File::options().append(true).create(true).open(path).map(drop)
+}
+
 /// Writes the report as JSON; `-` is standard output.
-fn write(report: &RunReport, path: &Path) -> std::io::Result<()> {
+fn write(report: &RunReport, path: &Path) -> io::Result<()> {
     let mut text = serde_json::to_string_pretty(report)?;
     text.push('\n');
     if path == Path::new("-") {

@@ -234,6 +234,12 @@ fn wrong_files_are_told_apart() {
 
 #[test]
 fn a_mistake_on_the_command_line_is_wrong_input() {
+    for (option, value) in [("--for", "-5s"), ("--seed", "-1"), ("--grace", "-2s")] {
+        let output = saoms(&["run", "composites/airport.composite", option, value]);
+        assert_eq!(code(&output), 2, "{option}");
+        let expected = format!("invalid value '{value}' for '{option}");
+        assert!(stderr(&output).contains(&expected), "{}", stderr(&output));
+    }
     for arguments in [&["run"][..], &["fly"], &["run", "x", "--for", "soon"], &["components", "robot.Robo"]] {
         assert_eq!(code(&saoms(arguments)), 2, "{arguments:?}");
     }
@@ -243,7 +249,7 @@ fn a_mistake_on_the_command_line_is_wrong_input() {
 }
 
 #[test]
-fn a_report_that_cannot_be_written_fails_the_run() {
+fn a_report_that_cannot_be_written_is_told_before_the_run_and_fails_it_after() {
     let output = saoms(&[
         "run",
         "composites/airport.composite",
@@ -251,8 +257,9 @@ fn a_report_that_cannot_be_written_fails_the_run() {
         "--report",
         "no/such/folder/report.json",
     ]);
-    assert_eq!(code(&output), 1);
+    assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("no/such/folder/report.json"));
+    assert_eq!(stdout(&output), "", "nothing was started");
     let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     let output = command(&["run", "composites/airport.composite", "--virtual", "--report", "-"])
         .stdout(full)

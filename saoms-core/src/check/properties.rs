@@ -209,7 +209,11 @@ fn report_missing(
         return;
     }
     let tag = element.prefix().map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
-    let message = format!("component {} lacks the property {}", quoted(&component.name), quoted(name));
+    let who = match component.name.is_empty() {
+        true => "the component".to_owned(),
+        false => format!("component {}", quoted(&component.name)),
+    };
+    let message = format!("{who} lacks the property {}", quoted(name));
     report.push(
         Diagnostic::new(&codes::PROPERTY_MISSING, component.name.location, message)
             .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),

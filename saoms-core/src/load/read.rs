@@ -84,8 +84,10 @@ impl Failure {
                 with_help(one, missing::inside(path))
             }
             Self::TooLarge(size) => {
-                let size = size.map_or_else(|| "more".to_owned(), |size| format!("{size} bytes"));
-                let message = format!("the file has {size}, and the limit is {max_size} bytes");
+                let message = match size {
+                    Some(size) => format!("the file has {size} bytes, and the limit is {max_size} bytes"),
+                    None => format!("the file has more than the limit of {max_size} bytes"),
+                };
                 Diagnostic::new(&codes::FILE_TOO_LARGE, location, message)
                     .help("the limit is set with `--max-size`")
             }

@@ -28,6 +28,22 @@ fn a_right_composite_has_no_faults() {
 }
 
 #[test]
+fn a_wrong_source_is_one_fault() {
+    let found = faults(
+        r#"<property name="period">100</property>
+<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period" source="$perid"/></component>"#,
+    );
+    assert_eq!(found.matches("error").count(), 1, "{found}");
+    assert!(found.contains("error S2024: the composite has no property `perid`"), "{found}");
+}
+
+#[test]
+fn a_component_without_a_name_is_not_called_by_an_empty_one() {
+    let found = faults(r#"<component nmae="R"><implementation.java class="example.Robot001"/></component>"#);
+    assert!(found.contains("the component lacks the property `period`"), "{found}");
+}
+
+#[test]
 fn unknown_classes_are_offered_the_nearest() {
     expect![[r#"
         2:49-64 error S3001: there is no class `example.Robt001`
