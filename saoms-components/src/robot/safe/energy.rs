@@ -157,8 +157,8 @@ impl Energy {
     }
 
     fn usual_reserve(&self, knowledge: &Knowledge) -> u32 {
-        let most = knowledge.battery.executions_when_full() / 3;
-        RESERVE.saturating_mul(self.tempo(knowledge)).min(most)
+        let full = knowledge.battery.executions_when_full();
+        RESERVE.saturating_mul(self.tempo(knowledge)).max(full / 4).min(full / 3)
     }
 
     /// Executions for the rest of a job from here, and the way to the charger.
