@@ -22,6 +22,13 @@ pub struct RobotList {
     pub period: u64,
 }
 
+impl RobotList {
+    /// Whether its battery is empty, with no charger there.
+    pub fn is_out_of_battery(&self) -> bool {
+        self.battery <= 0.0 && !self.in_charge
+    }
+}
+
 impl fmt::Display for RobotList {
     /// As the console of the manual's figures shows it.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

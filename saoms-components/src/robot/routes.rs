@@ -39,9 +39,23 @@ impl Routes {
             && charger != area.charge_block
         {
             area.chargers.set_blocked(charger);
-            for distances in [&mut self.home, &mut self.goal, &mut self.other] {
-                distances.clear();
-            }
+            self.forget_searches();
+        }
+    }
+
+    /// Learns that nobody gets past a block any more.
+    pub fn learn_obstacle(&mut self, block: Block) {
+        if let Some(area) = &mut self.area
+            && area.map.is_free(block)
+        {
+            area.map.set_blocked(block);
+            self.forget_searches();
+        }
+    }
+
+    fn forget_searches(&mut self) {
+        for distances in [&mut self.home, &mut self.goal, &mut self.other] {
+            distances.clear();
         }
     }
 

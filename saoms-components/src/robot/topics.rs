@@ -1,7 +1,7 @@
 use saoms_api::{Context, Failure, Publisher, Subscription};
 
 use crate::messages::{
-    EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION, Position, Priority, ROBOT_LIST, RobotList,
+    EVENT_LUGGAGE, EventLuggage, IMMOVABLE, LuggageStage, POSITION, Position, Priority, ROBOT_LIST, RobotList,
 };
 
 use super::{Job, Knowledge};
@@ -44,6 +44,11 @@ impl Topics {
             knowledge.routes.learn_charger(robot.charger);
         }
         lists.peers.hear(context.receive(&self.positions_heard));
+        for stranded in context.receive(&self.robots_heard).filter(|robot| robot.is_out_of_battery()) {
+            if let Some(peer) = lists.peers.get(stranded.robot).filter(|peer| peer.priority == IMMOVABLE) {
+                knowledge.routes.learn_obstacle(peer.block);
+            }
+        }
         for (header, event) in context.receive(&self.luggage_heard).with_headers() {
             lists.requests.hear(event, header.sent);
         }

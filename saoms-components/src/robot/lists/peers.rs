@@ -38,6 +38,12 @@ impl Peers {
         self.newest.iter().map(|(position, _)| position)
     }
 
+    /// The newest of a robot.
+    pub fn get(&self, robot: u32) -> Option<&Position> {
+        let place = self.newest.binary_search_by_key(&robot, |(known, _)| known.robot).ok()?;
+        self.newest.get(place).map(|(position, _)| position)
+    }
+
     /// Whether another robot is on the block, as far as was heard.
     pub fn is_on(&self, block: Block) -> bool {
         self.all().any(|peer| peer.block == block)

@@ -8,7 +8,7 @@ use crate::robot::Body;
 use crate::robot::actions::Outcome;
 
 use super::traffic::Claim;
-use super::{Safe, Urgency, is_at_destination};
+use super::{Safe, Urgency};
 
 impl Safe {
     pub(super) fn drive(&mut self, body: &mut Body<'_, '_>) -> Result<(), Failure> {
@@ -17,8 +17,7 @@ impl Safe {
         self.energy.pace().note_way(self.leg.urgency != Urgency::None, goes_on);
         let knowledge = &mut *body.knowledge;
         let at = knowledge.next;
-        let works = is_at_destination(knowledge) && !self.energy.must_charge();
-        let stays = works || self.energy.holds_charger(knowledge);
+        let stays = self.job_here(knowledge).is_some() || self.energy.holds_charger(knowledge);
         let (wanted, priority) = if stays {
             self.traffic.stay(at);
             (at, IMMOVABLE)

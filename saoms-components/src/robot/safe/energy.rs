@@ -1,6 +1,8 @@
 //! Whether the battery lasts.
 
-use crate::grid::{Block, UNREACHABLE};
+use saoms_api::{Failure, Level};
+
+use crate::grid::Block;
 use crate::robot::{Body, Job, Knowledge};
 
 use super::pace::Pace;
@@ -23,11 +25,13 @@ pub(super) struct Energy {
     pace: Pace,
     /// Executions that are kept back now: less than usual on a way that takes nearly the whole battery.
     reserve: u32,
+    /// How often the robot had to turn to its charger during the present job.
+    returns: u32,
 }
 
 impl Default for Energy {
     fn default() -> Energy {
-        Energy { must_charge: false, stranded: false, pace: Pace::default(), reserve: RESERVE }
+        Energy { must_charge: false, stranded: false, pace: Pace::default(), reserve: RESERVE, returns: 0 }
     }
 }
 
@@ -83,30 +87,46 @@ impl Energy {
     }
 
     /// Decides whether to charge, and whether it is too late for that.
-    pub(super) fn watch(&mut self, body: &mut Body<'_, '_>) {
+    pub(super) fn watch(&mut self, body: &mut Body<'_, '_>) -> Result<(), Failure> {
         let knowledge = &mut *body.knowledge;
         if knowledge.is_at_charger() {
             if self.must_charge && self.may_leave(knowledge) {
                 self.must_charge = false;
             }
-            return;
+            return Ok(());
         }
         let left = knowledge.battery.executions_left();
         if knowledge.battery.is_empty() && !self.stranded {
             self.stranded = true;
+            // Others go around it from now on.
+            body.topics.say_robot(body.context, knowledge, true)?;
             body.context.count("stranded", 1);
-            body.context.log(
-                saoms_api::Level::Error,
-                format_args!("is stranded at {}: its battery is empty", knowledge.block),
-            );
-        } else if !self.must_charge
-            && left < self.home(knowledge, knowledge.next).saturating_add(self.reserve)
-        {
+            body.context
+                .log(Level::Error, format_args!("is stranded at {}: its battery is empty", knowledge.block));
+        } else if !self.must_charge && !self.goes_on(knowledge, left) {
             self.must_charge = true;
+            self.returns = self.returns.saturating_add(1);
             let (name, battery) = (&knowledge.name, &knowledge.battery);
             body.context.console(format_args!("{name} has low battery and is going under charge..."));
             body.context.info(format_args!("has low battery ({battery} %): goes to charge"));
         }
+        Ok(())
+    }
+
+    /// Whether the robot need not turn to its charger yet: enough is left to do so later, or to finish its job before.
+    fn goes_on(&self, knowledge: &mut Knowledge, left: u32) -> bool {
+        if left >= self.home(knowledge, knowledge.next).saturating_add(self.reserve) {
+            return true;
+        }
+        let Some(job) = knowledge.job.filter(|_| knowledge.variables.busy) else { return false };
+        let rest = self.job(knowledge, &job, knowledge.variables.has_luggage);
+        left >= rest.saturating_add((self.reserve / 2).max(LEAST_RESERVE))
+    }
+
+    /// Whether the battery lasts for collecting or depositing here, and for the way to the charger.
+    pub(super) fn may_handle(&self, knowledge: &mut Knowledge) -> bool {
+        let home = self.home(knowledge, knowledge.next).saturating_add(LEAST_RESERVE);
+        knowledge.battery.executions_left() >= home.saturating_add(self.pace.handling)
     }
 
     /// What the battery allows of a job that starts here and now.
@@ -128,14 +148,19 @@ impl Energy {
     pub(super) fn set_out(&mut self, knowledge: &mut Knowledge, job: &Job) {
         let next = if knowledge.variables.has_luggage { job.to } else { job.from };
         let way = knowledge.routes.between(knowledge.next, next);
-        let first = self.pace.job(way, 1).saturating_add(self.home(knowledge, next));
+        let back = knowledge.routes.to_charger(next, knowledge.charge_block);
+        let first = self.pace.job(way, 1).saturating_add(self.pace.job(back, 0));
         let spare = knowledge.battery.executions_left().saturating_sub(first);
-        self.reserve = (spare / 4 * 3).clamp(LEAST_RESERVE, self.usual_reserve(knowledge));
+        // Who turned back in vain dares more the next time.
+        let reserve = (spare / 4 * 3).min(self.usual_reserve(knowledge));
+        let reserve = reserve.checked_shr(self.returns).unwrap_or(0);
+        self.reserve = reserve.max(self.least_reserve(back));
     }
 
     /// Without a job nothing speaks against the usual reserve.
     pub(super) fn is_free(&mut self, knowledge: &Knowledge) {
         self.reserve = self.usual_reserve(knowledge);
+        self.returns = 0;
     }
 
     /// Whether a charged robot can go on: what is left suffices for the rest of its job, or more is not to be had.
@@ -173,18 +198,18 @@ impl Energy {
         executions.saturating_add(self.home(knowledge, job.to))
     }
 
-    /// Whether a full battery lasts for the whole job, or for each half from the charger and back, where nothing is in the way.
+    /// Whether a full battery lasts for each half of a job, from the charger and back.
     fn is_within(&self, knowledge: &mut Knowledge, job: &Job, full: u32) -> bool {
-        let Pace { moving, handling, .. } = self.pace;
-        let limit = full.saturating_sub(LEAST_RESERVE);
-        let executions =
-            |moves: u32, handlings: u32| moves.saturating_mul(moving).saturating_add(handlings * handling);
-        let charger = knowledge.charge_block;
-        let [out, back] = [job.from, job.to].map(|block| knowledge.routes.to_charger(block, charger));
-        let across = knowledge.routes.between(job.from, job.to);
-        let whole = out.saturating_add(across).saturating_add(back);
-        let half = |way: u32| executions(way.saturating_mul(2), 1) <= limit;
-        executions(whole, 2) <= limit || (across != UNREACHABLE && half(out) && half(back))
+        [job.from, job.to].into_iter().all(|block| {
+            let way = knowledge.routes.to_charger(block, knowledge.charge_block);
+            let round = way.saturating_mul(2).saturating_mul(self.pace.moving);
+            round.saturating_add(self.pace.handling).saturating_add(self.least_reserve(way)) <= full
+        })
+    }
+
+    /// What is kept back at least where so many moves lead to the charger.
+    fn least_reserve(&self, way: u32) -> u32 {
+        LEAST_RESERVE.saturating_add(way.saturating_mul(self.pace.moving) / 3)
     }
 
     /// Executions from a block to the charger.

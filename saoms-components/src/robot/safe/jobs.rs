@@ -4,7 +4,7 @@
 //! another robot is known; where there are several, all but the closest take theirs back and the closest waits for that. Of two robots
 //! at least one hears of the other's interest before it decides, so no luggage is taken twice, however late messages are.
 
-use saoms_api::Failure;
+use saoms_api::{Failure, Level};
 
 use crate::grid::Block;
 use crate::messages::LuggageStage;
@@ -20,6 +20,8 @@ const PATIENCE: u64 = 4;
 pub(super) struct Jobs {
     /// From where the robot said that it is interested.
     said_at: Block,
+    /// Whether it warned that some luggage is out of its reach.
+    warned: bool,
 }
 
 impl Jobs {
@@ -60,11 +62,16 @@ impl Jobs {
             }
             Means::Never => {
                 knowledge.lists.requests.remove(place);
+                let level =
+                    if std::mem::replace(&mut self.warned, true) { Level::Debug } else { Level::Warning };
                 let (luggage, from, to) = (job.luggage, job.from, job.to);
                 let full = knowledge.battery.executions_when_full();
-                body.context.warn(format_args!(
-                    "cannot bring luggage {luggage} from {from} to {to}: no way leads there and back within the {full} executions of a full battery"
-                ));
+                body.context.log(
+                    level,
+                    format_args!(
+                        "cannot bring luggage {luggage} from {from} to {to}: no way leads there and back within the {full} executions of a full battery"
+                    ),
+                );
                 return Ok(());
             }
         }

@@ -19,7 +19,7 @@ use crate::hardware::{Action, ActionKind};
 use crate::messages::{IMMOVABLE, Priority};
 
 use super::actions::Outcome;
-use super::{Body, Knowledge};
+use super::{Body, Job, Knowledge};
 use energy::Energy;
 use jobs::Jobs;
 use traffic::Traffic;
@@ -72,7 +72,7 @@ impl Safe {
         self.energy.use_battery(body);
         let polled = body.poll()?;
         self.energy.pace().note_action(polled);
-        self.energy.watch(body);
+        self.energy.watch(body)?;
         body.topics.say_robot_if_news(body.context, body.knowledge)?;
         match polled {
             Some((Action { kind: ActionKind::Move, .. }, Outcome::Running | Outcome::NotBegun)) => {}
@@ -93,14 +93,16 @@ impl Safe {
 
     /// Collects or deposits where the robot stands; `true` while that goes on.
     fn handle_luggage(&mut self, body: &mut Body<'_, '_>) -> Result<bool, Failure> {
-        let knowledge = &*body.knowledge;
-        let Some(job) = knowledge.job.filter(|_| is_at_destination(knowledge) && !self.energy.must_charge())
-        else {
-            return Ok(false);
-        };
-        let action = if knowledge.variables.has_luggage { Action::deposit } else { Action::collect };
-        let outcome = body.begin(action(job.luggage, knowledge.block))?;
+        let Some(job) = self.job_here(body.knowledge) else { return Ok(false) };
+        let action = if body.knowledge.variables.has_luggage { Action::deposit } else { Action::collect };
+        let outcome = body.begin(action(job.luggage, body.knowledge.block))?;
         Ok(matches!(outcome, Outcome::Running | Outcome::NotBegun))
+    }
+
+    /// The job, if the robot stands where it leads next, with enough left in its battery to work there.
+    fn job_here(&self, knowledge: &mut Knowledge) -> Option<Job> {
+        let stands = knowledge.next == knowledge.block && knowledge.destination() == Some(knowledge.block);
+        knowledge.job.filter(|_| stands && self.energy.may_handle(knowledge))
     }
 
     /// Says that the robot does not leave its block whoever comes.
@@ -137,9 +139,4 @@ impl Safe {
         variables.ready_to_go_under_charge = self.energy.must_charge();
         variables.reaching_charge = urgency == Urgency::Energy;
     }
-}
-
-/// Whether the robot stands where its job leads next.
-fn is_at_destination(knowledge: &Knowledge) -> bool {
-    knowledge.next == knowledge.block && knowledge.destination() == Some(knowledge.block)
 }
