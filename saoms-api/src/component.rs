@@ -61,7 +61,8 @@ pub trait Component: Send + Sized + 'static {
     /// Makes the component.
     ///
     /// # Errors
-    /// The values do not fit together; the message says which and why.
+    /// The values do not fit together; the message says which and why. One that begins with "property `NAME`: " is shown at that
+    /// property in the composite.
     fn new(properties: Self::Properties) -> Result<Self, Failure>;
 
     /// Asks for topics and references.

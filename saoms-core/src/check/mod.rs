@@ -33,7 +33,7 @@ use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
 use crate::diagnostic::Diagnostics;
 use crate::model::Composite;
 use crate::registry::Registry;
-use crate::source::Sources;
+use crate::source::{Location, Sources};
 
 use classes::ClassIndex;
 use fleet::Fleet;
@@ -79,7 +79,7 @@ pub fn check(
     crate::registry::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
         if let (Some(class), Some(resolved)) = (member.class, resolved) {
-            construct::check(member.component, &classes[class], &resolved.values, report);
+            construct::check(member.component, &classes[class], &resolved.values, &resolved.places, report);
         }
     }
     if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
@@ -89,6 +89,8 @@ pub fn check(
 struct Resolved {
     /// The values of the class's own properties.
     values: Vec<(String, PropertyValue)>,
+    /// Where the composite gives them.
+    places: Vec<(String, Location)>,
     task: Option<TaskSettings>,
 }
 
@@ -123,7 +125,7 @@ fn components<'a>(
             let mut values = checked.values(class, |slot| slot.own);
             let absent = class.class.presets().iter().filter(|(name, _)| checked.get(class, name).is_none());
             values.extend(absent.cloned());
-            Resolved { values, task }
+            Resolved { values, places: checked.places(class), task }
         }));
     }
     parameters.finish(report);
@@ -140,7 +142,7 @@ fn assemble(
     let mut components = Vec::with_capacity(resolved.len());
     for (place, resolved) in resolved.into_iter().enumerate() {
         let class = fleet.class_of(place, classes)?;
-        let Resolved { values, task } = resolved?;
+        let Resolved { values, task, .. } = resolved?;
         let references = class.references.iter().zip(&wiring[place]);
         let references = references.map(|(declared, provider)| Wire {
             reference: declared.name.clone(),

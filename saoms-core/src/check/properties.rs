@@ -45,6 +45,12 @@ impl Checked {
         self.given[class.property(name)?].as_ref()
     }
 
+    /// Where the class's own properties are given.
+    pub(super) fn places(&self, class: &ClassIndex<'_>) -> Vec<(String, Location)> {
+        let slots = class.properties.iter().zip(&self.given);
+        slots.filter_map(|(slot, given)| Some((slot.own?.name.clone(), given.as_ref()?.place))).collect()
+    }
+
     /// The values of those properties that `of` finds a declaration for.
     pub(super) fn values<'r>(
         &self,

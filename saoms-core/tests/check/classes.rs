@@ -153,6 +153,9 @@ impl Component for Robot {
         if properties.speed > 2.0 && matches!(properties.colour, Colour::Red) {
             return Err(Failure::new("a red robot drives at most 2 m/s"));
         }
+        if properties.speed == 1.25 {
+            return Err(Failure::new("property `speed`: nobody drives at 1.25 m/s"));
+        }
         Ok(Self)
     }
 }

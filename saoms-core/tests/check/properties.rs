@@ -480,6 +480,17 @@ fn unique_values_and_shared_ids() {
 }
 
 #[test]
+fn a_constructor_that_names_a_property_is_heard_at_its_value() {
+    let given = faults(&robot(r#"<property name="speed">1.25</property>"#));
+    assert!(given.starts_with("3:24-28 error S3014: component `R`: property `speed`: nobody"), "{given}");
+    let by_source = faults(&format!(
+        r#"<property name="pace">1.25</property>{}"#,
+        robot(r#"<property name="speed" source="$pace"/>"#)
+    ));
+    assert!(by_source.starts_with("2:23-27 error S3014"), "{by_source}");
+}
+
+#[test]
 fn constructors_have_the_last_word() {
     let found = faults(&format!(
         "{}\n<component name=\"F\"><implementation.java class=\"example.Fragile\"/></component>",
