@@ -35,8 +35,36 @@ pub(crate) fn summary(report: &RunReport) -> String {
     }
     text.push('\n');
     text.push_str(&table(&report.components));
+    text.push_str(&troubles(&report.components));
     if let Some(hash) = &report.trace_hash {
         let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
+    }
+    text
+}
+
+/// What the table has no column for, because it is rare: a line for each component that had trouble.
+fn troubles(components: &[ComponentReport]) -> String {
+    let told = components.iter().filter_map(|one| {
+        let counts = [
+            (one.failures, "failure", ""),
+            (one.deadline_misses, "execution", " ended after the deadline"),
+            (one.slow, "execution", " took longer than the budget"),
+        ];
+        let told: Vec<String> = counts
+            .iter()
+            .filter(|(count, ..)| *count > 0)
+            .map(|(count, noun, what)| {
+                format!("{}{what}", counted(usize::try_from(*count).unwrap_or(usize::MAX), noun))
+            })
+            .collect();
+        (!told.is_empty()).then(|| format!("{}: {}\n", one.name, told.join(", ")))
+    });
+    let mut lines: Vec<String> = told.collect();
+    let more = lines.len().saturating_sub(ROWS);
+    lines.truncate(ROWS);
+    let mut text = if lines.is_empty() { String::new() } else { format!("\n{}", lines.concat()) };
+    if more > 0 {
+        let _ = writeln!(text, "and {more} more: see --report");
     }
     text
 }
@@ -77,4 +105,24 @@ fn table(components: &[ComponentReport]) -> String {
         let _ = writeln!(text, "and {} more: see --report", components.len() - shown.len());
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trouble_is_told_below_the_table() {
+        let quiet = ComponentReport { name: "Quiet".to_owned(), executions: 9, ..ComponentReport::default() };
+        assert_eq!(troubles(std::slice::from_ref(&quiet)), "");
+        let late = ComponentReport { name: "Late".to_owned(), deadline_misses: 2, ..quiet.clone() };
+        let weak =
+            ComponentReport { name: "Weak".to_owned(), failures: 1, slow: 1, ..ComponentReport::default() };
+        assert_eq!(
+            troubles(&[quiet, late.clone(), weak]),
+            "\nLate: 2 executions ended after the deadline\nWeak: 1 failure, 1 execution took longer than the budget\n"
+        );
+        let many = troubles(&vec![late; ROWS + 3]);
+        assert!(many.ends_with("and 3 more: see --report\n"), "{many}");
+    }
 }
