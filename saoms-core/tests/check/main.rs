@@ -6,6 +6,7 @@ mod assemblies;
 mod classes;
 mod mutations;
 mod names;
+mod parameters;
 mod properties;
 mod reference;
 mod support;

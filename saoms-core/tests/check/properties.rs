@@ -5,7 +5,7 @@ use expect_test::expect;
 use crate::support::{faults, faults_of, fleet, fleet_1_0};
 
 /// A robot with this inside its `<component>`, besides its class and what it has to have.
-fn robot(inside: &str) -> String {
+pub(crate) fn robot(inside: &str) -> String {
     format!(
         r#"<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">100</property>
 {inside}
@@ -350,112 +350,6 @@ fn values_in_two_ways_and_complex_ones() {
     expect![[r#"
         3:2-10 error S3006: the property `charger.x` is missing: expected a whole number from -2147483648 to 2147483647
     "#]].assert_eq(&faults(&robot(r#"<property name="charger"><y xmlns="">1</y></property>"#)));
-}
-
-#[test]
-fn sources_lead_to_composite_properties() {
-    expect![""].assert_eq(&faults(&format!(
-        r#"<property name="speed">2</property>
-<property name="where"><value><place xmlns="urn:x"><x>3</x><y>4</y></place></value></property>
-<property name="many" many="true"><value>1</value><value>2</value></property>
-<property name="nothing"/>
-{}"#,
-        robot(
-            r#"<property name="speed" source="$speed"/>
-<property name="charger" source="$where/p:place" xmlns:p="urn:x"/>
-<property name="number" source="$where/*[local-name()='place']/x"/>
-<property name="stops" source="$many"/>
-<property name="delay" source="$nothing">5</property>
-<property name="grace" source="$nothing"/>"#
-        )
-    )));
-    expect![[r#"
-        2:24-29 error S3007: property `speed`: `quick` is not a number: expected a number from 0.0 to 2.5 [m/s]
-          9:32-38 used here as `speed`
-          help: `speed`: How fast it drives; the default is `1.0`
-        3:55-58 error S3008: property `number`: `300` is out of range: expected a whole number from 1 to 99
-          10:33-47 used here as `number`
-          help: `number`: The number of the robot
-        6:17-21 error S2025: the property `must` of the composite has to be given a value
-          help: write it in the file, or give `--set must=...`
-        7:17-22 error S2003: the composite has two properties `speed`
-          2:17-22 the first
-          help: give each its own name
-        11:41-47 error S2023: there is no part `plaice`; the parts are `place`
-        12:39-47 error S2023: `place[1]` is no element name, and others are not understood
-        13:33-37 error S2024: the composite has no property `sped`
-          fix: replace `sped` with `speed` [13:33-37 "speed"]
-        14:32-37 error S2023: `speed` names no property of the composite
-          help: write `$name`, or `$name/part` for a part of a complex property
-          fix: insert `$` [14:32-37 "$speed"]
-        15:39-40 error S2023: the property has a simple value: there are no parts in it
-        16:33-35 error S2023: `/x` names no property of the composite
-          help: write `$name`, or `$name/part` for a part of a complex property
-        19:33-41 error S3006: the property `period` has no value: its source has none
-        19:76-81 error S3006: the property `number` has no value: its source has none
-    "#]].assert_eq(&faults(&format!(
-        r#"<property name="speed">quick</property>
-<property name="where"><value><place xmlns="urn:x"><x>300</x><y/></place></value></property>
-<property name="unused">1</property>
-<property name="nothing"/>
-<property name="must" mustSupply="true"/>
-<property name="speed">2</property>
-{}
-<component name="S"><implementation.java class="example.Robot"/><property name="ID">S</property>
-<property name="period" source="$nothing"/><property name="number" source="$must"/><property name="speed" source="$speed"/></component>"#,
-        robot(
-            r#"<property name="speed" source="$speed"/>
-<property name="number" source="$where/place/x"/>
-<property name="charger" source="$where/plaice"/>
-<property name="awake" source="$where/place[1]"/>
-<property name="stops" source="$sped"/>
-<property name="delay" source="speed"/>
-<property name="grace" source="$speed/x"/>
-<property name="colour" source="/x"/>"#
-        )
-    )));
-}
-
-#[test]
-fn settings_take_the_place_of_composite_properties() {
-    let text = fleet(&format!(
-        r#"<property name="speed" mustSupply="true"/>
-{}"#,
-        robot(r#"<property name="speed" source="$speed"/>"#)
-    ));
-    expect![""].assert_eq(&faults_of(&[&text], &["speed=2.5"]));
-    expect![[r#"
-        --set:1:8-9 error S3008: property `speed`: `3` is out of range: expected a number from 0.0 to 2.5 [m/s]
-          4:32-38 used here as `speed`
-          help: `speed`: How fast it drives; the default is `1.0`
-        --set:1:1-5 error S2029: no composite has a property `sped`
-          fix: replace `sped` with `speed` [--set:1:1-5 "speed"]
-        --set:1:1-6 error S2028: `speed` is set twice
-          --set:1:1-6 first here
-          help: keep one of them
-        --set:1:1-6 error S2027: `speed` sets nothing: there is no `=`
-          help: write `--set NAME=VALUE` with the name of a composite property
-        --set:1:1-3 error S2027: there is no name before the `=`
-          help: write `--set NAME=VALUE` with the name of a composite property
-        --set:1:1-6 error S2028: `speed` is set twice
-          --set:1:1-6 first here
-          help: keep one of them
-    "#]]
-        .assert_eq(&faults_of(&[&text], &["speed= 3", "sped=1", "speed=1", "speed", "=1", "speed ="]));
-    let period = r#"<property name="period">1</property><component name="C"><implementation.java class="example.Clock"/>
-<property name="ID">C</property><property name="period" source="$period"/></component>"#;
-    expect![[r#"
-        --set:1:8-12 error S3007: property `period`: `soon` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
-          3:65-72 used here as `period`
-          help: `period`: From one due execution to the next; a number without a unit is in ms
-    "#]]
-    .assert_eq(&faults_of(&[&fleet(period)], &["period=soon"]));
-    let none = fleet(&robot(""));
-    expect![[r#"
-        --set:1:1-6 error S2029: no composite has a property `speed`
-          help: declare it: `<property name="...">...</property>` in the composite
-    "#]]
-    .assert_eq(&faults_of(&[&none], &["speed=2.5"]));
 }
 
 #[test]
