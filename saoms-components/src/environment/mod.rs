@@ -1,6 +1,8 @@
 //! What happens outside the fleet, as a scenario tells it.
 
 mod scenario;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeSet;
 

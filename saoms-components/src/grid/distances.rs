@@ -25,46 +25,89 @@ const RING: usize = COSTLY as usize + 1;
 #[derive(Clone, Debug, Default)]
 pub struct Distances {
     to: Option<Block>,
+    /// The costs row by row, with a border of one block around, so that every block has four neighbours. Blocked blocks cost 0 here, and so
+    /// are never reached for less.
     costs: Vec<u32>,
-    frontier: [Vec<Block>; RING],
+    /// From one row to the next in `costs`.
+    stride: u32,
+    frontier: [Vec<Place>; RING],
+}
+
+/// A block, and where its cost stands.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    x: u16,
+    y: u16,
+    at: u32,
 }
 
 impl Distances {
     /// Searches the ways to a block. What `costly` marks as blocked is entered only where the way around is long.
     pub fn search(&mut self, map: &Map, to: Block, costly: &Map) {
         self.to = Some(to);
-        self.costs.clear();
-        self.costs.resize(map.size(), UNREACHABLE);
-        self.reach(map, to, 0);
+        self.prepare(map);
+        let Some(start) = self.place(map, to) else { return };
+        self.costs[start.at as usize] = 0;
+        self.frontier[0].push(start);
         let (mut cost, mut empty) = (0, 0);
         while empty < RING {
-            let place = cost as usize % RING;
-            let mut blocks = std::mem::take(&mut self.frontier[place]);
-            empty = if blocks.is_empty() { empty + 1 } else { 0 };
-            for block in blocks.drain(..) {
-                if self.of(map, block) == cost {
-                    let dear = block != to && !costly.is_free(block);
-                    for from in block.neighbours() {
-                        let more = if dear { COSTLY } else { lane(from, block) };
-                        self.reach(map, from, cost + more);
-                    }
+            let mut places = std::mem::take(&mut self.frontier[cost as usize % RING]);
+            empty = if places.is_empty() { empty + 1 } else { 0 };
+            for place in places.drain(..) {
+                if self.costs[place.at as usize] == cost {
+                    let dear = place.at != start.at && !costly.is_free(place.block());
+                    self.spread(place, cost, dear);
                 }
             }
-            self.frontier[place] = blocks;
+            self.frontier[cost as usize % RING] = places;
             cost += 1;
         }
     }
 
-    fn reach(&mut self, map: &Map, block: Block, cost: u32) {
-        if let Some(place) = map.place(block).filter(|_| map.is_free(block))
-            && cost < self.costs[place]
-        {
-            self.costs[place] = cost;
-            self.frontier[cost as usize % RING].push(block);
+    /// Costs that any way is better than, and none for blocked blocks and the border.
+    fn prepare(&mut self, map: &Map) {
+        self.stride = map.width() + 2;
+        let size = self.stride as usize * (map.height() as usize + 2);
+        self.costs.clear();
+        self.costs.resize(size, 0);
+        for (row, y) in self.costs.chunks_exact_mut(self.stride as usize).skip(1).zip(0..map.height()) {
+            for (cost, x) in row[1..].iter_mut().zip(0..map.width()) {
+                *cost = if map.is_free(block(x, y)) { UNREACHABLE } else { 0 };
+            }
         }
     }
 
-    /// The block that the present distances lead to.
+    /// Reaches the blocks beside a place from which it costs so much.
+    fn spread(&mut self, place: Place, cost: u32, dear: bool) {
+        let Place { x, y, at } = place;
+        // Even rows lead to the right and even columns up in y; the moves here come to the place from its neighbours.
+        let (right, left) = if y % 2 == 0 { (MOVE, AGAINST) } else { (AGAINST, MOVE) };
+        let (up, down) = if x % 2 == 0 { (MOVE, AGAINST) } else { (AGAINST, MOVE) };
+        let neighbours = [
+            (Place { x: x.wrapping_sub(1), y, at: at - 1 }, right),
+            (Place { x: x + 1, y, at: at + 1 }, left),
+            (Place { x, y: y.wrapping_sub(1), at: at - self.stride }, up),
+            (Place { x, y: y + 1, at: at + self.stride }, down),
+        ];
+        for (from, lane) in neighbours {
+            let reached = cost + if dear { COSTLY } else { lane };
+            let known = &mut self.costs[from.at as usize];
+            if reached < *known {
+                *known = reached;
+                self.frontier[reached as usize % RING].push(from);
+            }
+        }
+    }
+
+    fn place(&self, map: &Map, block: Block) -> Option<Place> {
+        if !map.is_free(block) {
+            return None;
+        }
+        let (x, y) = (u16::try_from(block.x).ok()?, u16::try_from(block.y).ok()?);
+        Some(Place { x, y, at: (u32::from(y) + 1) * self.stride + u32::from(x) + 1 })
+    }
+
+    /// The block that the present costs lead to.
     pub fn to(&self) -> Option<Block> {
         self.to
     }
@@ -74,15 +117,23 @@ impl Distances {
         self.to = None;
     }
 
-    /// The cost from a block, [`UNREACHABLE`] where no way leads.
+    /// The cost from a block of the map that was searched, [`UNREACHABLE`] where no way leads.
     #[inline]
     pub fn of(&self, map: &Map, block: Block) -> u32 {
-        map.place(block).and_then(|place| self.costs.get(place)).copied().unwrap_or(UNREACHABLE)
+        self.place(map, block)
+            .and_then(|place| self.costs.get(place.at as usize))
+            .copied()
+            .unwrap_or(UNREACHABLE)
     }
 }
 
-/// What a move between two blocks beside each other costs by its lane.
-const fn lane(from: Block, to: Block) -> u32 {
-    let (ahead, lane) = if from.y == to.y { (to.x > from.x, from.y) } else { (to.y > from.y, from.x) };
-    if ahead == (lane % 2 == 0) { MOVE } else { AGAINST }
+impl Place {
+    fn block(self) -> Block {
+        Block::new(i32::from(self.x), i32::from(self.y))
+    }
+}
+
+#[expect(clippy::cast_possible_wrap, reason = "both are below `Map::LONGEST`")]
+fn block(x: u32, y: u32) -> Block {
+    Block::new(x as i32, y as i32)
 }

@@ -4,6 +4,8 @@ mod block;
 mod distances;
 mod map;
 mod read;
+#[cfg(test)]
+mod tests;
 
 pub use block::Block;
 pub use distances::{Distances, MOVE, UNREACHABLE};

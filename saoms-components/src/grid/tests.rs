@@ -1,1 +1,121 @@
+use super::{Block, Distances, MOVE, Map, UNREACHABLE};
 
+#[test]
+fn blocks_are_read_and_shown() {
+    for (text, block) in [("(0,0)", (0, 0)), (" ( 3 , 10 ) ", (3, 10)), ("(-1,2)", (-1, 2))] {
+        assert_eq!(text.parse(), Ok(Block::new(block.0, block.1)));
+    }
+    for text in ["", "3,1", "(3,1", "(3;1)", "(3,1,2)", "(x,1)", "(99999999999,1)"] {
+        let error = text.parse::<Block>().unwrap_err();
+        assert_eq!(error, format!("found `{text}`, expected a block such as (3,10)"));
+    }
+}
+
+#[test]
+fn steps_lead_along_one_axis_and_then_the_other() {
+    let (from, to) = (Block::new(2, 2), Block::new(0, 3));
+    assert_eq!(from.step_x_first(to), Block::new(1, 2));
+    assert_eq!(from.step_y_first(to), Block::new(2, 3));
+    assert_eq!(Block::new(0, 2).step_x_first(to), to);
+    assert_eq!(Block::new(1, 3).step_y_first(to), Block::new(0, 3));
+    assert_eq!(to.step_x_first(to), to);
+}
+
+#[test]
+fn a_map_knows_its_blocks() {
+    let mut map = Map::new(3, 2);
+    assert!(map.is_open() && map.is_free(Block::new(2, 1)));
+    for outside in [Block::new(3, 0), Block::new(0, 2), Block::new(-1, 0), Block::new(0, -1)] {
+        assert!(!map.contains(outside) && !map.is_free(outside) && !map.set_blocked(outside));
+    }
+    assert!(map.set_blocked(Block::new(1, 1)) && map.set_blocked(Block::new(1, 1)));
+    assert!(!map.is_open() && !map.is_free(Block::new(1, 1)) && map.contains(Block::new(1, 1)));
+    assert_eq!(Map::from_words(3, 2, map.words().to_vec()), Some(map.clone()));
+    assert_eq!(Map::from_words(30, 20, map.words().to_vec()), None);
+    for place in 0..map.size() {
+        assert_eq!(map.place(map.block(place)), Some(place));
+    }
+}
+
+#[test]
+fn maps_are_read_with_and_without_a_header() {
+    let rows = "..@\n.T.\n";
+    for header in ["", "type octile\nheight 2\nwidth 3\nmap\n", "height 2\nwidth 3\nmap\n", "\n  "] {
+        let map = Map::read(&format!("{header}{rows}")).unwrap();
+        assert_eq!((map.width(), map.height()), (3, 2));
+        let blocked = (0..6).map(|place| map.block(place)).filter(|block| !map.is_free(*block));
+        assert_eq!(blocked.collect::<Vec<_>>(), [Block::new(2, 0), Block::new(1, 1)]);
+    }
+}
+
+#[test]
+fn wrong_maps_say_where_and_why() {
+    for (text, error) in [
+        ("", "line 1: found no rows, expected one line of `.` and `@` a row"),
+        ("height 2\nwidth 3\nmap", "line 3: found no rows, expected one line of `.` and `@` a row"),
+        ("...\n..", "line 2: found 2 blocks, expected 3 as in the other rows"),
+        ("...\n.x.", "line 2: found `x`, expected `.` for a free block or `@` for a blocked one"),
+        ("height 3\nwidth 1\nmap\n.\n.", "line 5: found 2 rows, expected the 3 of the header"),
+        ("height 1\nwidth 1\nmap\n.\n.", "line 5: found 2 rows, expected the 1 of the header"),
+        ("height x\nwidth 1\nmap\n.", "line 1: found x after `height`, expected a number of blocks"),
+        ("height\nwidth 1\nmap\n.", "line 1: found nothing after `height`, expected a number of blocks"),
+    ] {
+        assert_eq!(Map::read(text).unwrap_err().to_string(), error, "{text:?}");
+    }
+    let wide = ".".repeat(9000);
+    assert!(Map::read(&wide).unwrap_err().to_string().contains("expected at most 8192 on a side"));
+}
+
+/// Moves and costs by relaxing every block again and again.
+fn reference(map: &Map, to: Block) -> Vec<u32> {
+    let mut moves = vec![UNREACHABLE; map.size()];
+    if let Some(place) = map.place(to).filter(|_| map.is_free(to)) {
+        moves[place] = 0;
+    }
+    for _ in 0..map.size() {
+        for place in 0..map.size() {
+            let block = map.block(place);
+            let beside = block.neighbours().into_iter().filter(|beside| map.is_free(*beside));
+            let best = beside.filter_map(|beside| map.place(beside)).map(|place| moves[place]).min();
+            if map.is_free(block) {
+                moves[place] = moves[place].min(best.unwrap_or(UNREACHABLE).saturating_add(1));
+            }
+        }
+    }
+    moves
+}
+
+#[test]
+fn distances_are_those_of_the_shortest_ways() {
+    let map = Map::read("....\n.@@.\n.@..\n..@.\n@@..\n").unwrap();
+    let mut distances = Distances::default();
+    for to in [Block::new(0, 0), Block::new(3, 4), Block::new(0, 3)] {
+        distances.search(&map, to, &Map::new(4, 5));
+        for (place, moves) in reference(&map, to).into_iter().enumerate() {
+            let cost = distances.of(&map, map.block(place));
+            // Moving against a lane costs a quarter more.
+            let most = moves.saturating_mul(MOVE + 1);
+            assert!(
+                (moves.saturating_mul(MOVE)..=most).contains(&cost),
+                "{} to {to}: {cost}",
+                map.block(place)
+            );
+        }
+    }
+}
+
+#[test]
+fn ways_keep_off_costly_blocks_where_the_way_around_is_short() {
+    let (map, to) = (Map::new(5, 3), Block::new(4, 1));
+    let mut costly = Map::new(5, 3);
+    costly.set_blocked(Block::new(2, 1));
+    let mut distances = Distances::default();
+    distances.search(&map, to, &costly);
+    let direct = distances.of(&map, Block::new(2, 1));
+    assert!(distances.of(&map, Block::new(1, 1)) < direct + 3 * MOVE, "goes around");
+    let mut wall = costly.clone();
+    wall.set_blocked(Block::new(2, 0));
+    wall.set_blocked(Block::new(2, 2));
+    distances.search(&map, to, &wall);
+    assert!(distances.of(&map, Block::new(1, 1)) < UNREACHABLE, "goes through");
+}

@@ -7,9 +7,22 @@ use crate::grid::{Block, Distances, MOVE, Map, UNREACHABLE};
 #[derive(Debug, Default)]
 pub struct Routes {
     area: Option<Area>,
-    home: Distances,
-    goal: Distances,
-    other: Distances,
+    ways: [Way; WAYS],
+    /// Counts the questions.
+    clock: u32,
+    /// The place in `ways` of the one to the present goal.
+    heading: usize,
+}
+
+/// How many blocks a robot knows the ways to: its charger, the two ends of its job, and one to think about.
+const WAYS: usize = 4;
+
+/// The ways to one block.
+#[derive(Debug, Default)]
+struct Way {
+    distances: Distances,
+    /// When it was asked for last.
+    asked: u32,
 }
 
 #[derive(Debug)]
@@ -54,8 +67,8 @@ impl Routes {
     }
 
     fn forget_searches(&mut self) {
-        for distances in [&mut self.home, &mut self.goal, &mut self.other] {
-            distances.clear();
+        for way in &mut self.ways {
+            way.distances.clear();
         }
     }
 
@@ -68,54 +81,52 @@ impl Routes {
         }
     }
 
-    /// How many moves it is to the charger.
-    pub fn to_charger(&mut self, from: Block, charge_block: Block) -> u32 {
-        self.area.as_ref().map_or_else(
-            || straight(from, charge_block),
-            |area| area.distance(&mut self.home, from, charge_block),
-        )
-    }
-
-    /// How many moves it is from one block to another, on any errand but the present one.
+    /// How many moves lead from one block to another.
     pub fn between(&mut self, from: Block, to: Block) -> u32 {
-        self.area.as_ref().map_or_else(|| straight(from, to), |area| area.distance(&mut self.other, from, to))
+        let place = self.way_to(to);
+        match self.cost(place, from, to) {
+            UNREACHABLE => UNREACHABLE,
+            cost => cost.div_ceil(MOVE),
+        }
     }
 
     /// Makes sure that [`to_goal`](Routes::to_goal) leads to this block.
     pub fn head_for(&mut self, goal: Block) {
-        if let Some(area) = &self.area {
-            area.distance(&mut self.goal, goal, goal);
-        }
+        self.heading = self.way_to(goal);
     }
 
     /// What the way to the goal that was headed for costs, in parts of [`MOVE`].
     #[inline]
     pub fn to_goal(&self, from: Block, goal: Block) -> u32 {
+        self.cost(self.heading, from, goal)
+    }
+
+    #[inline]
+    fn cost(&self, place: usize, from: Block, to: Block) -> u32 {
         match &self.area {
-            Some(area) if area.searched => self.goal.of(&area.map, from),
-            Some(area) if !area.map.is_free(from) => UNREACHABLE,
-            _ => straight(from, goal).saturating_mul(MOVE),
+            Some(area) if area.searched => self.ways[place].distances.of(&area.map, from),
+            _ if self.is_free(from) && self.is_free(to) => from.distance(to).saturating_mul(MOVE),
+            _ => UNREACHABLE,
         }
     }
-}
 
-impl Area {
-    fn distance(&self, distances: &mut Distances, from: Block, to: Block) -> u32 {
-        if !self.searched {
-            let free = self.map.is_free(from) && self.map.is_free(to);
-            return if free { from.distance(to) } else { UNREACHABLE };
+    /// The place in `ways` of the ways to a block. They are searched where they are not known, in place of those that were not asked for the
+    /// longest time.
+    fn way_to(&mut self, to: Block) -> usize {
+        let Some(area) = self.area.as_ref().filter(|area| area.searched) else { return 0 };
+        self.clock = self.clock.wrapping_add(1);
+        let known = self.ways.iter().position(|way| way.distances.to() == Some(to));
+        let oldest = || {
+            let ages =
+                self.ways.iter().enumerate().map(|(place, way)| (self.clock.wrapping_sub(way.asked), place));
+            ages.max().map_or(0, |(_, place)| place)
+        };
+        let place = known.unwrap_or_else(oldest);
+        let way = &mut self.ways[place];
+        way.asked = self.clock;
+        if known.is_none() {
+            way.distances.search(&area.map, to, &area.chargers);
         }
-        if distances.to() != Some(to) {
-            distances.search(&self.map, to, &self.chargers);
-        }
-        match distances.of(&self.map, from) {
-            UNREACHABLE => UNREACHABLE,
-            cost => cost.div_ceil(MOVE),
-        }
+        place
     }
-}
-
-fn straight(from: Block, to: Block) -> u32 {
-    let free = from.x >= 0 && from.y >= 0 && to.x >= 0 && to.y >= 0;
-    if free { from.distance(to) } else { UNREACHABLE }
 }

@@ -3,6 +3,8 @@
 mod luggage;
 mod properties;
 mod referee;
+#[cfg(test)]
+mod tests;
 
 use saoms_api::{Class, Component, Context, Failure, Level, Subscription, Work};
 

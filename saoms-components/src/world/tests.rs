@@ -1,1 +1,135 @@
+use std::time::Duration;
 
+use saoms_api::Time;
+
+use super::luggage::{Luggage, Stock};
+use super::referee::{Collision, Referee};
+use crate::grid::{Block, Map};
+use crate::hardware::Progress;
+
+fn block(x: i32, y: i32) -> Block {
+    Block::new(x, y)
+}
+
+/// A referee with robots 1, 2, ... at these blocks of a map of 4 x 3, of which (3,2) is blocked.
+fn referee(starts: &[Block]) -> Referee {
+    let mut referee = Referee::new(Map::read("....\n....\n...@").unwrap());
+    for (robot, start) in (1..).zip(starts) {
+        assert_eq!(referee.enter(robot, *start), Ok(*start));
+    }
+    referee
+}
+
+/// A move that is done at once.
+fn hop(referee: &mut Referee, robot: u32, to: Block) -> Option<Collision> {
+    let collision = referee.begin_move(robot, to, Time::START).unwrap().unwrap();
+    assert_eq!(referee.progress(robot, Time::START), Progress::Done);
+    collision
+}
+
+#[test]
+fn robots_start_on_free_blocks_of_the_map() {
+    let mut referee = referee(&[block(0, 0)]);
+    for (start, reason) in [
+        (block(4, 0), "outside the map from (0,0) to (3,2)"),
+        (block(0, -1), "outside the map from (0,0) to (3,2)"),
+        (block(3, 2), "which is blocked on the map"),
+        (block(0, 0), "where robot 1 is already"),
+    ] {
+        let failure = referee.enter(2, start).unwrap_err();
+        let expected = format!("robot 2 starts at {start}, {reason}: give it another charge block");
+        assert_eq!(failure.message(), expected);
+    }
+    assert!(referee.block(2).is_err());
+}
+
+#[test]
+fn a_robot_that_starts_again_is_where_it_was() {
+    let mut referee = referee(&[block(0, 0)]);
+    hop(&mut referee, 1, block(1, 0));
+    let later = Time::START + Duration::from_secs(1);
+    referee.begin_move(1, block(2, 0), later).unwrap().unwrap();
+    assert_eq!(referee.enter(1, block(0, 0)), Ok(block(1, 0)));
+    assert_eq!(referee.is_running(1), Ok(false));
+    assert_eq!(referee.enter(2, block(2, 0)), Ok(block(2, 0)), "what the stopped robot held is free");
+}
+
+#[test]
+fn moves_lead_to_free_blocks_beside() {
+    let mut referee = referee(&[block(2, 2)]);
+    for (to, reason) in [
+        (block(0, 2), "(0,2) is not beside (2,2)"),
+        (block(2, 2), "(2,2) is not beside (2,2)"),
+        (block(3, 1), "(3,1) is not beside (2,2)"),
+        (block(3, 2), "(3,2) is not a free block of the map"),
+        (block(2, 3), "(2,3) is not a free block of the map"),
+    ] {
+        assert_eq!(referee.begin_move(1, to, Time::START), Ok(Err(reason.to_owned())));
+    }
+    assert_eq!(referee.block(1), Ok(block(2, 2)));
+}
+
+#[test]
+fn two_robots_on_one_block_collide_once() {
+    let mut referee = referee(&[block(0, 0), block(1, 0)]);
+    let collision = Collision { robots: (1, 2), block: block(1, 0), swap: false, seen: false };
+    assert_eq!(hop(&mut referee, 1, block(1, 0)), Some(collision));
+    assert_eq!(hop(&mut referee, 2, block(2, 0)), None);
+    assert_eq!(hop(&mut referee, 1, block(0, 0)), None);
+    assert_eq!(hop(&mut referee, 2, block(1, 0)), None, "the block is free again");
+}
+
+#[test]
+fn robots_that_exchange_their_blocks_collide_by_that_alone() {
+    let mut referee = referee(&[block(0, 0), block(1, 0)]);
+    assert!(hop(&mut referee, 1, block(1, 0)).is_some());
+    let swap = Collision { robots: (1, 2), block: block(1, 0), swap: true, seen: true };
+    assert_eq!(hop(&mut referee, 2, block(0, 0)), Some(swap));
+    assert_eq!(hop(&mut referee, 1, block(2, 0)), None);
+}
+
+#[test]
+fn a_moving_robot_holds_both_blocks_until_it_is_there() {
+    let mut referee = referee(&[block(0, 0), block(0, 1), block(2, 0)]);
+    let (now, later) = (Time::START, Time::START + Duration::from_secs(1));
+    assert_eq!(referee.begin_move(1, block(1, 0), later), Ok(Ok(None)));
+    assert_eq!(referee.progress(1, now), Progress::Running);
+    assert_eq!(hop(&mut referee, 2, block(0, 0)).map(|collision| collision.block), Some(block(0, 0)));
+    assert_eq!(hop(&mut referee, 3, block(1, 0)).map(|collision| collision.block), Some(block(1, 0)));
+    referee.settle(later);
+    assert_eq!(referee.block(1), Ok(block(1, 0)));
+    assert_eq!(referee.progress(1, later), Progress::Done);
+    assert_eq!(hop(&mut referee, 2, block(0, 1)), None);
+    assert_eq!(hop(&mut referee, 2, block(0, 0)), None, "the first robot left it");
+}
+
+#[test]
+fn luggage_is_delivered_once_and_only_by_who_carries_it() {
+    let mut stock = Stock::default();
+    let (from, to) = (block(1, 0), block(2, 0));
+    stock.add(7, from, to);
+    stock.add(7, to, from);
+    assert!(!stock.is_delivered());
+    assert_eq!(stock.collect(7, 1, to), Err("luggage 7 is not here but at (1,0)".into()));
+    assert_eq!(stock.collect(7, 1, from), Ok(Luggage::Handled));
+    assert_eq!(stock.collect(7, 2, from), Err("luggage 7 is on robot 1".into()));
+    assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
+    assert_eq!(stock.deposit(7, 1, block(0, 0)), Ok(Luggage::Handled), "it lies on the way");
+    assert_eq!(stock.collect(7, 2, block(0, 0)), Ok(Luggage::Handled));
+    assert_eq!(stock.deposit(7, 2, to), Ok(Luggage::Delivered));
+    assert!(stock.is_delivered());
+    assert_eq!(stock.collect(7, 1, to), Err("luggage 7 is delivered already".into()));
+    assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
+}
+
+#[test]
+fn luggage_that_the_world_has_yet_to_hear_of_is_waited_for() {
+    let mut stock = Stock::default();
+    assert_eq!(stock.collect(7, 1, block(1, 0)), Ok(Luggage::Unknown));
+    stock.add(7, block(1, 0), block(2, 0));
+    stock.settle();
+    assert_eq!(stock.collect(7, 1, block(1, 0)), Ok(Luggage::Handled));
+    assert_eq!(stock.collect(8, 1, block(1, 0)), Ok(Luggage::Unknown));
+    stock.settle();
+    assert_eq!(stock.collect(8, 1, block(1, 0)), Err("there is no luggage 8".into()));
+}

@@ -2,6 +2,8 @@
 
 mod peers;
 mod requests;
+#[cfg(test)]
+mod tests;
 
 use crate::messages::RobotList;
 

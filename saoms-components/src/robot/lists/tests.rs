@@ -1,1 +1,108 @@
+use std::time::Duration;
 
+use saoms_api::Time;
+
+use super::{Lists, Rival};
+use crate::grid::Block;
+use crate::messages::{EventLuggage, LuggageStage, Position, RobotList};
+
+const MINE: u32 = 2;
+
+fn at(seconds: u64) -> Time {
+    Time::START + Duration::from_secs(seconds)
+}
+
+fn request(luggage: u32) -> EventLuggage {
+    EventLuggage::request(luggage, Block::new(1, 1), Block::new(5, 5))
+}
+
+fn response(luggage: u32, robot: u32, stage: LuggageStage) -> EventLuggage {
+    EventLuggage { robot, stage, block: Block::new(0, robot as i32), ..request(luggage) }
+}
+
+/// Lists that heard of luggage 1, 2 and 3, a second apart.
+fn lists() -> Lists {
+    let mut lists = Lists::new(MINE);
+    for luggage in 1..=3 {
+        lists.requests.hear(&request(luggage), at(luggage.into()));
+        lists.requests.hear(&request(luggage), at(9));
+    }
+    lists
+}
+
+fn open(lists: &Lists) -> Vec<u32> {
+    lists.requests.open().iter().map(|request| request.job.luggage).collect()
+}
+
+#[test]
+fn taken_luggage_leaves_the_list() {
+    let mut lists = lists();
+    lists.requests.hear(&response(2, 1, LuggageStage::Taken), at(4));
+    lists.requests.hear(&response(3, MINE, LuggageStage::Taken), at(4));
+    lists.requests.hear(&response(8, 1, LuggageStage::Taken), at(4));
+    assert_eq!(open(&lists), [1, 3]);
+    lists.requests.hear(&response(1, 1, LuggageStage::Delivered), at(5));
+    assert_eq!(open(&lists), [3]);
+}
+
+#[test]
+fn interests_of_others_are_known_until_they_take_them_back() {
+    let mut lists = lists();
+    for robot in [1, MINE, 3, 3] {
+        lists.requests.hear(&response(1, robot, LuggageStage::Interest), at(4));
+    }
+    let rivals = |lists: &Lists| lists.requests.open()[0].rivals.clone();
+    let rival = |robot| Rival { robot, block: Block::new(0, robot as i32) };
+    assert_eq!(rivals(&lists), [rival(1), rival(3)]);
+    lists.requests.hear(&response(1, 1, LuggageStage::Release), at(5));
+    assert_eq!(rivals(&lists), [rival(3)]);
+    lists.hear_robot(&RobotList { robot: 3, active: true, ..RobotList::default() });
+    lists.hear_robot(&RobotList { robot: 3, active: false, ..RobotList::default() });
+    assert_eq!(rivals(&lists), []);
+    lists.requests.hear(&response(1, 1, LuggageStage::Interest), at(6));
+    lists.requests.drop_contested();
+    assert_eq!(open(&lists), [2, 3]);
+}
+
+#[test]
+fn what_a_robot_claims_leaves_the_list_and_comes_back_to_its_place() {
+    let mut lists = lists();
+    assert_eq!(lists.requests.claim(1).map(|request| request.job.luggage), Some(2));
+    assert_eq!(open(&lists), [1, 3]);
+    lists.requests.hear(&request(2), at(9));
+    lists.requests.hear(&response(2, 1, LuggageStage::Interest), at(4));
+    assert_eq!(lists.requests.claimed().map(|claimed| claimed.rivals.len()), Some(1));
+    lists.requests.put_back();
+    assert_eq!(open(&lists), [1, 2, 3]);
+    assert!(lists.requests.claimed().is_none());
+
+    lists.requests.claim(0);
+    lists.requests.hear(&response(1, 3, LuggageStage::Taken), at(5));
+    assert!(lists.requests.claimed().is_none());
+    lists.requests.put_back();
+    assert_eq!(open(&lists), [2, 3]);
+}
+
+#[test]
+fn active_robots_are_listed_by_number_without_oneself() {
+    let mut lists = Lists::new(MINE);
+    let mut hear = |robot, active| lists.hear_robot(&RobotList { robot, active, ..RobotList::default() });
+    for (robot, active) in [(4, true), (1, true), (MINE, true), (3, true), (4, true), (1, false), (9, false)]
+    {
+        hear(robot, active);
+    }
+    assert_eq!(lists.active.iter().map(|robot| robot.robot).collect::<Vec<_>>(), [3, 4]);
+}
+
+#[test]
+fn the_newest_position_of_each_counts() {
+    let mut lists = Lists::new(MINE);
+    let position = |robot, x| Position { robot, block: Block::new(x, 0), ..Position::default() };
+    lists.peers.hear([position(3, 0), position(1, 4), position(MINE, 7), position(3, 1)].iter());
+    lists.peers.hear([position(3, 2)].iter());
+    let shown =
+        |peers: Vec<&Position>| peers.iter().map(|peer| (peer.robot, peer.block.x)).collect::<Vec<_>>();
+    assert_eq!(shown(lists.peers.all().collect()), [(1, 4), (3, 2)]);
+    assert_eq!(shown(lists.peers.heard().collect()), [(3, 2)]);
+    assert!(lists.peers.is_on(Block::new(4, 0)) && !lists.peers.is_on(Block::new(7, 0)));
+}

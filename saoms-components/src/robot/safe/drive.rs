@@ -10,6 +10,9 @@ use crate::robot::actions::Outcome;
 use super::traffic::Claim;
 use super::{Safe, Urgency};
 
+/// A robot tells that it waits when it does so for so many executions.
+const TELLING_WAIT: u32 = 3;
+
 impl Safe {
     pub(super) fn drive(&mut self, body: &mut Body<'_, '_>) -> Result<(), Failure> {
         self.traffic.look(&body.knowledge.lists.peers, body.knowledge.next);
@@ -32,6 +35,9 @@ impl Safe {
         };
         if wanted != at {
             body.show_move(wanted);
+        }
+        if self.traffic.waited() == TELLING_WAIT {
+            body.context.info(format_args!("waits at {at} for others"));
         }
         let position = Position { wanted, priority, ..body.knowledge.position() };
         body.topics.say_position_if_news(body.context, position)

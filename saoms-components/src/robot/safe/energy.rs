@@ -68,11 +68,13 @@ impl Energy {
         let knowledge = &mut *body.knowledge;
         if knowledge.is_at_charger() {
             let charging = !knowledge.battery.is_full();
+            if charging && !knowledge.variables.in_charge {
+                body.context.info(format_args!("charges (battery {} %)", knowledge.battery));
+            }
             if charging {
                 knowledge.battery.charge();
-                if knowledge.battery.is_full() {
-                    body.context.info(format_args!("is fully charged"));
-                }
+            } else if knowledge.variables.in_charge {
+                body.context.info(format_args!("is fully charged"));
             }
             knowledge.variables.in_charge = charging;
         } else {
@@ -148,7 +150,7 @@ impl Energy {
     pub(super) fn set_out(&mut self, knowledge: &mut Knowledge, job: &Job) {
         let next = if knowledge.variables.has_luggage { job.to } else { job.from };
         let way = knowledge.routes.between(knowledge.next, next);
-        let back = knowledge.routes.to_charger(next, knowledge.charge_block);
+        let back = knowledge.routes.between(next, knowledge.charge_block);
         let first = self.pace.job(way, 1).saturating_add(self.pace.job(back, 0));
         let spare = knowledge.battery.executions_left().saturating_sub(first);
         // Who turned back in vain dares more the next time.
@@ -201,7 +203,7 @@ impl Energy {
     /// Whether a full battery lasts for each half of a job, from the charger and back.
     fn is_within(&self, knowledge: &mut Knowledge, job: &Job, full: u32) -> bool {
         [job.from, job.to].into_iter().all(|block| {
-            let way = knowledge.routes.to_charger(block, knowledge.charge_block);
+            let way = knowledge.routes.between(block, knowledge.charge_block);
             let round = way.saturating_mul(2).saturating_mul(self.pace.moving);
             round.saturating_add(self.pace.handling).saturating_add(self.least_reserve(way)) <= full
         })
@@ -214,6 +216,6 @@ impl Energy {
 
     /// Executions from a block to the charger.
     fn home(&self, knowledge: &mut Knowledge, from: Block) -> u32 {
-        self.pace.job(knowledge.routes.to_charger(from, knowledge.charge_block), 0)
+        self.pace.job(knowledge.routes.between(from, knowledge.charge_block), 0)
     }
 }

@@ -94,6 +94,11 @@ impl Traffic {
         !self.near.iter().any(|peer| peer.holds(block) || peer.wanted == block)
     }
 
+    /// For how many executions the robot wanted to go on and could not.
+    pub(super) fn waited(&self) -> u32 {
+        self.waited
+    }
+
     /// Takes in that the robot goes to what it wanted.
     pub(super) fn went(&mut self, from: Block) {
         self.previous = Some(from);
