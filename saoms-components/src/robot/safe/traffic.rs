@@ -129,7 +129,8 @@ impl Traffic {
         self.waited += u32::from(claim.tempo > 0);
         self.avoided = self.avoided.filter(|(block, robot)| self.holder(*block) == Some(*robot));
         let patience = if self.wanted(at).is_some() { PATIENCE } else { SHORT_PATIENCE };
-        let impatient = self.waited > patience.saturating_mul(claim.tempo) && claim.tempo > 0;
+        let impatient = claim.tempo > 0
+            && (self.waited > patience.saturating_mul(claim.tempo) || self.is_stuck_for(claim));
         if impatient {
             self.give_up(claim, routes, chance);
         }
@@ -180,6 +181,15 @@ impl Traffic {
         self.wanted = None;
         // Two robots in each other's way must not give up at the same time for ever.
         self.waited = u32::try_from(chance.below(u64::from(SHORT_PATIENCE))).unwrap_or(0);
+    }
+
+    /// Whether the robot that should make way heard of it, as its priority shows, and cannot.
+    fn is_stuck_for(&self, claim: &Claim) -> bool {
+        self.wanted(claim.at).is_some_and(|wanted| {
+            let stays =
+                |peer: &&Position| peer.block == wanted && peer.next == wanted && peer.wanted == wanted;
+            self.near.iter().find(stays).is_some_and(|peer| peer.priority == claim.priority)
+        })
     }
 
     /// The block on the other side of the robot that asks for this one with the most right.
