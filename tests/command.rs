@@ -297,3 +297,26 @@ fn a_reader_that_goes_away_is_no_failure() {
     drop(child.stdout.take());
     assert_eq!(child.wait().unwrap().code(), Some(0));
 }
+
+#[test]
+fn two_robots_with_one_number_do_not_start() {
+    let robot = |id: &str| {
+        format!(
+            r#"<component name="{id}"><implementation.rust class="saoms.Robot"/><property name="ID" value="{id}"/>
+               <property name="period" value="20"/><reference name="world" target="World"/></component>"#
+        )
+    };
+    let fleet = format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="twins" targetNamespace="urn:twins">
+             <component name="World"><implementation.rust class="saoms.World"/><property name="ID" value="World"/>
+               <property name="period" value="20"/></component>
+             {}{}
+           </composite>"#,
+        robot("A7"),
+        robot("B7")
+    );
+    let path = file(&folder("twins"), "twins.composite", fleet);
+    let output = saoms(&["run", &path, "--virtual", "--for", "1s"]);
+    assert_eq!(code(&output), 1, "{}", stdout(&output));
+    assert!(stderr(&output).contains("robots `A7` and `B7` both have the number 7"), "{}", stderr(&output));
+}

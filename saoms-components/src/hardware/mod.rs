@@ -16,8 +16,14 @@ pub use area::Area;
 /// The hooks to a robot's hardware.
 #[interface(name = "saoms.Hardware")]
 pub trait Hardware {
-    /// Says that a robot of this number starts, as it believes at this block; the answer is where it really is.
-    fn enter(&mut self, context: &mut Context<'_>, robot: u32, block: Block) -> Result<Block, Failure>;
+    /// Says that the robot of this number and name starts, as it believes at this block; the answer is where it really is.
+    fn enter(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+        name: String,
+        block: Block,
+    ) -> Result<Block, Failure>;
 
     /// The area that the robots share.
     fn area(&mut self, context: &mut Context<'_>) -> Result<Area, Failure>;

@@ -42,12 +42,13 @@ impl Hooks {
         &mut self,
         context: &mut Context<'_>,
         robot: u32,
+        name: &str,
         block: Block,
     ) -> Result<Reply<(Block, Option<Map>)>, Failure> {
         if self.entered {
             return Ok(Reply::Answer((block, None)));
         }
-        let block = match reply(self.hardware.enter(context, robot, block))? {
+        let block = match reply(self.hardware.enter(context, robot, name.to_owned(), block))? {
             Reply::Answer(block) => block,
             Reply::Later => return Ok(Reply::Later),
         };

@@ -141,7 +141,7 @@ impl Robot {
             return Ok(true);
         }
         let knowledge = &mut self.knowledge;
-        match self.hooks.enter(context, knowledge.number, knowledge.block)? {
+        match self.hooks.enter(context, knowledge.number, &knowledge.name, knowledge.block)? {
             Reply::Later => Ok(false),
             Reply::Answer((block, map)) => {
                 (knowledge.block, knowledge.next) = (block, block);

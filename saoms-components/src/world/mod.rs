@@ -155,8 +155,14 @@ fn report(context: &mut Context<'_>, collision: Collision) {
 }
 
 impl Hardware for World {
-    fn enter(&mut self, _context: &mut Context<'_>, robot: u32, block: Block) -> Result<Block, Failure> {
-        self.referee.enter(robot, block)
+    fn enter(
+        &mut self,
+        _context: &mut Context<'_>,
+        robot: u32,
+        name: String,
+        block: Block,
+    ) -> Result<Block, Failure> {
+        self.referee.enter(robot, name, block)
     }
 
     fn area(&mut self, _context: &mut Context<'_>) -> Result<Area, Failure> {

@@ -23,6 +23,7 @@ pub(super) struct Referee {
 
 #[derive(Debug)]
 struct Body {
+    name: String,
     block: Block,
     /// Where it moves, and when it will be there.
     moving: Option<(Block, Time)>,
@@ -61,8 +62,14 @@ impl Referee {
     }
 
     /// Lets a robot start at a block. A robot that was there before, as before a restart, is where it was.
-    pub(super) fn enter(&mut self, robot: u32, block: Block) -> Result<Block, Failure> {
-        if self.bodies.contains_key(&robot) {
+    pub(super) fn enter(&mut self, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
+        if let Some(body) = self.bodies.get(&robot) {
+            if body.name != name {
+                return Err(Failure::new(format!(
+                    "robots `{}` and `{name}` both have the number {robot}: give one of them another `number`",
+                    body.name
+                )));
+            }
             self.cancel(robot)?;
             return self.block(robot);
         }
@@ -83,7 +90,7 @@ impl Referee {
             )));
         }
         self.hold(block);
-        self.bodies.insert(robot, Body { block, moving: None, handling: None });
+        self.bodies.insert(robot, Body { name, block, moving: None, handling: None });
         Ok(block)
     }
 

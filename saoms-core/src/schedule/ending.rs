@@ -130,7 +130,8 @@ impl Engine {
             _ if !reasons.is_empty() => Status::Failed,
             Some(Cause::Elapsed) => Status::Elapsed,
             Some(Cause::Idle) => {
-                reasons.push("no component is scheduled any more".to_owned());
+                reasons
+                    .push("no component is scheduled, and in virtual time nothing else happens".to_owned());
                 Status::Done
             }
             Some(Cause::Done | Cause::Lost) | None => Status::Done,

@@ -167,7 +167,7 @@ impl Engine {
         };
         let mut message = format!("{doing}{failure}");
         if unsent > 0 {
-            message.push_str(&format!(" (the {unsent} messages of this execution are not sent)"));
+            message.push_str(&format!(" (messages of this execution that are not sent: {unsent})"));
         }
         self.step(now, index, Step::Failed);
         let slot = &mut self.slots[index as usize];

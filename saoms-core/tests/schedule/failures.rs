@@ -36,10 +36,10 @@ fn messages_of_a_failed_execution_are_not_sent_and_that_is_said() {
         "A actor publishes=TALK each=[say one; say two; fail no]
          B actor subscribes=TALK each=[hear]",
         1,
-        "[0.000 s] A: failed: no (the 2 messages of this execution are not sent)
+        "[0.000 s] A: failed: no (messages of this execution that are not sent: 2)
          [0.000 s] B: hears []
          Failed after 0.001 s
-         - component `A` failed: no (the 2 messages of this execution are not sent)",
+         - component `A` failed: no (messages of this execution that are not sent: 2)",
     );
 }
 

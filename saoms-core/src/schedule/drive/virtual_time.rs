@@ -41,7 +41,8 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 shared.clock.jump(now);
             }
             Next::Wait(_) => {
-                if engine.phase == Phase::Running && engine.can_only_idle() {
+                // Nobody will ever be due: no time passes that somebody could wait for.
+                if engine.phase == Phase::Running {
                     engine.begin_stop(Cause::Idle, now);
                 } else {
                     engine = sleep(shared, engine);
@@ -67,12 +68,4 @@ fn sleep<'a>(
     let mut engine = shared.lock();
     engine.roles.asleep_until = 0;
     engine
-}
-
-impl Engine {
-    /// Whether there are components that could be scheduled, and nobody is left to do it. A fleet of passive components, on the other hand,
-    /// waits for its end.
-    fn can_only_idle(&self) -> bool {
-        self.slots.iter().any(|slot| slot.policy.periodic)
-    }
 }

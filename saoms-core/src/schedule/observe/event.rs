@@ -119,7 +119,10 @@ impl fmt::Display for Occurrence {
                 write!(formatter, "lost {count} messages of topic `{topic}`, whose queue was full")
             }
             Occurrence::Overrun { missed } => {
-                write!(formatter, "stopped, because {missed} executions could not start in time")
+                write!(
+                    formatter,
+                    "stopped, because executions could not start in time: {missed} would be left out"
+                )
             }
             Occurrence::Abandoned => formatter.write_str("did not end in time and is left behind"),
         }
