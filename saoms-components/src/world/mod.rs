@@ -144,13 +144,10 @@ fn report(context: &mut Context<'_>, collision: Collision) {
             // It was counted as meeting in one block when the first of the two moved.
             context.count("collisions.vertex", -1);
         }
-        context.log(
-            Level::Error,
-            format_args!("robots {one} and {other} collide: they exchange blocks at {block}"),
-        );
+        context.warn(format_args!("robots {one} and {other} collide: they exchange blocks at {block}"));
     } else {
         context.count("collisions.vertex", 1);
-        context.log(Level::Error, format_args!("robots {one} and {other} collide at {block}"));
+        context.warn(format_args!("robots {one} and {other} collide at {block}"));
     }
 }
 
