@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
 
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -157,6 +157,32 @@ fn ctrl_c_ends_through_shutdown_and_still_reports() {
     let report: Value = serde_json::from_slice(&fs::read(&report).unwrap()).unwrap();
     assert_eq!(report["outcome"]["status"], "interrupted");
     assert!(report["components"][0]["executions"].as_u64().unwrap() >= 2);
+}
+
+/// Nobody reads what the fleet says, so that it cannot end by itself once it was asked to.
+#[test]
+fn a_second_ctrl_c_ends_at_once() {
+    let fleet = file(&folder("twice"), "one.composite", ONE_ROBOT);
+    let mut child = command(&["run", &fleet, "--virtual", "--console", "classic"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut unread = child.stdout.take().unwrap();
+    unread.read_exact(&mut [0; 1000]).unwrap();
+    let pid = i32::try_from(child.id()).unwrap();
+    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(30);
+    let status = loop {
+        // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
+        assert_eq!(unsafe { libc::kill(pid, libc::SIGINT) }, 0);
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        assert!(std::time::Instant::now() < deadline, "it is still there");
+    };
+    assert_eq!(status.code(), Some(130));
+    drop(unread);
 }
 
 /// Each text is wrong in one way; the diagnostic has to name the place and the thing.

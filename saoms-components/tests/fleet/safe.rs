@@ -165,7 +165,7 @@ fn the_area_is_large() {
 }
 
 #[test]
-#[ignore = "takes minutes: the same with many seeds"]
+#[ignore = "the same with many seeds: minutes, or 17 s with `cargo test --release -p saoms-components --test fleet many -- --ignored`"]
 fn many_seeds() {
     Setting::default().check(200);
     Setting { periods: 50..=300, lateness: 0.99, ..Setting::default() }.check(200);
