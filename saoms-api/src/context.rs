@@ -2,8 +2,8 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::{
-    CallError, Chance, Failure, Header, Message, Messages, Publisher, Reference, ReportValue, ServiceCall,
-    SharedMessage, Subscription, Time, Topic, TopicDeclaration, Work,
+    CallError, Cause, Chance, DynLoop, Failure, Header, Loops, Message, Messages, Phase, Publisher, Record,
+    Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, TopicDeclaration, Work,
 };
 
 /// How much a log line matters.
@@ -90,7 +90,7 @@ impl<'a> Context<'a> {
     /// # Errors
     /// The publisher belongs to no topic.
     pub fn send<M: Message>(&mut self, publisher: &Publisher<M>, message: M) -> Result<(), Failure> {
-        let header = Header { sender: self.host.sender(), sent: self.host.due() };
+        let header = Header { sender: self.host.sender(), sent: self.host.due(), cause: self.host.cause() };
         self.host.send(publisher.index(), SharedMessage::new(header, message))
     }
 
@@ -129,6 +129,43 @@ impl<'a> Context<'a> {
     #[doc(hidden)]
     pub fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         self.host.call(reference, call)
+    }
+
+    /// The loops that the class declares and the composite changes, in their order. Only in `initialize`.
+    ///
+    /// # Errors
+    /// A loop refuses its properties, or `initialize` is over.
+    pub fn loops(&mut self) -> Result<Loops, Failure> {
+        self.host.loops().map(Loops::of)
+    }
+
+    /// Tells what follows from what: the next symptom of the present loop comes from this, such as from the
+    /// [cause](Header::cause) of a message.
+    pub fn because(&mut self, cause: Cause) {
+        self.host.because(cause);
+    }
+
+    /// What a message that is sent now would carry as its cause: the newest record of the present loop in this execution.
+    pub fn cause(&self) -> Cause {
+        self.host.cause()
+    }
+
+    /// Writes to the journal what the present loop did, beyond the entries of the knowledge that it changed: those are written by
+    /// themselves.
+    pub fn effect(&mut self, record: Record) {
+        self.host.journal(Phase::Effect, &record);
+    }
+
+    pub(crate) fn journal(&mut self, phase: Phase, record: &Record) {
+        self.host.journal(phase, record);
+    }
+
+    pub(crate) fn enter_loop(&mut self, place: u32) {
+        self.host.enter_loop(Some(place));
+    }
+
+    pub(crate) fn leave_loops(&mut self) {
+        self.host.enter_loop(None);
     }
 
     /// Writes a line to the log, with the time and the component's name. Formatted only where somebody listens.
@@ -214,6 +251,19 @@ pub trait Host {
     /// # Errors
     /// As [`CallError`] says.
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
+    /// Constructs the component's loops. See [`Context::loops`].
+    ///
+    /// # Errors
+    /// As there.
+    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure>;
+    /// The loop at this place acts from now on, or none.
+    fn enter_loop(&mut self, place: Option<u32>);
+    /// See [`Context::because`].
+    fn because(&mut self, cause: Cause);
+    /// See [`Context::cause`].
+    fn cause(&self) -> Cause;
+    /// Writes to the journal what the present loop saw, decided or did.
+    fn journal(&mut self, phase: Phase, record: &Record);
     /// See [`Context::log`].
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>);
     /// See [`Context::console`].

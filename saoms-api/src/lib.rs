@@ -60,6 +60,7 @@
 // So that the macros' paths lead here from inside, too.
 extern crate self as saoms_api;
 
+mod adaptation;
 pub mod cdr;
 mod chance;
 mod component;
@@ -76,6 +77,7 @@ mod task;
 mod time;
 mod topic;
 
+pub use adaptation::{Cause, DynLoop, Knowledge, Loop, Loops, Phase, Record, Recordable, Subject, Value};
 pub use chance::Chance;
 pub use component::{Class, Component, DynComponent};
 pub use context::{Context, Host, Level};

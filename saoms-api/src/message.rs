@@ -4,7 +4,7 @@ use std::slice;
 use std::sync::{Arc, OnceLock};
 
 use crate::cdr;
-use crate::{Field, Time};
+use crate::{Cause, Field, Time};
 
 /// What components send each other. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are numbers, `bool`, `String`,
 /// `Vec`s, enumerations or other messages. `#[message(key = "field")]` names the integer field that is the key of a state topic.
@@ -45,6 +45,8 @@ pub struct Header {
     pub sender: u32,
     /// When the execution that sent it was due.
     pub sent: Time,
+    /// The record of the journal that says why it was sent.
+    pub cause: Cause,
 }
 
 /// A message on its way: one value, shared by all its readers, encoded at most once and only where it leaves this build of the program.

@@ -5,8 +5,8 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Chance, Context, DynComponent, Failure, Host, Invocation, Level, Operation, ReportValue,
-    ServiceCall, SharedMessage, Time, TopicDeclaration, Work,
+    CallError, Cause, Chance, Context, DynComponent, DynLoop, Failure, Host, Invocation, Level, Operation,
+    Phase, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, Work,
 };
 
 /// How calls reach the provider.
@@ -126,6 +126,20 @@ impl Host for FakeHost {
         self.provider = Some((provider, service));
         result
     }
+
+    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+        Ok(Vec::new())
+    }
+
+    fn enter_loop(&mut self, _place: Option<u32>) {}
+
+    fn because(&mut self, _cause: Cause) {}
+
+    fn cause(&self) -> Cause {
+        Cause::default()
+    }
+
+    fn journal(&mut self, _phase: Phase, _record: &Record) {}
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         self.lines.push(format!("{level:?}: {line}"));

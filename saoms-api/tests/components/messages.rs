@@ -1,6 +1,6 @@
 use saoms_api::{
-    Class, Component, Context, Failure, Header, Message, Publisher, Registration, ReportValue, SharedMessage,
-    Subscription, Time, Topic, Work, cdr,
+    Cause, Class, Component, Context, Failure, Header, Message, Publisher, Registration, ReportValue,
+    SharedMessage, Subscription, Time, Topic, Work, cdr,
 };
 
 use crate::host::FakeHost;
@@ -25,7 +25,7 @@ mod elsewhere {
 }
 
 const POSITION: Topic<Position> = Topic::state("POSITION");
-const HEADER: Header = Header { sender: 9, sent: Time::from_nanos(5) };
+const HEADER: Header = Header { sender: 9, sent: Time::from_nanos(5), cause: Cause(0) };
 
 /// Sends on what it hears, and says what it sees.
 #[derive(Class)]
@@ -89,7 +89,7 @@ fn a_component_reads_and_sends_messages() {
     let sent: Vec<_> =
         host.sent.iter().map(|(_, message)| message.get::<Position>().unwrap().clone()).collect();
     assert_eq!(sent, [position(1, "one"), position(2, "two")]);
-    let expected = Header { sender: 3, sent: Time::from_nanos(1_000_000_000) };
+    let expected = Header { sender: 3, sent: Time::from_nanos(1_000_000_000), cause: Cause(0) };
     assert!(host.sent.iter().all(|(publisher, message)| *publisher == 0 && message.header() == expected));
     assert_eq!(host.sent[1].1.key(), Some(2));
     assert_eq!(host.lines, ["Info: one from 9", "Info: two from 9", "hall/Fake at 1.500 s"]);

@@ -5,22 +5,31 @@
 //! | [`ENVIRONMENT`] | [`EnvironmentEvent`] | environment, or anyone | the master of the environment, world |
 //! | [`EVENT_LUGGAGE`] | [`EventLuggage`] | the master of the environment, robots | robots, environment |
 //! | [`EXCEPTIONAL_EVENT`] | [`ExceptionalEvent`] | the master of the environment | the master of the robots |
+//! | [`FAULT`] | [`Fault`] | the master of the environment | robots |
+//! | [`ROBOT_STATE`] | [`RobotState`] | the master of the robots, robots | robots |
+//! | [`CRITICAL_SITUATION`] | [`CriticalSituation`] | robots | robots |
 //! | [`ROBOT_LIST`] | [`RobotList`] | robots | robots, the master of the robots |
 //! | [`POSITION`] | [`Position`] | robots | robots |
 
+mod critical_situation;
 mod environment_event;
 mod event_luggage;
 mod exceptional_event;
+mod fault;
 mod position;
 mod robot_list;
+mod robot_state;
 
 use saoms_api::Topic;
 
+pub use critical_situation::{CriticalKind, CriticalSituation, CriticalStage};
 pub use environment_event::EnvironmentEvent;
 pub use event_luggage::{EventLuggage, LuggageStage};
 pub use exceptional_event::{ExceptionalEvent, ExceptionalKind};
+pub use fault::{Fault, FaultKind};
 pub use position::{IMMOVABLE, Position, Priority};
 pub use robot_list::RobotList;
+pub use robot_state::RobotState;
 
 /// Events of any kind, as they come in from the environment.
 pub const ENVIRONMENT: Topic<EnvironmentEvent> = Topic::event("ETOPIC");
@@ -36,3 +45,12 @@ pub const ROBOT_LIST: Topic<RobotList> = Topic::state("RLMSTOPIC");
 
 /// Where the robots are and where they go next, the newest of each.
 pub const POSITION: Topic<Position> = Topic::state("POSTOPIC");
+
+/// What breaks in robots.
+pub const FAULT: Topic<Fault> = Topic::event("FAULTTOPIC");
+
+/// Who has to be awake.
+pub const ROBOT_STATE: Topic<RobotState> = Topic::event("RMSTOPIC");
+
+/// Robots that need help, and the responses of their healers.
+pub const CRITICAL_SITUATION: Topic<CriticalSituation> = Topic::event("CSMSTOPIC");

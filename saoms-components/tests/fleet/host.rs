@@ -6,8 +6,9 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Chance, Class, Context, DynComponent, Failure, Host, Invocation, Level, PropertyValue,
-    Registration, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, TopicKind, Work,
+    CallError, Cause, Chance, Class, Context, DynComponent, DynLoop, Failure, Host, Invocation, Level, Phase,
+    PropertyValue, Record, Registration, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration,
+    TopicKind, Work,
 };
 
 /// A fleet in virtual time.
@@ -327,6 +328,20 @@ impl Host for View<'_> {
         self.fleet.components[provider] = Some(component);
         result
     }
+
+    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+        Ok(Vec::new())
+    }
+
+    fn enter_loop(&mut self, _place: Option<u32>) {}
+
+    fn because(&mut self, _cause: Cause) {}
+
+    fn cause(&self) -> Cause {
+        Cause::default()
+    }
+
+    fn journal(&mut self, _phase: Phase, _record: &Record) {}
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         let line = format!("{} {}: {level:?}: {line}", self.fleet.now, self.name());

@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use saoms_api::{Header, Message, SharedMessage, Time, Topic};
+use saoms_api::{Cause, Header, Message, SharedMessage, Time, Topic};
 
 use super::{Bus, Subscription};
 
@@ -27,7 +27,7 @@ fn who() -> Arc<str> {
 }
 
 fn header(sender: u32) -> Header {
-    Header { sender, sent: Time::START }
+    Header { sender, sent: Time::START, cause: Cause::default() }
 }
 
 fn collect(bus: &mut Bus, subscription: &mut Subscription) -> (Vec<SharedMessage>, u64) {

@@ -3,8 +3,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Chance, Failure, Host, Level, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration,
-    Work,
+    CallError, Cause, Chance, DynLoop, Failure, Host, Level, Phase, Record, ReportValue, ServiceCall,
+    SharedMessage, Time, TopicDeclaration, Work,
 };
 
 use super::body::Part;
@@ -155,6 +155,20 @@ impl Host for ComponentHost<'_> {
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         super::call::call(self.shared, self.part, reference, call)
     }
+
+    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+        Ok(Vec::new())
+    }
+
+    fn enter_loop(&mut self, _place: Option<u32>) {}
+
+    fn because(&mut self, _cause: Cause) {}
+
+    fn cause(&self) -> Cause {
+        Cause::default()
+    }
+
+    fn journal(&mut self, _phase: Phase, _record: &Record) {}
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         if self.shared.line.wants(level) {

@@ -1,0 +1,150 @@
+use crate::{Context, Failure, Knowledge, Phase, Properties, Recordable, Subject};
+
+/// A MAPE-K loop: one concern of a component that adapts itself.
+///
+/// In each execution of its component, after all loops have [monitored](Loop::monitor), each loop in its order
+/// [analyzes](Loop::analyze); where it finds a symptom it [plans](Loop::plan), and where it comes to a decision it
+/// [executes](Loop::execute). The host writes symptom and decision to the journal, and what entries of the knowledge changed; an effect
+/// beyond that is told with [`Context::effect`].
+///
+/// A loop that has to do with topics asks for them in [`initialize`](Loop::initialize), as a component does.
+pub trait Loop: Send + Sized + 'static {
+    /// What the composite can set.
+    type Properties: Properties;
+    /// What it works on: the component's own struct, or `dyn Knowledge`.
+    type Knowledge: Subject + ?Sized;
+    /// What the analysis can find.
+    type Symptom: Recordable;
+    /// What can be planned.
+    type Decision: Recordable;
+
+    /// Makes the loop; it does no work, as [`Component::new`](crate::Component::new).
+    ///
+    /// # Errors
+    /// The values do not fit together.
+    fn new(properties: Self::Properties) -> Result<Self, Failure>;
+
+    /// Asks for topics, references and entries.
+    ///
+    /// # Errors
+    /// The component cannot start.
+    fn initialize(
+        &mut self,
+        knowledge: &mut Self::Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let _ = (knowledge, context);
+        Ok(())
+    }
+
+    /// Takes in what arrived and what can be measured. Before any loop analyzes, all have monitored.
+    ///
+    /// # Errors
+    /// The component has failed.
+    fn monitor(&mut self, knowledge: &mut Self::Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let _ = (knowledge, context);
+        Ok(())
+    }
+
+    /// Looks for a reason to act.
+    ///
+    /// # Errors
+    /// The component has failed.
+    fn analyze(
+        &mut self,
+        knowledge: &mut Self::Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Self::Symptom>, Failure>;
+
+    /// Decides what to do about it; `None` where nothing is to be done.
+    ///
+    /// # Errors
+    /// The component has failed.
+    fn plan(
+        &mut self,
+        symptom: Self::Symptom,
+        knowledge: &mut Self::Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Self::Decision>, Failure>;
+
+    /// Does it.
+    ///
+    /// # Errors
+    /// The component has failed.
+    fn execute(
+        &mut self,
+        decision: Self::Decision,
+        knowledge: &mut Self::Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure>;
+
+    /// Ends the work; what it sends still leaves.
+    ///
+    /// # Errors
+    /// The component could not end properly.
+    fn shutdown(
+        &mut self,
+        knowledge: &mut Self::Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let _ = (knowledge, context);
+        Ok(())
+    }
+}
+
+/// A loop of any type, as components hold it.
+pub trait DynLoop: Send {
+    /// See [`Loop::initialize`].
+    ///
+    /// # Errors
+    /// As there.
+    fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>)
+    -> Result<(), Failure>;
+    /// See [`Loop::monitor`].
+    ///
+    /// # Errors
+    /// As there.
+    fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// [Analyzes](Loop::analyze), [plans](Loop::plan) and [executes](Loop::execute) as far as there is reason to.
+    ///
+    /// # Errors
+    /// As there.
+    fn adapt(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// See [`Loop::shutdown`].
+    ///
+    /// # Errors
+    /// As there.
+    fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
+}
+
+impl<L: Loop> DynLoop for L {
+    fn initialize(
+        &mut self,
+        knowledge: &mut dyn Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        Loop::initialize(self, subject::<L>(knowledge)?, context)
+    }
+
+    fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        Loop::monitor(self, subject::<L>(knowledge)?, context)
+    }
+
+    fn adapt(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let knowledge = subject::<L>(knowledge)?;
+        let Some(symptom) = self.analyze(knowledge, context)? else { return Ok(()) };
+        context.journal(Phase::Symptom, &symptom.record());
+        let Some(decision) = self.plan(symptom, knowledge, context)? else { return Ok(()) };
+        context.journal(Phase::Decision, &decision.record());
+        self.execute(decision, knowledge, context)
+    }
+
+    fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        Loop::shutdown(self, subject::<L>(knowledge)?, context)
+    }
+}
+
+fn subject<L: Loop>(knowledge: &mut dyn Knowledge) -> Result<&mut L::Knowledge, Failure> {
+    L::Knowledge::of(knowledge)
+        .ok_or_else(|| Failure::new("this loop works on the knowledge of another class of components"))
+}

@@ -1,0 +1,15 @@
+//! MAPE-K: components that adapt themselves by loops over what they know.
+//!
+//! What a component knows is its [`Knowledge`]: declared, typed entries. Its behaviour is an ordered list of [loops](Loop), which a composite
+//! can extend, reorder, replace and parametrise. In each execution all loops *monitor* first, in their order; then each of them
+//! *analyzes* and, where it finds a symptom, *plans* and *executes*. Symptom, decision and effect go to the journal as [`Record`]s.
+
+mod cycle;
+mod knowledge;
+mod loops;
+mod record;
+
+pub use cycle::{DynLoop, Loop};
+pub use knowledge::{Knowledge, Subject};
+pub use loops::Loops;
+pub use record::{Cause, Phase, Record, Recordable, Value};

@@ -1,0 +1,153 @@
+use std::fmt;
+
+/// A value in a [`Record`] or in an entry of a component's knowledge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// True or false.
+    Bool(bool),
+    /// A whole number.
+    Integer(i64),
+    /// A number.
+    Number(f64),
+    /// Two whole numbers, such as the column and the row of a block.
+    Pair(i32, i32),
+    /// A word that is known when the loop is compiled.
+    Word(&'static str),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Bool(true) => formatter.write_str("yes"),
+            Value::Bool(false) => formatter.write_str("no"),
+            Value::Integer(value) => value.fmt(formatter),
+            Value::Number(value) => value.fmt(formatter),
+            Value::Pair(x, y) => write!(formatter, "({x},{y})"),
+            Value::Word(word) => formatter.write_str(word),
+        }
+    }
+}
+
+macro_rules! from {
+    ($($type:ty => $variant:ident),* $(,)?) => {
+        $(impl From<$type> for Value {
+            fn from(value: $type) -> Value {
+                Value::$variant(value.into())
+            }
+        })*
+    };
+}
+
+from!(bool => Bool, i64 => Integer, i32 => Integer, u32 => Integer, u16 => Integer, u8 => Integer, f64 => Number, &'static str => Word);
+
+impl From<(i32, i32)> for Value {
+    fn from((x, y): (i32, i32)) -> Value {
+        Value::Pair(x, y)
+    }
+}
+
+/// How many values a record holds at most.
+const VALUES: usize = 6;
+
+/// What a loop saw, decided or did: a text with places for values, and the values. Making one formats and allocates nothing.
+///
+/// ```
+/// use saoms_api::record;
+///
+/// let battery = 34.0;
+/// let record = record!("has {battery} % left and needs {home} executions home", battery, home = 12);
+/// assert_eq!(record.to_string(), "has 34 % left and needs 12 executions home");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    text: &'static str,
+    names: &'static [&'static str],
+    values: [Value; VALUES],
+}
+
+impl Record {
+    /// For [`record!`](crate::record): a text with `{name}` where a value goes, the names, and their values in the same order.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn new<const N: usize>(
+        text: &'static str,
+        names: &'static [&'static str; N],
+        values: [Value; N],
+    ) -> Record {
+        const { assert!(N <= VALUES, "a record holds at most 6 values") };
+        let mut all = [Value::Bool(false); VALUES];
+        all[..N].copy_from_slice(&values);
+        Record { text, names, values: all }
+    }
+
+    /// The text with its places.
+    pub const fn text(&self) -> &'static str {
+        self.text
+    }
+
+    /// The values by name.
+    pub fn values(&self) -> impl Iterator<Item = (&'static str, Value)> {
+        self.names.iter().copied().zip(self.values)
+    }
+}
+
+impl fmt::Display for Record {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rest = self.text;
+        while let Some((before, after)) = rest.split_once('{') {
+            formatter.write_str(before)?;
+            let Some((name, after)) = after.split_once('}') else { return formatter.write_str(after) };
+            match self.values().find(|(known, _)| *known == name) {
+                Some((_, value)) => value.fmt(formatter)?,
+                None => write!(formatter, "{{{name}}}")?,
+            }
+            rest = after;
+        }
+        formatter.write_str(rest)
+    }
+}
+
+/// Makes a [`Record`]: a text with `{name}` where a value goes, then the values, as `name` or `name = expression`.
+#[macro_export]
+macro_rules! record {
+    ($text:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {
+        $crate::Record::new(
+            $text,
+            &[$(stringify!($name)),*],
+            [$($crate::Value::from($crate::record!(@value $name $(= $value)?))),*],
+        )
+    };
+    (@value $name:ident) => { $name };
+    (@value $name:ident = $value:expr) => { $value };
+}
+
+/// What can be written to the journal: a record itself, or a loop's own symptoms and decisions.
+pub trait Recordable {
+    /// The record.
+    fn record(&self) -> Record;
+}
+
+impl Recordable for Record {
+    fn record(&self) -> Record {
+        *self
+    }
+}
+
+/// The phase of a loop that left a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// What the analysis found.
+    Symptom,
+    /// What was planned.
+    Decision,
+    /// What was done.
+    Effect,
+}
+
+/// The number of a record in the run's journal, for what follows from it; the default one stands for no record.
+///
+/// A message carries the cause that its sender had ([`Header::cause`](crate::Header)); a loop that acts on it says so with
+/// [`Context::because`](crate::Context::because). So a chain leads from what a robot did back to what it heard, and from there to why
+/// another robot said it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Cause(pub u64);
