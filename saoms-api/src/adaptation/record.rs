@@ -61,22 +61,23 @@ const VALUES: usize = 6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
     text: &'static str,
-    names: &'static [&'static str],
+    /// The names of the values, each with a comma behind it.
+    names: &'static str,
     values: [Value; VALUES],
 }
 
 impl Record {
-    /// For [`record!`](crate::record): a text with `{name}` where a value goes, the names, and their values in the same order.
+    /// For [`record!`](crate::record): a text with `{name}` where a value goes, the names with a comma behind each, and their values in the
+    /// same order; what is beyond six values is left out.
     #[doc(hidden)]
     #[must_use]
-    pub fn new<const N: usize>(
-        text: &'static str,
-        names: &'static [&'static str; N],
-        values: [Value; N],
-    ) -> Record {
-        const { assert!(N <= VALUES, "a record holds at most 6 values") };
+    pub const fn new<const N: usize>(text: &'static str, names: &'static str, values: [Value; N]) -> Record {
         let mut all = [Value::Bool(false); VALUES];
-        all[..N].copy_from_slice(&values);
+        let mut place = 0;
+        while place < N && place < VALUES {
+            all[place] = values[place];
+            place += 1;
+        }
         Record { text, names, values: all }
     }
 
@@ -85,9 +86,15 @@ impl Record {
         self.text
     }
 
+    /// The names of the values, with a comma behind each.
+    #[expect(dead_code, reason = "the boundary to plugins carries them")]
+    pub(crate) const fn names(&self) -> &'static str {
+        self.names
+    }
+
     /// The values by name.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, Value)> {
-        self.names.iter().copied().zip(self.values)
+        self.names.split_terminator(',').zip(self.values)
     }
 }
 
@@ -110,13 +117,14 @@ impl fmt::Display for Record {
 /// Makes a [`Record`]: a text with `{name}` where a value goes, then the values, as `name` or `name = expression`.
 #[macro_export]
 macro_rules! record {
-    ($text:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {
+    ($text:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {{
+        const _: () = ::core::assert!((&[$(stringify!($name)),*] as &[&str]).len() <= 6, "a record holds at most 6 values");
         $crate::Record::new(
             $text,
-            &[$(stringify!($name)),*],
+            concat!($(stringify!($name), ","),*),
             [$($crate::Value::from($crate::record!(@value $name $(= $value)?))),*],
         )
-    };
+    }};
     (@value $name:ident) => { $name };
     (@value $name:ident = $value:expr) => { $value };
 }
