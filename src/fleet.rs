@@ -5,7 +5,7 @@ use std::io::IsTerminal;
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json};
-use saoms_core::load::{load_file, read};
+use saoms_core::load::{load_file, read, read_values};
 use saoms_core::registry::Registry;
 use saoms_core::source::Sources;
 
@@ -32,7 +32,11 @@ pub(crate) fn checked(arguments: &FleetArguments) -> Checked {
     let mut composites = Vec::new();
     for path in &arguments.files {
         let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
-        composites.extend(file.and_then(|file| load_file(file, &sources, &mut diagnostics)));
+        let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
+            continue;
+        };
+        read_values(&mut composite, arguments.max_size, &mut sources, &mut diagnostics);
+        composites.push(composite);
     }
     let assembly = check(&composites, &registry, &settings, &sources, &mut diagnostics);
     Checked { assembly, sources, diagnostics: diagnostics.into_sorted() }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, human};
-use saoms_core::load::{MAX_SIZE, load_file, read};
+use saoms_core::load::{MAX_SIZE, load_file, read, read_values};
 use saoms_core::registry::Registry;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Quiet, Settings};
@@ -91,7 +91,12 @@ impl Fleet {
                 Composite::File(path) => read(path, MAX_SIZE, &mut sources, &mut diagnostics),
                 Composite::Text(text) => Some(sources.add("text.composite", text.trim_start())),
             };
-            composites.extend(file.and_then(|file| load_file(file, &sources, &mut diagnostics)));
+            let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics))
+            else {
+                continue;
+            };
+            read_values(&mut composite, MAX_SIZE, &mut sources, &mut diagnostics);
+            composites.push(composite);
         }
         let assembly = check(&composites, &registry, &settings, &sources, &mut diagnostics);
         (assembly, sources, diagnostics.into_sorted())

@@ -152,11 +152,6 @@ fn value<'a>(
     if let Some(source) = property.source() {
         found = parameters.resolve(member.composite, source, report)?;
         used = Use { property: source.location, source: Some(source.location) };
-    } else if let Some(file) = property.file() {
-        let message = "values from files are not supported yet: `file` names one";
-        let one = Diagnostic::new(&codes::NOT_SUPPORTED_YET, file.location, message);
-        report.push(one.help("write the value in the composite"));
-        return Err(());
     }
     if found.0.is_empty() {
         // A source without a value leaves what stands in the property itself, as SCA says.

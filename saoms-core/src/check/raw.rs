@@ -60,8 +60,8 @@ impl<'a> Piece<'a> {
     }
 }
 
-/// The values that a property gives directly, in one of three ways: the attribute `value`, what is inside, or elements
-/// `value`. Two ways at once are reported.
+/// The values that a property gives directly, in one of four ways: the attribute `value`, what is inside, elements
+/// `value`, or a file. Two ways at once are reported.
 pub(super) fn raw<'a>(
     property: &'a Property,
     document: &'a Document,
@@ -87,14 +87,25 @@ pub(super) fn raw<'a>(
         let elements = property.content().iter().map(|id| document.element(*id)).collect();
         ways.push((document.element(*first).name_location(), Raw(vec![Piece::Elements(elements)])));
     }
+    if let Some(file) = property.file() {
+        let Some(value) = property.from_file() else {
+            // As a rule it was reported by who tried to read it.
+            if !report.has_errors() {
+                let message = "the file was not read";
+                report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, message));
+            }
+            return Err(());
+        };
+        ways.push((file.location, Raw::one(value)));
+    }
     let mut ways = ways.into_iter();
     let Some((first, raw)) = ways.next() else { return Ok(Raw(Vec::new())) };
     if let Some((second, _)) = ways.next() {
         let message = format!("the property {} is given a value in two ways", quoted(&property.name));
         report.push(
-            Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message)
-                .label(first, "the other one")
-                .help("write it as text inside, as the attribute `value`, or as `<value>` elements"),
+            Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other one").help(
+                "write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
+            ),
         );
         return Err(());
     }

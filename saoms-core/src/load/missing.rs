@@ -10,8 +10,8 @@ const MOST: usize = 10_000;
 /// Names that are offered.
 const OFFERED: usize = 3;
 
-/// Help for a path that does not exist.
-pub(super) fn help(path: &Path) -> Option<String> {
+/// Help for a path that does not exist; files with the ending are shown where no name is alike.
+pub(super) fn help(path: &Path, ending: Option<&str>) -> Option<String> {
     let parent = path.parent()?;
     let folder = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
     if !folder.is_dir() {
@@ -35,16 +35,20 @@ pub(super) fn help(path: &Path) -> Option<String> {
     if !near.is_empty() {
         return Some(format!("there is {}", listed(&near, parent)));
     }
-    let composites: Vec<&str> = all.filter(|name| name.ends_with(".composite")).take(OFFERED).collect();
-    (!composites.is_empty()).then(|| format!("the folder has {}", listed(&composites, parent)))
+    let likely: Vec<&str> = all.filter(|name| ends_with(name, ending)).take(OFFERED).collect();
+    (!likely.is_empty()).then(|| format!("the folder has {}", listed(&likely, parent)))
 }
 
-/// The composites in a directory that was given in place of a file.
-pub(super) fn inside(directory: &Path) -> Option<String> {
+/// Files with the ending in a directory that was given in place of one.
+pub(super) fn inside(directory: &Path, ending: Option<&str>) -> Option<String> {
     let names = names(directory);
-    let composites: Vec<&str> =
-        names.iter().map(String::as_str).filter(|name| name.ends_with(".composite")).take(OFFERED).collect();
-    (!composites.is_empty()).then(|| format!("it has {}", listed(&composites, directory)))
+    let likely: Vec<&str> =
+        names.iter().map(String::as_str).filter(|name| ends_with(name, ending)).take(OFFERED).collect();
+    (!likely.is_empty()).then(|| format!("it has {}", listed(&likely, directory)))
+}
+
+fn ends_with(name: &str, ending: Option<&str>) -> bool {
+    ending.is_some_and(|ending| name.ends_with(ending))
 }
 
 fn listed(names: &[&str], shown_as: &Path) -> String {

@@ -2,7 +2,7 @@
 //!
 //! [`load`] reads a file and makes a [`Composite`] of it. All faults of the file are reported in one run; those behind
 //! the first that makes it ill-formed XML are not, since what is meant there cannot be known. Nothing beyond the one
-//! file is looked at.
+//! file is looked at; [`read_values`] reads those that properties take their values from.
 
 mod attributes;
 mod children;
@@ -16,22 +16,27 @@ mod read;
 mod root;
 #[cfg(test)]
 mod tests;
+mod values;
 mod vocabulary;
 
 use std::path::Path;
 use std::sync::Arc;
 
 pub use read::{MAX_SIZE, read};
+pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Composite, Property, Reference, Service, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
 
-/// Reads the composite in the file `path`, of at most [`MAX_SIZE`] bytes; see [`load_file`].
+/// Reads the composite in the file `path` and the files of its values, each of at most [`MAX_SIZE`] bytes; see [`load_file`]
+/// and [`read_values`].
 pub fn load(path: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
     let file = read(path, MAX_SIZE, sources, diagnostics)?;
-    load_file(file, sources, diagnostics)
+    let mut composite = load_file(file, sources, diagnostics)?;
+    read_values(&mut composite, MAX_SIZE, sources, diagnostics);
+    Some(composite)
 }
 
 /// Makes the model of a text that was read before. `None` when the text is no well-formed XML with a `composite` as its

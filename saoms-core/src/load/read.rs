@@ -30,11 +30,11 @@ pub fn read(
         Ok(bytes) => bytes,
         Err(failure) => {
             let file = sources.add(name, "");
-            diagnostics.push(failure.diagnostic(path, max_size, start_of(file)));
+            diagnostics.push(failure.diagnostic(path, max_size, start_of(file), &COMPOSITE));
             return None;
         }
     };
-    match text(path, bytes) {
+    match text(path, bytes, &COMPOSITE) {
         Ok(text) => {
             let is_empty = text.trim_start_matches('\u{feff}').trim().is_empty();
             let file = sources.add(name, text);
@@ -54,6 +54,19 @@ pub fn read(
     }
 }
 
+/// Reads the text of a file of at most `max_size` bytes that is named at a place.
+///
+/// # Errors
+/// What to say there when there is no such file or it is no text in UTF-8.
+pub(super) fn value(path: &Path, max_size: u64, named: Location) -> Result<String, Diagnostic> {
+    let max_size = max_size.min(LIMIT);
+    let bytes = bytes(path, max_size).map_err(|failure| failure.diagnostic(path, max_size, named, &VALUE))?;
+    text(path, bytes, &VALUE).map_err(|wrong| {
+        let Wrong { code, message, help, .. } = *wrong;
+        Diagnostic::new(code, named, message).help(help)
+    })
+}
+
 /// The diagnostic for a file of nothing, or of nothing but white space.
 pub(super) fn empty(file: FileId) -> Diagnostic {
     Diagnostic::new(&codes::FILE_EMPTY, start_of(file), "the file is empty")
@@ -64,6 +77,19 @@ fn start_of(file: FileId) -> Location {
     Span::empty(0).in_file(file)
 }
 
+/// What a file is to be.
+struct Expected {
+    kind: &'static str,
+    help: &'static str,
+    /// How the names of such files end, if they have that in common.
+    ending: Option<&'static str>,
+}
+
+const COMPOSITE: Expected =
+    Expected { kind: "XML text", help: "a composite is an XML text in UTF-8", ending: Some(".composite") };
+const VALUE: Expected =
+    Expected { kind: "text", help: "the value of a property is a text in UTF-8", ending: None };
+
 /// Why there are no bytes.
 enum Failure {
     Directory,
@@ -73,7 +99,7 @@ enum Failure {
 }
 
 impl Failure {
-    fn diagnostic(self, path: &Path, max_size: u64, location: Location) -> Diagnostic {
+    fn diagnostic(self, path: &Path, max_size: u64, location: Location, expected: &Expected) -> Diagnostic {
         match self {
             Self::Directory => {
                 let one = Diagnostic::new(
@@ -81,7 +107,7 @@ impl Failure {
                     location,
                     "a directory, where a file is expected",
                 );
-                with_help(one, missing::inside(path))
+                with_help(one, missing::inside(path, expected.ending))
             }
             Self::TooLarge(size) => {
                 let message = match size {
@@ -93,7 +119,7 @@ impl Failure {
             }
             Self::Io(error) if error.kind() == io::ErrorKind::NotFound => {
                 let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
-                with_help(one, missing::help(path))
+                with_help(one, missing::help(path, expected.ending))
             }
             Self::Io(error) if error.kind() == io::ErrorKind::NotADirectory => {
                 let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
@@ -144,7 +170,7 @@ struct Wrong {
     help: String,
 }
 
-fn text(path: &Path, bytes: Vec<u8>) -> Result<String, Box<Wrong>> {
+fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<Wrong>> {
     let whole = |code, message: String, help: String| {
         Box::new(Wrong { code, shown: String::new(), at: 0, len: 0, message, help })
     };
@@ -154,12 +180,12 @@ fn text(path: &Path, bytes: Vec<u8>) -> Result<String, Box<Wrong>> {
         return Err(whole(&codes::FILE_ENCODING, message, convert(name)));
     }
     if let Some(what) = encoding::of_another_kind(&bytes) {
-        let message = format!("the file is {what}, and no XML text");
-        return Err(whole(&codes::FILE_BINARY, message, "a composite is an XML text".to_owned()));
+        let message = format!("the file is {what}, and no {}", expected.kind);
+        return Err(whole(&codes::FILE_BINARY, message, expected.help.to_owned()));
     }
     if let Some(at) = bytes.iter().position(|&byte| byte == 0) {
         let message = format!("the file is binary: byte {at} is zero");
-        return Err(whole(&codes::FILE_BINARY, message, "a composite is an XML text in UTF-8".to_owned()));
+        return Err(whole(&codes::FILE_BINARY, message, expected.help.to_owned()));
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();

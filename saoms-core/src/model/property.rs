@@ -37,6 +37,8 @@ pub struct PropertyDetails {
     pub source: Option<Text>,
     /// `file`: a file that holds the value.
     pub file: Option<Text>,
+    /// What that file holds; `None` until [`read_values`](crate::load::read_values), and where it cannot be read.
+    pub from_file: Option<Text>,
     /// Its `<value>` elements.
     pub values: Vec<PropertyValue>,
     /// Other elements inside: a complex value.
@@ -85,6 +87,11 @@ impl Property {
     /// `file`: a file that holds the value.
     pub fn file(&self) -> Option<&Text> {
         self.details.as_ref()?.file.as_ref()
+    }
+
+    /// What the file that `file` names holds, once it is read.
+    pub fn from_file(&self) -> Option<&Text> {
+        self.details.as_ref()?.from_file.as_ref()
     }
 
     /// Its `<value>` elements.

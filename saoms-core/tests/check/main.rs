@@ -4,6 +4,7 @@
 
 mod assemblies;
 mod classes;
+mod files;
 mod mutations;
 mod names;
 mod parameters;

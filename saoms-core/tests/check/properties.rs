@@ -323,28 +323,25 @@ fn values_in_two_ways_and_complex_ones() {
     expect![[r#"
         3:34-35 error S3012: the property `speed` is given a value in two ways
           3:31-32 the other one
-          help: write it as text inside, as the attribute `value`, or as `<value>` elements
+          help: write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
         4:42-43 error S3012: the property `number` is given a value in two ways
           4:26-31 the other one
-          help: write it as text inside, as the attribute `value`, or as `<value>` elements
+          help: write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
         5:25-26 error S3007: the property `grace` has elements inside: expected a duration (in ms, or with a unit: ns, us, ms, s, min, h)
           help: the default is `10ms`
-        6:30-39 error S3003: values from files are not supported yet: `file` names one
-          help: write the value in the composite
-        7:38-39 error S3007: property `charger.x`: `a` is not a whole number: expected a whole number from -2147483648 to 2147483647
-        7:55-57 error S3008: property `charger.y`: `11` is out of range: expected a whole number from 0 to 10
+        6:38-39 error S3007: property `charger.x`: `a` is not a whole number: expected a whole number from -2147483648 to 2147483647
+        6:55-57 error S3008: property `charger.y`: `11` is out of range: expected a whole number from 0 to 10
           help: the default is `0`
-        7:62-63 error S3005: the property `charger` has two parts `y`
-          7:44-45 the first
+        6:62-63 error S3005: the property `charger` has two parts `y`
+          6:44-45 the first
           help: `charger`: Where it charges
-        7:79-80 error S3004: the property `charger` has no part `z`
+        6:79-80 error S3004: the property `charger` has no part `z`
           help: its parts are `x` and `y`
           help: `charger`: Where it charges
     "#]].assert_eq(&faults(&robot(
         r#"<property name="speed" value="1">2</property>
 <property name="number"><value>1</value><x xmlns="urn:x">1</x></property>
 <property name="grace"><x xmlns="urn:x">1</x></property>
-<property name="delay" file="delay.xml"/>
 <property name="charger"><x xmlns="">a</x><y xmlns="">11</y><y xmlns="">1</y><z xmlns="">1</z></property>"#,
     )));
     expect![[r#"

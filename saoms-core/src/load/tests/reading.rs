@@ -40,7 +40,7 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     );
     says(
         b"PK\x03\x04....",
-        "1:1 [] error S0006 the file is a ZIP or JAR archive, and no XML text\na composite is an XML text",
+        "1:1 [] error S0006 the file is a ZIP or JAR archive, and no XML text\na composite is an XML text in UTF-8",
     );
     let utf16: Vec<u8> = "\u{feff}<a/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
     let converted = "convert it: `iconv -f UTF-16LE -t UTF-8 DIR/f.composite`";

@@ -1,0 +1,111 @@
+//! Values from files beside the composite.
+
+use std::fs;
+use std::path::Path;
+
+use expect_test::expect;
+use saoms_api::PropertyValue;
+use saoms_core::assembly::Assembly;
+use saoms_core::check::check;
+use saoms_core::diagnostic::Diagnostics;
+use saoms_core::load::{MAX_SIZE, load_file, read, read_values};
+use saoms_core::source::Sources;
+
+use crate::classes::registry;
+use crate::properties::robot;
+use crate::support::{fleet, shown};
+
+/// Writes the composite and files beside it, checks it from another folder, and gives what is wrong without that folder's name.
+fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> (Option<Assembly>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in beside {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+    let path = folder.path().join("fleet.composite");
+    fs::write(&path, fleet(inside)).unwrap();
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
+    let mut composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    read_values(&mut composite, max_size, &mut sources, &mut diagnostics);
+    let assembly = check(&[composite], &registry(), &[], &sources, &mut diagnostics);
+    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+    (assembly, without(&found, folder.path()))
+}
+
+fn without(text: &str, folder: &Path) -> String {
+    text.replace(&format!("{}/", folder.display()), "")
+}
+
+fn value(assembly: &Assembly, name: &str) -> PropertyValue {
+    let values = &assembly.components[0].values;
+    values.iter().find(|(given, _)| given == name).unwrap().1.clone()
+}
+
+#[test]
+fn a_value_is_what_its_file_holds() {
+    let inside = robot(
+        "<property name=\"speed\" file=\"values/speed\"/>
+<property name=\"number\"\n file=\" number.txt \"/>
+<property name=\"grace\" file=\"grace.txt\"/>",
+    );
+    let files: [(&str, &[u8]); 3] =
+        [("grace.txt", "\u{feff}  20ms\r\n".as_bytes()), ("number.txt", b"7"), ("values/speed", b"\n1.5")];
+    let (assembly, found) = checked(&inside, &files, MAX_SIZE);
+    assert_eq!(found, "");
+    let assembly = assembly.unwrap();
+    assert_eq!(value(&assembly, "grace"), "20ms".into());
+    assert_eq!(value(&assembly, "number"), "7".into());
+    assert_eq!(value(&assembly, "speed"), "1.5".into());
+}
+
+#[test]
+fn a_fault_in_a_file_is_shown_in_that_file() {
+    let inside =
+        robot("<property name=\"speed\" file=\"speed.txt\"/>\n<property name=\"grace\" file=\"empty\"/>");
+    let (_, found) = checked(&inside, &[("speed.txt", b"\n  fast"), ("empty", b" \n")], MAX_SIZE);
+    expect![[r#"
+        speed.txt:2:3-7 error S3007: property `speed`: `fast` is not a number: expected a number from 0.0 to 2.5 [m/s]
+          help: `speed`: How fast it drives; the default is `1.0`
+        empty:1:1-1 error S3010: property `grace`: the value is empty: expected a duration (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: the default is `10ms`
+    "#]]
+    .assert_eq(&found);
+}
+
+#[test]
+fn files_that_cannot_be_read_are_reported_where_they_are_named() {
+    let inside = robot(
+        "<property name=\"speed\" file=\"sped.txt\"/>
+<property name=\"stops\" file=\"stops\"/>
+<property name=\"colour\" file=\"colour\"/>
+<property name=\"awake\" file=\"awake\"/>
+<property name=\"grace\" file=\"grace\">20ms</property>
+<property name=\"delay\" file=\"large\"/>",
+    );
+    let files: [(&str, &[u8]); 6] = [
+        ("speed.txt", b"1"),
+        ("stops/first", b"1"),
+        ("colour", b"r\xe9d"),
+        ("awake", b"\x7fELF\x02\x01\x01\0\0\0"),
+        ("grace", b"20ms"),
+        ("large", &[b'1'; 60]),
+    ];
+    let (_, found) = checked(&inside, &files, 50);
+    expect![[r#"
+        3:30-38 error S0001: there is no such file
+          help: there is `speed.txt`
+        4:30-35 error S0002: a directory, where a file is expected
+        5:31-37 error S0007: the byte 0xE9 here is no UTF-8
+          help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`
+        6:30-35 error S0006: the file is a program or library, and no text
+          help: the value of a property is a text in UTF-8
+        7:30-35 error S3012: the property `grace` is given a value in two ways
+          7:37-41 the other one
+          help: write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
+        8:30-35 error S0004: the file has 60 bytes, and the limit is 50 bytes
+          help: the limit is set with `--max-size`
+    "#]]
+    .assert_eq(&found);
+}
