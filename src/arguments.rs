@@ -20,6 +20,12 @@ Exit codes:
   2    the input is wrong: a composite, a value, the command line, a place where no report can be; nothing was started
   130  ended by Ctrl-C";
 
+const FMT_EXIT_CODES: &str = "\
+Exit codes:
+  0  every file is formatted now; with --check, was before
+  1  with --check, a file is not formatted (its name is on standard output); else, a file could not be written
+  2  a file cannot be read or is not well-formed XML (the diagnostics say where); it was left as it is";
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Check composites and run the fleet that they describe together
@@ -28,6 +34,9 @@ pub(crate) enum Command {
     /// Check composites without running anything
     #[command(after_help = EXIT_CODES)]
     Check(CheckArguments),
+    /// Write composites in one layout: indentation, attributes, blank lines; order, comments and text stay
+    #[command(after_help = FMT_EXIT_CODES)]
+    Fmt(FmtArguments),
     /// List the component classes, or describe one: properties, topics, services, references
     Components(ComponentsArguments),
 }
@@ -114,6 +123,25 @@ pub(crate) struct RunArguments {
 pub(crate) enum ConsoleStyle {
     Plain,
     Classic,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FmtArguments {
+    /// Files to format in place; `-` is from standard input to standard output
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Write nothing, and list the files that are not formatted
+    #[arg(long)]
+    pub(crate) check: bool,
+
+    /// Columns that a start tag has to fit into; else each attribute but the first gets a line
+    #[arg(long, value_name = "COLUMNS", default_value_t = saoms_core::format::WIDTH)]
+    pub(crate) width: usize,
+
+    /// Refuse larger files
+    #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
+    pub(crate) max_size: u64,
 }
 
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ mod check;
 mod components;
 mod console;
 mod fleet;
+mod fmt;
 mod output;
 mod run;
 mod summary;
@@ -24,7 +25,7 @@ use crate::arguments::{Arguments, Command};
 enum Exit {
     /// Everything asked for was done.
     Done = 0,
-    /// The run failed.
+    /// The run failed, or what was to be written could not be, or was found not to be as asked.
     Failed = 1,
     /// The input is wrong and nothing was started.
     WrongInput = 2,
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Fmt(arguments) => fmt::fmt(&arguments),
         Command::Components(arguments) => components::components(&arguments),
     };
     ExitCode::from(exit as u8)

@@ -11,6 +11,7 @@ const CORE: &[&str] = &[
     "diagnostic",
     "xml",
     "model",
+    "format",
     "load",
     "registry",
     "assembly",

@@ -5,6 +5,7 @@ pub mod assembly;
 pub mod bus;
 pub mod check;
 pub mod diagnostic;
+pub mod format;
 pub mod load;
 pub mod model;
 pub mod registry;

@@ -22,7 +22,7 @@ mod vocabulary;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use read::{MAX_SIZE, read};
+pub use read::{MAX_SIZE, read, read_from};
 pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};

@@ -24,9 +24,31 @@ pub fn read(
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<FileId> {
-    let name = path.display().to_string();
     let max_size = max_size.min(LIMIT);
-    let bytes = match bytes(path, max_size) {
+    add(path, bytes(path, max_size), max_size, sources, diagnostics)
+}
+
+/// Reads the text of `input` as [`read`] does that of a file; `name` is what diagnostics call it.
+pub fn read_from(
+    input: impl Read,
+    name: &str,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<FileId> {
+    let max_size = max_size.min(LIMIT);
+    add(Path::new(name), limited(input, Vec::new(), max_size), max_size, sources, diagnostics)
+}
+
+fn add(
+    path: &Path,
+    bytes: Result<Vec<u8>, Failure>,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<FileId> {
+    let name = path.display().to_string();
+    let bytes = match bytes {
         Ok(bytes) => bytes,
         Err(failure) => {
             let file = sources.add(name, "");
@@ -148,10 +170,13 @@ fn bytes(path: &Path, max_size: u64) -> Result<Vec<u8>, Failure> {
     if about.len() > max_size {
         return Err(Failure::TooLarge(Some(about.len())));
     }
-    let mut file = File::open(path).map_err(Failure::Io)?;
-    let mut bytes = Vec::with_capacity(about.len() as usize + 1);
-    // A file can grow meanwhile, and devices and pipes have no length.
-    (&mut file).take(max_size + 1).read_to_end(&mut bytes).map_err(Failure::Io)?;
+    let file = File::open(path).map_err(Failure::Io)?;
+    limited(file, Vec::with_capacity(about.len() as usize + 1), max_size)
+}
+
+/// A file can grow while it is read, and devices and pipes have no length.
+fn limited(input: impl Read, mut bytes: Vec<u8>, max_size: u64) -> Result<Vec<u8>, Failure> {
+    input.take(max_size + 1).read_to_end(&mut bytes).map_err(Failure::Io)?;
     if bytes.len() as u64 > max_size {
         return Err(Failure::TooLarge(None));
     }

@@ -142,6 +142,12 @@ impl<'a> Element<'a> {
         all.filter(|one| one.namespace == XMLNS).map(move |raw| Attribute { document, raw })
     }
 
+    /// Its attributes and its declarations of namespaces, in the order in which they are written.
+    pub fn written_attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        let document = self.document;
+        self.raw_attributes().iter().map(move |raw| Attribute { document, raw })
+    }
+
     /// The attribute of this name in no namespace.
     pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
         self.attributes().find(|one| one.raw.namespace == NO_NAMESPACE && one.name() == name)

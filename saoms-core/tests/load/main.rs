@@ -4,6 +4,7 @@
 
 mod corpus;
 mod files;
+mod format;
 mod oracle;
 mod places;
 mod wellformed;
