@@ -3,7 +3,8 @@ use std::time::Duration;
 
 use crate::{
     CallError, Cause, Chance, DynLoop, Failure, Header, Loops, Message, Messages, Phase, Publisher, Record,
-    Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, TopicDeclaration, Work,
+    Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, TopicDeclaration, Value,
+    Work,
 };
 
 /// How much a log line matters.
@@ -264,6 +265,10 @@ pub trait Host {
     fn cause(&self) -> Cause;
     /// Writes to the journal what the present loop saw, decided or did.
     fn journal(&mut self, phase: Phase, record: &Record);
+    /// Writes to the journal that the present loop changed an entry of the knowledge.
+    fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
+        let _ = (entry, before, after);
+    }
     /// See [`Context::log`].
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>);
     /// See [`Context::console`].

@@ -3,6 +3,8 @@ use std::fmt;
 /// A value in a [`Record`] or in an entry of a component's knowledge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
+    /// No value: an optional entry that has none.
+    Nothing,
     /// True or false.
     Bool(bool),
     /// A whole number.
@@ -18,6 +20,7 @@ pub enum Value {
 impl fmt::Display for Value {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Value::Nothing => formatter.write_str("none"),
             Value::Bool(true) => formatter.write_str("yes"),
             Value::Bool(false) => formatter.write_str("no"),
             Value::Integer(value) => value.fmt(formatter),
@@ -43,6 +46,23 @@ from!(bool => Bool, i64 => Integer, i32 => Integer, u32 => Integer, u16 => Integ
 impl From<(i32, i32)> for Value {
     fn from((x, y): (i32, i32)) -> Value {
         Value::Pair(x, y)
+    }
+}
+
+impl<T: Into<Value>> From<Option<T>> for Value {
+    fn from(value: Option<T>) -> Value {
+        value.map_or(Value::Nothing, Into::into)
+    }
+}
+
+impl Value {
+    /// Whether it is the very same value: as `==`, but a number that is none (NaN) is the same as itself.
+    #[must_use]
+    pub fn is_same(self, other: Value) -> bool {
+        match (self, other) {
+            (Value::Number(one), Value::Number(other)) => one.to_bits() == other.to_bits() || one == other,
+            (one, other) => one == other,
+        }
     }
 }
 
