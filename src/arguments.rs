@@ -52,10 +52,6 @@ pub(crate) struct FleetArguments {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(crate) settings: Vec<String>,
 
-    /// How diagnostics are shown: for people on standard error, or as one JSON object on standard output (on standard error once a fleet runs)
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    pub(crate) format: Format,
-
     /// Refuse larger files
     #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
     pub(crate) max_size: u64,
@@ -67,16 +63,31 @@ pub(crate) enum Format {
     Json,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CheckFormat {
+    Human,
+    Json,
+    Sarif,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
+
+    /// How diagnostics are shown: for people on standard error, or on standard output as one JSON object or as SARIF 2.1.0
+    #[arg(long, value_enum, default_value_t = CheckFormat::Human)]
+    pub(crate) format: CheckFormat,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
+
+    /// How diagnostics are shown: for people on standard error, or as one JSON object on standard output (on standard error once a fleet runs)
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
 
     /// End the run after this time (a bare number is milliseconds; units us, ms, s, min, h)
     #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]

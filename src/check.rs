@@ -3,15 +3,16 @@
 use saoms_core::diagnostic::Severity;
 
 use crate::Exit;
-use crate::arguments::{CheckArguments, Format};
+use crate::arguments::{CheckArguments, CheckFormat};
 use crate::fleet::checked;
 use crate::output::{counted, eprint, print};
 
 pub(crate) fn check(arguments: &CheckArguments) -> Exit {
     let outcome = checked(&arguments.fleet);
-    match arguments.fleet.format {
-        Format::Json => print(&outcome.json()),
-        Format::Human => {
+    match arguments.format {
+        CheckFormat::Json => print(&outcome.json()),
+        CheckFormat::Sarif => print(&outcome.sarif()),
+        CheckFormat::Human => {
             eprint(&outcome.human(Severity::Note));
             let errors = counted(outcome.count(Severity::Error), "error");
             let warnings = counted(outcome.count(Severity::Warning), "warning");

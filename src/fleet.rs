@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Setting, check};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::load::{load_file, read, read_values};
 use saoms_core::registry::Registry;
 use saoms_core::source::Sources;
@@ -53,6 +53,11 @@ impl Checked {
     /// All diagnostics as one JSON object.
     pub(crate) fn json(&self) -> String {
         format!("{:#}\n", json(&self.diagnostics, &self.sources))
+    }
+
+    /// All diagnostics as a SARIF log.
+    pub(crate) fn sarif(&self) -> String {
+        format!("{:#}\n", sarif(&self.diagnostics, &self.sources, env!("CARGO_PKG_VERSION")))
     }
 
     /// How many diagnostics are of this severity.

@@ -62,14 +62,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 fn assembly(arguments: &RunArguments) -> Option<Assembly> {
     let outcome = checked(&arguments.fleet);
     // Standard output belongs to the run, unless there is none.
-    match (arguments.fleet.format, &outcome.assembly) {
+    match (arguments.format, &outcome.assembly) {
         (Format::Json, None) => print(&outcome.json()),
         (Format::Json, Some(_)) => eprint(&outcome.json()),
         (Format::Human, _) => {
             eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
         }
     }
-    if outcome.assembly.is_none() && arguments.fleet.format == Format::Human {
+    if outcome.assembly.is_none() && arguments.format == Format::Human {
         eprint(&format!("\n{}: nothing was started\n", counted(outcome.count(Severity::Error), "error")));
     }
     outcome.assembly

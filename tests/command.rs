@@ -346,3 +346,22 @@ fn two_robots_with_one_number_do_not_start() {
     assert_eq!(code(&output), 1, "{}", stdout(&output));
     assert!(stderr(&output).contains("robots `A7` and `B7` both have the number 7"), "{}", stderr(&output));
 }
+
+#[test]
+fn check_gives_code_scanning_a_log() {
+    let text = ONE_ROBOT.replacen("name=\"period\"", "name=\"perod\"", 1);
+    let path = file(&folder("sarif"), "one.composite", text);
+    let output = saoms(&["check", &path, "--format", "sarif"]);
+    assert_eq!((code(&output), stderr(&output)), (2, String::new()));
+    let log: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let results = log["runs"][0]["results"].as_array().unwrap();
+    let unknown = results.iter().find(|one| one["ruleId"] == "S3004").unwrap();
+    let place = &unknown["locations"][0]["physicalLocation"];
+    assert_eq!(place["artifactLocation"]["uri"], format!("file://{path}"));
+    assert_eq!(place["region"]["startLine"], 5);
+    let replacement = &unknown["fixes"][0]["artifactChanges"][0]["replacements"][0];
+    assert_eq!(replacement["insertedContent"]["text"], "period");
+    let output = saoms(&["check", "composites/airport.composite", "--format", "sarif"]);
+    let log: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!((code(&output), log["runs"][0]["results"].as_array().unwrap().len()), (0, 0));
+}

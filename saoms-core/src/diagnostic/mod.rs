@@ -10,6 +10,7 @@ mod human;
 mod json;
 mod nearest;
 mod quoted;
+mod sarif;
 #[cfg(test)]
 mod tests;
 mod window;
@@ -20,6 +21,7 @@ pub use human::human;
 pub use json::json;
 pub use nearest::{nearest, nearest_few};
 pub use quoted::quoted;
+pub use sarif::sarif;
 
 use crate::source::Location;
 

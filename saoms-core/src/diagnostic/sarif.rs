@@ -1,0 +1,138 @@
+//! Diagnostics for code scanning: SARIF.
+
+use serde_json::{Map, Value, json};
+
+use super::{Code, Diagnostic, Edit, Suggestion, codes};
+use crate::source::{FileId, Location, Sources};
+
+/// A log in the Static Analysis Results Interchange Format (OASIS SARIF 2.1.0), as code scanning services and editors
+/// read it: one run, with every code as a rule and each suggestion as a fix.
+///
+/// `version` is that of the program. Paths become URIs: relative ones stay relative to where the program ran.
+pub fn sarif(diagnostics: &[Diagnostic], sources: &Sources, version: &str) -> Value {
+    let rules: Vec<Value> = codes::ALL.iter().map(|code| rule(code)).collect();
+    let results: Vec<Value> = diagnostics.iter().map(|one| result(one, sources)).collect();
+    json!({
+        "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
+        "version": "2.1.0",
+        "runs": [{
+            "tool": { "driver": { "name": "saoms", "semanticVersion": version, "rules": rules } },
+            "columnKind": "unicodeCodePoints",
+            "results": results,
+        }],
+    })
+}
+
+fn rule(code: &Code) -> Value {
+    let anchor = format!("docs/diagnostics.md#{}-{}", code.id.to_lowercase(), code.name);
+    let mut rule = json!({
+        "id": code.id,
+        "name": code.name,
+        "shortDescription": message(code.meaning),
+        "fullDescription": message(code.meaning),
+        "help": message(&format!("{} An example of it is in {anchor}.", code.meaning)),
+        "defaultConfiguration": { "level": code.severity.name() },
+    });
+    if let Some(sca) = code.rule {
+        rule["properties"] = json!({ "tags": [sca] });
+    }
+    rule
+}
+
+fn result(one: &Diagnostic, sources: &Sources) -> Value {
+    let suggested = one.suggestions.iter().map(|suggestion| &suggestion.description);
+    let lines = [&one.message].into_iter().chain(suggested).chain(&one.help);
+    let text = lines.map(String::as_str).collect::<Vec<_>>().join("\n");
+    let mut result = json!({
+        "ruleId": one.code.id,
+        "level": one.severity.name(),
+        "message": message(&text),
+        "locations": [{ "physicalLocation": place(one.location, sources) }],
+    });
+    if let Some(index) = codes::ALL.iter().position(|code| code.id == one.code.id) {
+        result["ruleIndex"] = index.into();
+    }
+    if let Some(sca) = one.rule {
+        result["properties"] = json!({ "tags": [sca] });
+    }
+    if !one.labels.is_empty() {
+        let labels = one.labels.iter();
+        let related = labels.map(|label| {
+            json!({ "physicalLocation": place(label.location, sources), "message": message(&label.text) })
+        });
+        result["relatedLocations"] = related.collect();
+    }
+    if !one.suggestions.is_empty() {
+        result["fixes"] = one.suggestions.iter().map(|suggestion| fix(suggestion, sources)).collect();
+    }
+    result
+}
+
+fn fix(suggestion: &Suggestion, sources: &Sources) -> Value {
+    let mut files: Vec<(FileId, Vec<Value>)> = Vec::new();
+    for edit in &suggestion.edits {
+        let file = edit.location.file;
+        match files.iter_mut().find(|(known, _)| *known == file) {
+            Some((_, replacements)) => replacements.push(replacement(edit, sources)),
+            None => files.push((file, vec![replacement(edit, sources)])),
+        }
+    }
+    let changes = files.into_iter().map(|(file, replacements)| {
+        json!({ "artifactLocation": artifact(file, sources), "replacements": replacements })
+    });
+    json!({ "description": message(&suggestion.description), "artifactChanges": changes.collect::<Vec<_>>() })
+}
+
+fn replacement(edit: &Edit, sources: &Sources) -> Value {
+    let mut replacement = json!({ "deletedRegion": region(edit.location, sources) });
+    if !edit.replacement.is_empty() {
+        replacement["insertedContent"] = json!({ "text": edit.replacement });
+    }
+    replacement
+}
+
+fn place(at: Location, sources: &Sources) -> Value {
+    let mut place = Map::new();
+    place.insert("artifactLocation".to_owned(), artifact(at.file, sources));
+    // A file that could not be read has no regions.
+    if !sources.get(at.file).text().is_empty() {
+        place.insert("region".to_owned(), region(at, sources));
+    }
+    place.into()
+}
+
+fn region(at: Location, sources: &Sources) -> Value {
+    let range = sources.get(at.file).range(at.span);
+    json!({
+        "startLine": range.start.line,
+        "startColumn": range.start.column,
+        "endLine": range.end.line,
+        "endColumn": range.end.column,
+    })
+}
+
+fn artifact(file: FileId, sources: &Sources) -> Value {
+    json!({ "uri": uri(sources.get(file).path()) })
+}
+
+/// A path as a URI reference (RFC 3986): absolute ones of the scheme `file`, relative ones as they are.
+fn uri(path: &str) -> String {
+    let mut uri = String::from(if path.starts_with('/') { "file://" } else { "" });
+    // A colon in the first part of a relative reference would end a scheme.
+    if path.split('/').next().is_some_and(|first| first.contains(':')) {
+        uri.push_str("./");
+    }
+    for byte in path.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-._~/!$&'()*+,;=:@".contains(&byte) {
+            uri.push(char::from(byte));
+        } else {
+            uri.push_str(&format!("%{byte:02X}"));
+        }
+    }
+    uri
+}
+
+/// A message string; braces would be placeholders (SARIF, 3.11.5).
+fn message(text: &str) -> Value {
+    json!({ "text": text.replace('{', "{{").replace('}', "}}") })
+}
