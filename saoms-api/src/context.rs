@@ -141,17 +141,33 @@ impl<'a> Context<'a> {
     }
 
     /// Tells what follows from what: the next symptom of the present loop comes from this, such as from the
-    /// [cause](Header::cause) of a message.
+    /// [cause](Header::cause) of a message. In a component without loops, all that it writes and sends from here on does, until the next
+    /// `because` or the end of the execution.
     pub fn because(&mut self, cause: Cause) {
         self.host.because(cause);
     }
 
-    /// What a message that is sent now would carry as its cause: the newest record of the present loop in this execution.
+    /// What a message that is sent now would carry as its cause: the newest record of the present loop in this execution. Where there is none
+    /// yet, what [`because`](Context::because) said, so that a component that only passes a message on keeps the chain together.
     pub fn cause(&self) -> Cause {
         self.host.cause()
     }
 
-    /// Writes to the journal what the present loop did, beyond the entries of the knowledge that it changed: those are written by
+    /// Writes to the journal what a component without loops saw: the beginning of a chain, such as an event that no other component caused, or
+    /// what it makes of a message that it named with [`because`](Context::because). What loops find is written by themselves.
+    ///
+    /// Each call is a record: write what happens, and not in each execution what goes on.
+    pub fn symptom(&mut self, record: Record) {
+        self.host.journal(Phase::Symptom, &record);
+    }
+
+    /// Writes to the journal what a component without loops decided, because of its last [`symptom`](Context::symptom). The decisions of loops
+    /// are written by themselves.
+    pub fn decision(&mut self, record: Record) {
+        self.host.journal(Phase::Decision, &record);
+    }
+
+    /// Writes to the journal what the present loop, or a component without loops, did, beyond the entries of the knowledge that it changed: those are written by
     /// themselves.
     pub fn effect(&mut self, record: Record) {
         self.host.journal(Phase::Effect, &record);
@@ -163,6 +179,10 @@ impl<'a> Context<'a> {
 
     pub(crate) fn enter_loop(&mut self, place: u32) {
         self.host.enter_loop(Some(place));
+    }
+
+    pub(crate) fn name_loop(&mut self, place: u32, name: &str) {
+        self.host.name_loop(place, name);
     }
 
     pub(crate) fn leave_loops(&mut self) {
@@ -257,6 +277,10 @@ pub trait Host {
     /// # Errors
     /// As there.
     fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure>;
+    /// The journal calls the loop at this place by this name.
+    fn name_loop(&mut self, place: u32, name: &str) {
+        let _ = (place, name);
+    }
     /// The loop at this place acts from now on, or none.
     fn enter_loop(&mut self, place: Option<u32>);
     /// See [`Context::because`].

@@ -33,7 +33,13 @@ impl Loops {
         knowledge: &mut dyn Knowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        self.loops.iter_mut().try_for_each(|named| named.instance.initialize(knowledge, context))
+        for (place, named) in self.placed() {
+            context.name_loop(place, &named.name);
+            context.enter_loop(place);
+            named.instance.initialize(knowledge, context)?;
+        }
+        context.leave_loops();
+        Ok(())
     }
 
     /// Lets all take in what arrived.
@@ -45,7 +51,12 @@ impl Loops {
         knowledge: &mut dyn Knowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        self.loops.iter_mut().try_for_each(|named| named.instance.monitor(knowledge, context))
+        for (place, named) in self.placed() {
+            context.enter_loop(place);
+            named.instance.monitor(knowledge, context)?;
+        }
+        context.leave_loops();
+        Ok(())
     }
 
     /// Lets each analyze, plan and execute.
@@ -53,12 +64,17 @@ impl Loops {
     /// # Errors
     /// The first failure of a loop.
     pub fn adapt(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        for (place, named) in self.loops.iter_mut().enumerate() {
-            context.enter_loop(u32::try_from(place).unwrap_or(u32::MAX));
+        for (place, named) in self.placed() {
+            context.enter_loop(place);
             named.instance.adapt(knowledge, context)?;
         }
         context.leave_loops();
         Ok(())
+    }
+
+    /// The loops with the numbers of their places.
+    fn placed(&mut self) -> impl Iterator<Item = (u32, &mut Named)> {
+        (0..).zip(&mut self.loops)
     }
 
     /// Ends all.
