@@ -9,7 +9,7 @@ use saoms_core::diagnostic::{Diagnostic, Diagnostics, human};
 use saoms_core::load::{MAX_SIZE, load_file, read, read_values};
 use saoms_core::registry::Registry;
 use saoms_core::report::RunReport;
-use saoms_core::schedule::{Quiet, Settings};
+use saoms_core::schedule::{Events, Quiet, Settings};
 use saoms_core::source::Sources;
 
 /// A fleet under test: one or several composites, and values for their properties.
@@ -66,12 +66,20 @@ impl Fleet {
     ///
     /// # Panics
     /// With all diagnostics when the composites have errors, and with the component's words when one does not start.
-    #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
     pub fn run(&self, seed: u64, limit: Duration) -> RunReport {
+        self.run_with(seed, limit, Arc::new(Quiet))
+    }
+
+    /// The same, and tells what happens meanwhile.
+    ///
+    /// # Panics
+    /// As [`run`](Fleet::run).
+    #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
+    pub fn run_with(&self, seed: u64, limit: Duration, events: Arc<dyn Events>) -> RunReport {
         let (assembly, sources, diagnostics) = self.checked();
         let Some(assembly) = assembly else { panic!("{}", human(&diagnostics, &sources, false)) };
         let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
-        match saoms_core::schedule::Fleet::start(assembly, settings, Arc::new(Quiet)) {
+        match saoms_core::schedule::Fleet::start(assembly, settings, events) {
             Ok(fleet) => fleet.run_to_end(),
             Err(error) => panic!("{error}"),
         }

@@ -48,7 +48,6 @@ impl Component for MasterRobot {
         let active = &self.lists.active;
         if active.len() != before {
             context.report("robots.active", i64::try_from(active.len()).unwrap_or(i64::MAX));
-            show(context, active);
         }
         for event in context.receive(&self.exceptional) {
             let charged = active.iter().filter(|robot| !robot.in_charge).count();
@@ -56,13 +55,9 @@ impl Component for MasterRobot {
                 "{event}: {} robots are active, {charged} of them not in charge",
                 active.len()
             ));
-            show(context, active);
+            let active = JavaList(active.iter());
+            context.console(format_args!("MasterRobotManagingSystem updated active robot list: {active}"));
         }
         Ok(())
     }
-}
-
-fn show(context: &mut Context<'_>, active: &[RobotList]) {
-    let active = JavaList(active.iter());
-    context.console(format_args!("MasterRobotManagingSystem updated active robot list: {active}"));
 }

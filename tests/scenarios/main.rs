@@ -1,0 +1,9 @@
+//! The scenarios of the manual's chapter 8 in virtual time: the facts of its figures, to the execution number and the battery's value.
+
+#![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, outside test functions")]
+
+mod run;
+mod scenario1;
+mod scenario2;
+mod scenario3;
+mod story;
