@@ -13,7 +13,9 @@ use std::ops::{Bound, RangeBounds};
 /// assert!((0..=10).contains(&block));
 /// assert_eq!(Chance::for_component(7, "hall/Robot001").range(0..=10), block);
 /// ```
+// Transparent: the boundary to plugins hands out the state.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[repr(transparent)]
 pub struct Chance {
     state: [u64; 4],
 }
@@ -35,6 +37,11 @@ impl Chance {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });
         Chance::new(split_mix(seed).1 ^ split_mix(hash).1.rotate_left(32))
+    }
+
+    /// The state, for the boundary to plugins.
+    pub(crate) const fn state(&mut self) -> *mut [u64; 4] {
+        &raw mut self.state
     }
 
     /// 64 random bits.

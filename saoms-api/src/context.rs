@@ -35,6 +35,11 @@ impl<'a> Context<'a> {
         Context { host, inboxes }
     }
 
+    /// What the boundary to plugins lends on.
+    pub(crate) fn parts(&mut self) -> (&mut (dyn Host + 'a), &'a [Vec<SharedMessage>]) {
+        (&mut *self.host, self.inboxes)
+    }
+
     /// The component's name: its path in the composite.
     pub fn name(&self) -> &str {
         self.host.name()
@@ -293,6 +298,8 @@ pub trait Host {
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
         let _ = (entry, before, after);
     }
+    /// Whether somebody reads the log at this level, or without one the classic console.
+    fn listens(&self, level: Option<Level>) -> bool;
     /// See [`Context::log`].
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>);
     /// See [`Context::console`].

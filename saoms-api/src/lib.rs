@@ -60,10 +60,13 @@
 // So that the macros' paths lead here from inside, too.
 extern crate self as saoms_api;
 
+pub mod abi;
 mod adaptation;
 pub mod cdr;
 mod chance;
 mod component;
+#[doc(hidden)]
+pub mod contain;
 mod context;
 pub mod declaration;
 mod failure;

@@ -141,6 +141,10 @@ impl Host for FakeHost {
 
     fn journal(&mut self, _phase: Phase, _record: &Record) {}
 
+    fn listens(&self, _level: Option<Level>) -> bool {
+        true
+    }
+
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         self.lines.push(format!("{level:?}: {line}"));
     }

@@ -343,6 +343,10 @@ impl Host for View<'_> {
 
     fn journal(&mut self, _phase: Phase, _record: &Record) {}
 
+    fn listens(&self, _level: Option<Level>) -> bool {
+        true
+    }
+
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         let line = format!("{} {}: {level:?}: {line}", self.fleet.now, self.name());
         self.fleet.log.push(line);

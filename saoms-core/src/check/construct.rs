@@ -6,8 +6,8 @@ use super::classes::ClassIndex;
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::Component;
-use crate::registry::contain::contained;
 use crate::source::Location;
+use saoms_api::contain::contained;
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
 ///

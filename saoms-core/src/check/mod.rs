@@ -76,7 +76,7 @@ pub fn check(
     contracts::check(&fleet, &classes, report);
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);
-    crate::registry::contain::install_hook();
+    saoms_api::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
         if let (Some(class), Some(resolved)) = (member.class, resolved) {
             construct::check(member.component, &classes[class], &resolved.values, &resolved.places, report);

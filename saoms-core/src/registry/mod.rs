@@ -4,7 +4,6 @@
 //! It is built from the text of declarations alone, so that it can know classes whose code it has not run.
 
 mod class;
-pub(crate) mod contain;
 mod declaration;
 mod error;
 #[cfg(test)]

@@ -6,7 +6,7 @@ use saoms_api::{CallError, Chance, Context, DynComponent, Failure, Invocation, S
 use super::host::ComponentHost;
 use super::shared::Shared;
 use crate::bus::{Subscription, TopicId};
-use crate::registry::contain::contained;
+use saoms_api::contain::contained;
 
 /// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for others.
 pub(super) struct Body {

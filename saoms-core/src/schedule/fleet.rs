@@ -18,8 +18,8 @@ use super::shared::Shared;
 use super::slot::NEVER;
 use super::start::{self, StartError};
 use crate::assembly::Assembly;
-use crate::registry::contain;
 use crate::report::RunReport;
+use saoms_api::contain;
 
 /// A fleet that runs.
 ///

@@ -170,6 +170,10 @@ impl Host for ComponentHost<'_> {
 
     fn journal(&mut self, _phase: Phase, _record: &Record) {}
 
+    fn listens(&self, level: Option<Level>) -> bool {
+        level.map_or_else(|| self.shared.line.wants_console(), |level| self.shared.line.wants(level))
+    }
+
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         if self.shared.line.wants(level) {
             self.tell(Occurrence::Log { level, text: line.to_string() });

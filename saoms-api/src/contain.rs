@@ -1,11 +1,11 @@
-//! The code of components, kept apart from that of the host: its panics are failures.
+//! For hosts: the code of components, kept apart from that of the host: its panics are failures.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
-use saoms_api::Failure;
+use crate::Failure;
 
 thread_local! {
     /// Whether this thread is inside component code, where a panic is a failure of the component and not of the program.
@@ -14,11 +14,15 @@ thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs component code. A panic becomes a failure with its message and place, and writes nothing to standard error.
+/// Runs component code. A panic becomes a failure with its message and place and, after [`install_hook`], writes nothing to standard
+/// error.
+///
+/// # Errors
+/// The code panicked.
 ///
 /// What the code has left half changed is only seen by itself: a component that panicked is never called again.
 #[inline]
-pub(crate) fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
+pub fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
     let outer = CAPTURING.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(code));
     CAPTURING.set(outer);
@@ -39,7 +43,7 @@ fn describe(payload: &(dyn Any + Send)) -> Failure {
 }
 
 /// Makes panics inside [`contained`] silent, once in the life of the process. All others go to the hook that was there before.
-pub(crate) fn install_hook() {
+pub fn install_hook() {
     static INSTALLED: Once = Once::new();
     INSTALLED.call_once(|| {
         let before = panic::take_hook();

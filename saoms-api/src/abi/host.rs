@@ -1,0 +1,481 @@
+use std::ffi::c_void;
+use std::time::Duration;
+
+use crate::contain::contained;
+use crate::{
+    Cause, Context, Failure, Header, Host, Level, Phase, Record, ReportValue, SharedMessage, Time,
+    TopicDeclaration, TopicKind, Work,
+};
+
+use super::guard::{guarded, guarded_call, guarded_value};
+use super::service::BytesCall;
+use super::{Bytes, Inbox, MessageView, RecordView, Sink, Status, ValueView};
+
+/// What a component is lent for the time of a call: the functions of its context, and what arrived.
+#[repr(C)]
+#[derive(Debug)]
+pub struct HostHandle {
+    /// The first argument of each function.
+    pub state: *mut c_void,
+    /// The functions.
+    pub functions: *const HostFunctions,
+    /// One for each subscription, in the order of subscribing; none at all when nothing arrived.
+    pub inboxes: *const Inbox,
+    /// How many there are.
+    pub inbox_count: usize,
+}
+
+/// A topic that a component publishes or subscribes to.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct TopicView {
+    /// The name before any `topicRename`.
+    pub name: Bytes,
+    /// The name of the message type.
+    pub message: Bytes,
+    /// The schema of the message type, as JSON.
+    pub schema: Bytes,
+    /// 0: state, 1: event.
+    pub kind: u32,
+}
+
+/// A value for the run's report.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct ReportView {
+    /// Its name within `children` of kind 6.
+    pub name: Bytes,
+    /// 0: null, 1: false or true (`bits`), 2: a whole number (`bits`), 3: a number (`bits` of its IEEE 754 form), 4: the `text`, 5: the list
+    /// of `children`, 6: the named `children`.
+    pub kind: u32,
+    /// A number.
+    pub bits: u64,
+    /// A text.
+    pub text: Bytes,
+    /// What it consists of.
+    pub children: *const ReportView,
+    /// How many those are.
+    pub child_count: usize,
+}
+
+/// The functions of a component's context; [`Context`] says what they mean.
+#[repr(C)]
+#[derive(Debug)]
+#[expect(missing_docs, reason = "named as the functions of `Context`, which says what they mean")]
+pub struct HostFunctions {
+    /// The size of this table in bytes.
+    pub size: usize,
+    pub name: unsafe extern "C" fn(*mut c_void) -> Bytes,
+    pub sender: unsafe extern "C" fn(*mut c_void) -> u32,
+    pub now: unsafe extern "C" fn(*mut c_void) -> u64,
+    pub due: unsafe extern "C" fn(*mut c_void) -> u64,
+    pub execution: unsafe extern "C" fn(*mut c_void) -> u64,
+    /// In nanoseconds.
+    pub period: unsafe extern "C" fn(*mut c_void) -> u64,
+    pub cancelled: unsafe extern "C" fn(*mut c_void) -> u32,
+    /// The state of the component's xoshiro256++, which may be advanced in place until the call ends.
+    pub chance: unsafe extern "C" fn(*mut c_void) -> *mut [u64; 4],
+    pub next_random: unsafe extern "C" fn(*mut c_void) -> u64,
+    pub publish: unsafe extern "C" fn(*mut c_void, *const TopicView, *mut u32, Sink) -> Status,
+    pub subscribe: unsafe extern "C" fn(*mut c_void, *const TopicView, *mut u32, Sink) -> Status,
+    /// Sends a message: the publisher, the key or null, the CDR form.
+    pub send: unsafe extern "C" fn(*mut c_void, u32, *const u64, Bytes, Sink) -> Status,
+    /// The index of a reference, by name and interface.
+    pub reference: unsafe extern "C" fn(*mut c_void, Bytes, Bytes, *mut u32, Sink) -> Status,
+    pub is_wired: unsafe extern "C" fn(*mut c_void, u32) -> u32,
+    /// Calls through a reference: its index, the operation, the arguments, where the reply goes.
+    pub call: unsafe extern "C" fn(*mut c_void, u32, u32, Bytes, Sink, Sink) -> Status,
+    /// Whether somebody reads the log at a level from 0 (error) to 3 (debug), or at 4 the classic console.
+    pub listens: unsafe extern "C" fn(*mut c_void, u32) -> u32,
+    /// Writes a line at such a level.
+    pub log: unsafe extern "C" fn(*mut c_void, u32, Bytes),
+    pub report: unsafe extern "C" fn(*mut c_void, Bytes, *const ReportView),
+    pub count: unsafe extern "C" fn(*mut c_void, Bytes, i64),
+    /// 0: there is work left, 1: the work is done.
+    pub vote: unsafe extern "C" fn(*mut c_void, u32),
+    /// The loop at this place acts from now on; `UINT32_MAX`: none.
+    pub enter_loop: unsafe extern "C" fn(*mut c_void, u32),
+    pub because: unsafe extern "C" fn(*mut c_void, u64),
+    pub cause: unsafe extern "C" fn(*mut c_void) -> u64,
+    /// Writes a record: 0 a symptom, 1 a decision, 2 an effect.
+    pub journal: unsafe extern "C" fn(*mut c_void, u32, *const RecordView),
+    /// Writes that the present loop changed an entry: its name, which has to be part of the library, before, after.
+    pub changed: unsafe extern "C" fn(*mut c_void, Bytes, *const ValueView, *const ValueView),
+}
+
+/// The levels of [`HostFunctions::log`] in their order; behind them comes the console.
+pub(super) const LEVELS: [Level; 4] = [Level::Error, Level::Warning, Level::Info, Level::Debug];
+
+/// What [`HostHandle`] needs to lend the messages of a period: used again and again, so that nothing is allocated once it has grown.
+#[derive(Debug, Default)]
+pub(super) struct Lent {
+    messages: Vec<MessageView>,
+    inboxes: Vec<Inbox>,
+}
+
+// SAFETY: between two calls of `with_handle` the lists are empty, so no pointer goes from thread to thread.
+unsafe impl Send for Lent {}
+
+/// Lends a context to code on the other side.
+pub(super) fn with_handle<T>(
+    context: &mut Context<'_>,
+    lent: &mut Lent,
+    code: impl FnOnce(&HostHandle) -> T,
+) -> T {
+    let (host, inboxes) = context.parts();
+    if inboxes.iter().any(|inbox| !inbox.is_empty()) {
+        lend(inboxes, lent);
+    }
+    let mut host: &mut dyn Host = host;
+    let handle = HostHandle {
+        state: (&raw mut host).cast(),
+        functions: &FUNCTIONS,
+        inboxes: lent.inboxes.as_ptr(),
+        inbox_count: lent.inboxes.len(),
+    };
+    let result = code(&handle);
+    lent.inboxes.clear();
+    lent.messages.clear();
+    result
+}
+
+fn lend(inboxes: &[Vec<SharedMessage>], lent: &mut Lent) {
+    for message in inboxes.iter().flatten() {
+        let header = message.header();
+        lent.messages.push(MessageView {
+            bytes: Bytes::lend(message.bytes()),
+            sent: header.sent.as_nanos(),
+            cause: header.cause.0,
+            key: message.key().unwrap_or(0),
+            sender: header.sender,
+            has_key: u32::from(message.key().is_some()),
+        });
+    }
+    let mut rest = &lent.messages[..];
+    for inbox in inboxes {
+        let (own, others) = rest.split_at(inbox.len());
+        lent.inboxes.push(Inbox { messages: own.as_ptr(), count: own.len() });
+        rest = others;
+    }
+}
+
+/// # Safety
+/// `state` comes from the [`HostHandle`] of a call that still goes on.
+unsafe fn host<'a>(state: *mut c_void) -> &'a mut (dyn Host + 'a) {
+    // SAFETY: `with_handle` made it from a `&mut dyn Host` that lives until the call ends, and nothing else uses that meanwhile.
+    unsafe { &mut **state.cast::<&mut dyn Host>() }
+}
+
+macro_rules! getters {
+    ($($function:ident -> $type:ty, $otherwise:expr, |$host:ident| $value:expr;)*) => {
+        $(unsafe extern "C" fn $function(state: *mut c_void) -> $type {
+            // SAFETY: callers pass the state of their handle.
+            let $host = unsafe { host(state) };
+            guarded_value($otherwise, || $value)
+        })*
+    };
+}
+
+getters! {
+    name -> Bytes, Bytes::NONE, |host| Bytes::text(host.name());
+    sender -> u32, 0, |host| host.sender();
+    now -> u64, 0, |host| host.now().as_nanos();
+    due -> u64, 0, |host| host.due().as_nanos();
+    execution -> u64, 0, |host| host.execution();
+    period -> u64, 0, |host| nanos(host.period());
+    cancelled -> u32, 0, |host| u32::from(host.cancelled());
+    chance -> *mut [u64; 4], std::ptr::null_mut(), |host| host.chance().state();
+    next_random -> u64, 0, |host| host.chance().next_u64();
+    cause -> u64, 0, |host| host.cause().0;
+}
+
+fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// # Safety
+/// The view and its texts are readable.
+unsafe fn topic<'a>(view: *const TopicView) -> Result<TopicDeclaration<'a>, Failure> {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let TopicView { name, message, schema, kind } = *view;
+        let kind = match kind {
+            0 => TopicKind::State,
+            1 => TopicKind::Event,
+            other => {
+                return Err(Failure::new(format!("found {other} for the kind of a topic, expected 0 or 1")));
+            }
+        };
+        Ok(TopicDeclaration {
+            name: name.get_text()?,
+            kind,
+            message: message.get_text()?,
+            schema: schema.get_text()?,
+        })
+    }
+}
+
+unsafe extern "C" fn publish(
+    state: *mut c_void,
+    view: *const TopicView,
+    index: *mut u32,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded(error, || {
+            topic(view).and_then(|topic| host(state).publish(&topic)).map(|found| *index = found)
+        })
+    }
+}
+
+unsafe extern "C" fn subscribe(
+    state: *mut c_void,
+    view: *const TopicView,
+    index: *mut u32,
+    error: Sink,
+) -> Status {
+    // SAFETY: as in `publish`.
+    unsafe {
+        guarded(error, || {
+            topic(view).and_then(|topic| host(state).subscribe(&topic)).map(|found| *index = found)
+        })
+    }
+}
+
+unsafe extern "C" fn send(
+    state: *mut c_void,
+    publisher: u32,
+    key: *const u64,
+    bytes: Bytes,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded(error, || {
+            let host = host(state);
+            let header = Header { sender: host.sender(), sent: host.due(), cause: host.cause() };
+            host.send(
+                publisher,
+                SharedMessage::from_bytes(header, key.as_ref().copied(), bytes.get()?.to_vec()),
+            )
+        })
+    }
+}
+
+unsafe extern "C" fn reference(
+    state: *mut c_void,
+    name: Bytes,
+    interface: Bytes,
+    index: *mut u32,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded(error, || {
+            *index = host(state).reference(name.get_text()?, interface.get_text()?)?;
+            Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn is_wired(state: *mut c_void, reference: u32) -> u32 {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value(0, || u32::from(host.is_wired(reference)))
+}
+
+unsafe extern "C" fn call(
+    state: *mut c_void,
+    reference: u32,
+    operation: u32,
+    arguments: Bytes,
+    reply: Sink,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded_call(error, || {
+            let mut call = BytesCall::new(operation, arguments.get()?, reply);
+            host(state).call(reference, &mut call)
+        })
+    }
+}
+
+unsafe extern "C" fn listens(state: *mut c_void, level: u32) -> u32 {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value(0, || u32::from(host.listens(LEVELS.get(level as usize).copied())))
+}
+
+unsafe extern "C" fn log(state: *mut c_void, level: u32, line: Bytes) {
+    // SAFETY: callers pass the state of their handle, and lend the line to this call.
+    let (host, line) = unsafe { (host(state), line.get()) };
+    let _ = contained(|| {
+        let line = String::from_utf8_lossy(line.unwrap_or_default());
+        match LEVELS.get(level as usize) {
+            Some(level) => host.log(*level, format_args!("{line}")),
+            None => host.console(format_args!("{line}")),
+        }
+    });
+}
+
+impl ReportView {
+    /// # Safety
+    /// The view and what it leads to are readable.
+    unsafe fn read(&self) -> Result<ReportValue, Failure> {
+        let children = || -> Result<Vec<(String, ReportValue)>, Failure> {
+            let mut all = Vec::new();
+            for place in 0..self.child_count {
+                // SAFETY: as the caller promises.
+                unsafe {
+                    let child = &*self.children.add(place);
+                    all.push((child.name.get_text()?.to_owned(), child.read()?));
+                }
+            }
+            Ok(all)
+        };
+        Ok(match self.kind {
+            0 => ReportValue::Null,
+            1 => ReportValue::Bool(self.bits != 0),
+            2 => ReportValue::Integer(self.bits as i64),
+            3 => ReportValue::Float(f64::from_bits(self.bits)),
+            // SAFETY: as the caller promises.
+            4 => ReportValue::Text(unsafe { self.text.get_text() }?.to_owned()),
+            5 => ReportValue::List(children()?.into_iter().map(|(_, value)| value).collect()),
+            6 => ReportValue::Map(children()?),
+            other => {
+                return Err(Failure::new(format!("found {other} for the kind of a value, expected 0 to 6")));
+            }
+        })
+    }
+}
+
+/// A value for the report that cannot be read, or a path that is no text, is left out with a warning.
+unsafe extern "C" fn report(state: *mut c_void, path: Bytes, value: *const ReportView) {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    let (host, read) =
+        unsafe { (host(state), path.get_text().and_then(|path| Ok((path, (*value).read()?)))) };
+    let _ = contained(|| match read {
+        Ok((path, value)) => host.report(path, value),
+        Err(failure) => host.log(Level::Warning, format_args!("a value for the report is none: {failure}")),
+    });
+}
+
+unsafe extern "C" fn count(state: *mut c_void, path: Bytes, more: i64) {
+    // SAFETY: callers pass the state of their handle, and lend the path to this call.
+    let (host, path) = unsafe { (host(state), path.get_text()) };
+    let _ = contained(|| match path {
+        Ok(path) => host.count(path, more),
+        Err(failure) => host.log(Level::Warning, format_args!("a path of the report is none: {failure}")),
+    });
+}
+
+unsafe extern "C" fn vote(state: *mut c_void, work: u32) {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value((), || host.vote(if work == 0 { Work::Open } else { Work::Done }));
+}
+
+unsafe extern "C" fn enter_loop(state: *mut c_void, place: u32) {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value((), || host.enter_loop((place != u32::MAX).then_some(place)));
+}
+
+unsafe extern "C" fn because(state: *mut c_void, cause: u64) {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value((), || host.because(Cause(cause)));
+}
+
+/// A record that cannot be read is left out with a warning.
+unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const RecordView) {
+    // SAFETY: callers pass the state of their handle, and lend the view; its texts are part of their library, which stays.
+    let (host, record) = unsafe { (host(state), (*view).read()) };
+    let phase = [Phase::Symptom, Phase::Decision, Phase::Effect].get(phase as usize).copied();
+    let _ = contained(|| match (phase, record) {
+        (Some(phase), Ok(record)) => host.journal(phase, &record),
+        (None, _) => host.log(Level::Warning, format_args!("a record of no phase was left out")),
+        (_, Err(failure)) => host.log(Level::Warning, format_args!("a record was left out: {failure}")),
+    });
+}
+
+impl RecordView {
+    /// # Safety
+    /// The view is readable, and its texts are for as long as the program runs.
+    unsafe fn read(&self) -> Result<Record, Failure> {
+        let mut values = [crate::Value::Bool(false); 6];
+        if self.count > values.len() {
+            return Err(Failure::new(format!(
+                "found {} values, expected at most {}",
+                self.count,
+                values.len()
+            )));
+        }
+        // SAFETY: as the caller promises.
+        unsafe {
+            for (place, value) in values.iter_mut().enumerate().take(self.count) {
+                *value = ValueView::read(*self.values.add(place))?;
+            }
+            Ok(Record::new(self.text.get_text()?, self.names.get_text()?, values))
+        }
+    }
+}
+
+/// A change that cannot be read is left out with a warning.
+unsafe extern "C" fn changed(
+    state: *mut c_void,
+    entry: Bytes,
+    before: *const ValueView,
+    after: *const ValueView,
+) {
+    // SAFETY: callers pass the state of their handle, and lend the views; texts are part of their library, which stays.
+    let (host, read) = unsafe {
+        let read = || Ok((entry.get_text()?, (*before).read()?, (*after).read()?));
+        (host(state), read())
+    };
+    let _ = contained(|| match read {
+        Ok((entry, before, after)) => host.changed(entry, before, after),
+        Err(failure) => warn(host, "a changed entry", &failure),
+    });
+}
+
+fn warn(host: &mut dyn Host, what: &str, failure: &Failure) {
+    host.log(Level::Warning, format_args!("{what} was left out: {failure}"));
+}
+
+/// The functions of this program.
+static FUNCTIONS: HostFunctions = HostFunctions {
+    size: size_of::<HostFunctions>(),
+    name,
+    sender,
+    now,
+    due,
+    execution,
+    period,
+    cancelled,
+    chance,
+    next_random,
+    publish,
+    subscribe,
+    send,
+    reference,
+    is_wired,
+    call,
+    listens,
+    log,
+    report,
+    count,
+    vote,
+    enter_loop,
+    because,
+    cause,
+    journal,
+    changed,
+};
+
+/// When a time of the other side is.
+pub(super) const fn time(nanos: u64) -> Time {
+    Time::from_nanos(nanos)
+}

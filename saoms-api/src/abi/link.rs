@@ -1,0 +1,274 @@
+use std::fmt::{self, Write as _};
+use std::time::Duration;
+
+use crate::{
+    CallError, Cause, Chance, DynLoop, Failure, Host, Level, Phase, Record, ReportValue, ServiceCall,
+    SharedMessage, Time, TopicDeclaration, TopicKind, Work,
+};
+
+use super::data::ValueView;
+use super::guard::{call_outcome, outcome};
+use super::host::{HostFunctions, LEVELS, ReportView, TopicView, time};
+use super::{Bytes, HostHandle, RecordView, Sink};
+
+/// The host on the other side of the boundary.
+pub(super) struct Link<'a> {
+    handle: &'a HostHandle,
+    functions: &'a HostFunctions,
+    /// For what is put together before it crosses.
+    buffer: &'a mut Vec<u8>,
+}
+
+/// The level of the classic console, behind those of the log.
+const CONSOLE: u32 = LEVELS.len() as u32;
+
+impl<'a> Link<'a> {
+    /// # Safety
+    /// The handle, its functions and its state are those of a call that goes on for as long as the link is used.
+    pub(super) unsafe fn new(handle: &'a HostHandle, buffer: &'a mut Vec<u8>) -> Link<'a> {
+        // SAFETY: as the caller promises.
+        let functions = unsafe { &*handle.functions };
+        Link { handle, functions, buffer }
+    }
+
+    /// Asks for a topic.
+    fn topic(
+        &self,
+        topic: &TopicDeclaration<'_>,
+        ask: unsafe extern "C" fn(*mut std::ffi::c_void, *const TopicView, *mut u32, Sink) -> super::Status,
+    ) -> Result<u32, Failure> {
+        let view = TopicView {
+            name: Bytes::text(topic.name),
+            message: Bytes::text(topic.message),
+            schema: Bytes::text(topic.schema),
+            kind: match topic.kind {
+                TopicKind::State => 0,
+                TopicKind::Event => 1,
+            },
+        };
+        let (mut index, mut error) = (u32::MAX, Vec::new());
+        // SAFETY: the link stands for a call that goes on; everything is lent for this call.
+        let status =
+            unsafe { ask(self.handle.state, &raw const view, &raw mut index, Sink::into(&mut error)) };
+        outcome(status, &error).map(|()| index)
+    }
+
+    fn write(&mut self, level: u32, line: fmt::Arguments<'_>) {
+        // SAFETY: the link stands for a call that goes on.
+        if unsafe { (self.functions.listens)(self.handle.state, level) } == 0 {
+            return;
+        }
+        self.buffer.clear();
+        let mut text = Text(self.buffer);
+        // A `Vec` takes everything; only the formatting of the line itself can fail, and then its beginning is shown.
+        let _ = text.write_fmt(line);
+        // SAFETY: the link stands for a call that goes on; the line is lent to it.
+        unsafe { (self.functions.log)(self.handle.state, level, Bytes::lend(self.buffer)) }
+    }
+}
+
+struct Text<'a>(&'a mut Vec<u8>);
+
+impl fmt::Write for Text<'_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.extend_from_slice(text.as_bytes());
+        Ok(())
+    }
+}
+
+macro_rules! get {
+    ($link:ident.$function:ident $(, $argument:expr)*) => {
+        // SAFETY: the link stands for a call that goes on.
+        unsafe { ($link.functions.$function)($link.handle.state $(, $argument)*) }
+    };
+}
+
+impl Host for Link<'_> {
+    fn name(&self) -> &str {
+        let name = get!(self.name);
+        // SAFETY: the host's name for the component lasts as long as the call that the link stands for.
+        unsafe { name.get_text() }.unwrap_or_default()
+    }
+
+    fn sender(&self) -> u32 {
+        get!(self.sender)
+    }
+
+    fn now(&self) -> Time {
+        time(get!(self.now))
+    }
+
+    fn due(&self) -> Time {
+        time(get!(self.due))
+    }
+
+    fn execution(&self) -> u64 {
+        get!(self.execution)
+    }
+
+    fn period(&self) -> Duration {
+        Duration::from_nanos(get!(self.period))
+    }
+
+    fn cancelled(&self) -> bool {
+        get!(self.cancelled) != 0
+    }
+
+    fn chance(&mut self) -> &mut Chance {
+        let state = get!(self.chance);
+        // SAFETY: the host lends the state until the call ends, which is longer than `self` is borrowed; `Chance` is that state.
+        unsafe { &mut *state.cast::<Chance>() }
+    }
+
+    fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        self.topic(topic, self.functions.publish)
+    }
+
+    fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        self.topic(topic, self.functions.subscribe)
+    }
+
+    fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {
+        message.encode_into(self.buffer);
+        let key = message.key();
+        let key = key.as_ref().map_or(std::ptr::null(), std::ptr::from_ref);
+        let mut error = Vec::new();
+        outcome(get!(self.send, publisher, key, Bytes::lend(self.buffer), Sink::into(&mut error)), &error)
+    }
+
+    fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {
+        let (mut index, mut error) = (u32::MAX, Vec::new());
+        let (name, interface) = (Bytes::text(name), Bytes::text(interface));
+        let status = get!(self.reference, name, interface, &raw mut index, Sink::into(&mut error));
+        outcome(status, &error).map(|()| index)
+    }
+
+    fn is_wired(&self, reference: u32) -> bool {
+        get!(self.is_wired, reference) != 0
+    }
+
+    fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+        let arguments = call.arguments();
+        let (mut reply, mut error) = (Vec::new(), Vec::new());
+        let (into_reply, into_error) = (Sink::into(&mut reply), Sink::into(&mut error));
+        let status =
+            get!(self.call, reference, call.operation(), Bytes::lend(&arguments), into_reply, into_error);
+        call_outcome(status, &error)?;
+        call.reply(&reply)
+    }
+
+    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+        Ok(Vec::new())
+    }
+
+    fn enter_loop(&mut self, place: Option<u32>) {
+        get!(self.enter_loop, place.unwrap_or(u32::MAX));
+    }
+
+    fn because(&mut self, cause: Cause) {
+        get!(self.because, cause.0);
+    }
+
+    fn cause(&self) -> Cause {
+        Cause(get!(self.cause))
+    }
+
+    fn journal(&mut self, phase: Phase, record: &Record) {
+        let mut values = [ValueView::of(crate::Value::Bool(false)); 6];
+        let mut count = 0;
+        for (place, (_, value)) in values.iter_mut().zip(record.values()) {
+            *place = ValueView::of(value);
+            count += 1;
+        }
+        let view = RecordView {
+            text: Bytes::text(record.text()),
+            names: Bytes::text(record.names()),
+            values: values.as_ptr(),
+            count,
+        };
+        let phase = match phase {
+            Phase::Symptom => 0,
+            Phase::Decision => 1,
+            Phase::Effect => 2,
+        };
+        get!(self.journal, phase, &raw const view);
+    }
+
+    fn changed(&mut self, entry: &'static str, before: crate::Value, after: crate::Value) {
+        let (before, after) = (ValueView::of(before), ValueView::of(after));
+        get!(self.changed, Bytes::text(entry), &raw const before, &raw const after);
+    }
+
+    fn listens(&self, level: Option<Level>) -> bool {
+        let level = level.map_or(CONSOLE, |level| level as u32);
+        get!(self.listens, level) != 0
+    }
+
+    fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
+        self.write(level as u32, line);
+    }
+
+    fn console(&mut self, line: fmt::Arguments<'_>) {
+        self.write(CONSOLE, line);
+    }
+
+    fn report(&mut self, path: &str, value: ReportValue) {
+        with_view("", &value, &mut |view| get!(self.report, Bytes::text(path), &raw const *view));
+    }
+
+    fn count(&mut self, path: &str, more: i64) {
+        get!(self.count, Bytes::text(path), more);
+    }
+
+    fn vote(&mut self, work: Work) {
+        let work = match work {
+            Work::Open => 0,
+            Work::Done => 1,
+        };
+        get!(self.vote, work);
+    }
+}
+
+/// Shows a value for the report to code.
+fn with_view(name: &str, value: &ReportValue, code: &mut dyn FnMut(&ReportView)) {
+    let scalar = |kind, bits, text: &str| ReportView {
+        name: Bytes::text(name),
+        kind,
+        bits,
+        text: Bytes::text(text),
+        children: std::ptr::null(),
+        child_count: 0,
+    };
+    let mut nested = |kind, children: &[(&str, &ReportValue)]| {
+        collect(children, &mut Vec::new(), &mut |views| {
+            code(&ReportView { children: views.as_ptr(), child_count: views.len(), ..scalar(kind, 0, "") });
+        });
+    };
+    match value {
+        ReportValue::Null => code(&scalar(0, 0, "")),
+        ReportValue::Bool(value) => code(&scalar(1, u64::from(*value), "")),
+        ReportValue::Integer(value) => code(&scalar(2, *value as u64, "")),
+        ReportValue::Float(value) => code(&scalar(3, value.to_bits(), "")),
+        ReportValue::Text(text) => code(&scalar(4, 0, text)),
+        ReportValue::List(values) => nested(5, &values.iter().map(|value| ("", value)).collect::<Vec<_>>()),
+        ReportValue::Map(values) => {
+            nested(6, &values.iter().map(|(name, value)| (name.as_str(), value)).collect::<Vec<_>>());
+        }
+    }
+}
+
+/// Shows the views of several values to code. The views of one lie on the stack while the next is made, so that all stay readable.
+fn collect(
+    values: &[(&str, &ReportValue)],
+    views: &mut Vec<ReportView>,
+    code: &mut dyn FnMut(&[ReportView]),
+) {
+    match values {
+        [] => code(views),
+        [(name, value), rest @ ..] => with_view(name, value, &mut |view| {
+            views.push(*view);
+            collect(rest, views, code);
+            views.pop();
+        }),
+    }
+}

@@ -1,0 +1,41 @@
+//! The boundary between the program and a library that was built separately: plain C, so that either side can be built with another
+//! compiler, another version of this crate, another allocator, or in another language.
+//!
+//! Authors do not use this module: [`plugin!`](crate::plugin) exports what they wrote, and the program loads it. Authors in C use the header
+//! `saoms.h`, which says the same.
+//!
+//! # Rules
+//! - Nothing is shared but the tables of functions in this module and the bytes that are lent for the time of a call. Each side frees what it
+//!   allocated; text and bytes that a callee gives back go through a [`Sink`] of the caller.
+//! - No function unwinds: each catches what panics inside it and answers [`Status::PANICKED`] with the message.
+//! - A library is never unloaded, so texts that are part of it (of records, say) may be kept.
+//! - A component, and all functions that it is lent, are used by one thread at a time.
+//! - All text is UTF-8. Messages, arguments and replies are [`cdr`](crate::cdr).
+//!
+//! # Versions
+//! [`VERSION`] changes when a table or a rule changes. Tables only grow at their end within one version, and say their size, so that a
+//! program can load a library that was built with an older table of the same version.
+
+mod class;
+mod component;
+mod data;
+mod guard;
+mod host;
+mod import;
+mod link;
+mod metadata;
+mod service;
+
+pub use class::{ClassTable, PluginTable};
+pub use component::{ComponentTable, Instance};
+pub use data::{Bytes, Inbox, MAX_BYTES, MessageView, PropertyView, RecordView, Sink, Status, ValueView};
+pub use host::{HostFunctions, HostHandle, ReportView, TopicView};
+pub use import::{ImportedClass, ImportedComponent};
+pub use metadata::{Entry, SECTION};
+
+/// The version of the boundary. A program loads libraries of its own version alone.
+pub const VERSION: u32 = 1;
+
+/// The version of this crate.
+#[doc(hidden)]
+pub const API: &str = env!("CARGO_PKG_VERSION");
