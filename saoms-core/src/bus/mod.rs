@@ -126,6 +126,17 @@ impl Bus {
         subscription.topic
     }
 
+    /// Lets [`is_observed`](Bus::is_observed) answer that somebody outside the fleet wants the messages of a topic.
+    pub fn observe(&mut self, topic: TopicId) {
+        self.topics[topic.0 as usize].observed = true;
+    }
+
+    /// Whether somebody outside the fleet wants its messages.
+    #[inline]
+    pub fn is_observed(&self, topic: TopicId) -> bool {
+        self.topics[topic.0 as usize].observed
+    }
+
     /// The name of a topic.
     pub fn name(&self, topic: TopicId) -> &Arc<str> {
         &self.topics[topic.0 as usize].name

@@ -13,6 +13,8 @@ pub(super) struct Topic {
     pub(super) name_hash: u64,
     /// Publishers and subscribers together. A topic without any may change its type.
     pub(super) users: usize,
+    /// Somebody outside the fleet wants its messages.
+    pub(super) observed: bool,
     message: String,
     schema: String,
     first_user: Arc<str>,
@@ -47,6 +49,7 @@ impl Topic {
             name_hash: name.bytes().fold(0, |hash, byte| fold(hash, u64::from(byte))),
             name,
             users: 1,
+            observed: false,
             message: declared.message.to_owned(),
             schema: declared.schema.to_owned(),
             first_user: Arc::clone(by),
@@ -73,6 +76,7 @@ impl Topic {
         if !same {
             self.message = declared.message.to_owned();
             self.schema = declared.schema.to_owned();
+            self.observed = false;
             self.store = store(declared.kind);
         }
         self.users += 1;

@@ -6,7 +6,7 @@ use saoms_api::{Chance, Failure, Time, Work};
 
 use super::body::{Body, Job, Part};
 use super::ending::Cause;
-use super::observe::{Event, Occurrence};
+use super::observe::{Event, News, Occurrence, Sent};
 use super::queue::Queue;
 use super::settings::{ClockKind, Settings, nanos};
 use super::slot::{NEVER, Policy, Slot, State, Wish};
@@ -24,7 +24,7 @@ pub(super) struct Engine {
     pub(super) phase: Phase,
     pub(super) roles: Roles,
     /// Events for the program, told when the lock is free.
-    pub(super) news: Vec<Event>,
+    pub(super) news: Vec<News>,
     /// Somebody gave the sleeping timer something to do.
     pub(super) wake: bool,
     pub(super) trace: Option<Trace>,
@@ -354,6 +354,10 @@ impl Engine {
             if let Some(trace) = &mut self.trace {
                 trace.message(now, part.index, self.bus.name_hash(topic), &message);
             }
+            if self.bus.is_observed(topic) {
+                let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(&part.name));
+                self.news.push(News::Sent(Sent { topic, component, message: message.clone() }));
+            }
             if self.phase == Phase::Running {
                 self.bus.publish(topic, message);
             }
@@ -407,7 +411,7 @@ impl Engine {
     /// Tells the program something about a component, as soon as the lock is free.
     pub(super) fn tell(&mut self, now: u64, index: u32, what: Occurrence) {
         let component = Some(Arc::clone(&self.slots[index as usize].name));
-        self.news.push(Event { time: Time::from_nanos(now), component, what });
+        self.news.push(Event { time: Time::from_nanos(now), component, what }.into());
     }
 
     pub(super) fn step(&mut self, now: u64, index: u32, step: Step) {

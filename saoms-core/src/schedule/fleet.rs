@@ -11,7 +11,7 @@ use super::clock::Clock;
 use super::drive;
 use super::engine::Phase;
 use super::lifecycle::Request;
-use super::observe::{Events, Line, Progress};
+use super::observe::{Events, Progress};
 use super::realtime;
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
@@ -99,12 +99,11 @@ impl Fleet {
         }
         let awake = realtime.then(realtime::keep_awake).transpose();
         let clock = if simulated { Clock::simulated() } else { Clock::real() };
-        let line = Line::new(events.as_ref(), simulated);
-        let shared = Arc::new(Shared::new(assembly, settings, clock, line));
+        let shared = Arc::new(Shared::new(assembly, settings, clock, events));
         let teller = Arc::clone(&shared);
         let teller = thread::Builder::new()
             .name("saoms-events".to_owned())
-            .spawn(move || teller.line.tell(&events, || teller.progress()))
+            .spawn(move || teller.line.tell(&teller.events, || teller.progress()))
             .map_err(StartError::Thread)?;
         // From here on, dropping the fleet ends whatever has begun.
         let handle = Handle { shared };

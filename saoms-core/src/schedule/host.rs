@@ -83,10 +83,15 @@ impl Host for ComponentHost<'_> {
 
     fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
         let task = self.may_use(topic.name, "publish")?;
+        let name = renamed(task, topic.name);
+        let observed = self.shared.events.wants_topic(name, topic);
         let bus = &mut self.shared.lock().bus;
         let id = bus
-            .publisher(renamed(task, topic.name), topic, &self.part.name)
+            .publisher(name, topic, &self.part.name)
             .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
+        if observed {
+            bus.observe(id);
+        }
         self.part.publishers.push(id);
         Ok((self.part.publishers.len() - 1) as u32)
     }

@@ -31,7 +31,7 @@ mod tests;
 mod trace;
 
 pub use fleet::{Fleet, Handle, UnknownComponent};
-pub use observe::{Event, Events, Occurrence, Progress, Quiet};
+pub use observe::{Event, Events, Occurrence, Progress, Quiet, Sent};
 pub use realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
 pub use start::StartError;

@@ -5,7 +5,7 @@ use saoms_api::Time;
 
 use super::clock::Clock;
 use super::engine::Engine;
-use super::observe::{Event, Line, Occurrence, Progress};
+use super::observe::{Event, Events, Line, Occurrence, Progress};
 use super::pulse::Pulse;
 use super::settings::Settings;
 use super::sys::Gate;
@@ -21,6 +21,8 @@ pub(super) struct Shared {
     pub(super) settings: Settings,
     pub(super) clock: Clock,
     pub(super) line: Line,
+    /// Who is told what happens; what it wants to be told is asked directly.
+    pub(super) events: Arc<dyn Events>,
     /// Where the thread with the timer's work sleeps.
     pub(super) timer: Gate,
     /// Where the spare thread that watches it sleeps.
@@ -38,8 +40,9 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    pub(super) fn new(assembly: Assembly, settings: Settings, clock: Clock, line: Line) -> Shared {
+    pub(super) fn new(assembly: Assembly, settings: Settings, clock: Clock, events: Arc<dyn Events>) -> Shared {
         let engine = Engine::new(&assembly, &settings);
+        let line = Line::new(events.as_ref(), clock.is_virtual());
         Shared {
             executions: Arc::clone(&engine.executions),
             engine: Mutex::new(engine),
@@ -48,6 +51,7 @@ impl Shared {
             settings,
             clock,
             line,
+            events,
             timer: Gate::default(),
             spare: Gate::default(),
             end: Gate::default(),

@@ -8,6 +8,7 @@ mod chaos;
 mod endings;
 mod failures;
 mod fleet;
+mod observer;
 mod order;
 mod real_time;
 mod services;

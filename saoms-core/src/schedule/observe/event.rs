@@ -2,7 +2,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{Level, Time};
+use saoms_api::{Level, SharedMessage, Time, TopicDeclaration};
 
 /// Something that happened in a fleet, as [`Events`] is told it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -138,6 +138,17 @@ impl fmt::Display for Event {
     }
 }
 
+/// A message that a component sent, as [`Events`] is told it.
+#[derive(Clone, Debug)]
+pub struct Sent {
+    /// The topic, by the name that it has after renaming.
+    pub topic: Arc<str>,
+    /// The path of the component that sent it.
+    pub component: Arc<str>,
+    /// The message; its header says when it was sent.
+    pub message: SharedMessage,
+}
+
 /// How far a run is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
@@ -165,6 +176,18 @@ pub trait Events: Send + Sync + 'static {
     /// Whether the lines of the original's console are wanted. Asked once, at the start.
     fn wants_console(&self) -> bool {
         false
+    }
+
+    /// Whether the messages of a topic are wanted, where its publishers declare it so and call it `name` after renaming. Asked when a component
+    /// becomes a publisher, on a thread of the run, and not to be answered slowly. The messages of other topics cost nothing.
+    fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        let _ = (name, declared);
+        false
+    }
+
+    /// A component sent a message on a topic that is wanted. All messages are told, those that no reader gets as well.
+    fn message(&self, sent: &Sent) {
+        let _ = sent;
     }
 
     /// How often to call [`progress`](Events::progress); `None` is never. Asked once, at the start.

@@ -5,10 +5,40 @@ use std::time::{Duration, Instant};
 
 use saoms_api::{Level, Time};
 
-use super::{Event, Events, Occurrence, Progress};
+use super::{Event, Events, Occurrence, Progress, Sent};
 
 /// How many events may wait for the program.
 const CAPACITY: usize = 65_536;
+
+/// What waits to be told.
+pub(in crate::schedule) enum News {
+    /// Something happened.
+    Event(Event),
+    /// A component sent a message on a topic that is wanted.
+    Sent(Sent),
+}
+
+impl News {
+    fn time(&self) -> Time {
+        match self {
+            News::Event(event) => event.time,
+            News::Sent(sent) => sent.message.header().sent,
+        }
+    }
+
+    fn tell(&self, events: &dyn Events) {
+        match self {
+            News::Event(event) => events.event(event),
+            News::Sent(sent) => events.message(sent),
+        }
+    }
+}
+
+impl From<Event> for News {
+    fn from(event: Event) -> News {
+        News::Event(event)
+    }
+}
 
 /// Events on their way to the thread that tells them. Putting one in never waits in real time.
 pub(in crate::schedule) struct Line {
@@ -23,7 +53,7 @@ pub(in crate::schedule) struct Line {
 
 #[derive(Default)]
 struct Waiting {
-    events: VecDeque<Event>,
+    news: VecDeque<News>,
     lost: u64,
     reader_sleeps: bool,
     writers_sleep: bool,
@@ -58,9 +88,9 @@ impl Line {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub(in crate::schedule) fn put(&self, event: Event) {
+    pub(in crate::schedule) fn put(&self, news: impl Into<News>) {
         let mut waiting = self.lock();
-        while waiting.events.len() >= CAPACITY && !waiting.closed {
+        while waiting.news.len() >= CAPACITY && !waiting.closed {
             if !self.patient {
                 waiting.lost += 1;
                 return;
@@ -68,7 +98,7 @@ impl Line {
             waiting.writers_sleep = true;
             waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
-        waiting.events.push_back(event);
+        waiting.news.push_back(news.into());
         if std::mem::take(&mut waiting.reader_sleeps) {
             self.filled.notify_one();
         }
@@ -96,9 +126,9 @@ impl Line {
             let mut last = Time::START;
             // A program that panics over an event loses that event: the fleet goes on.
             let told = panic::catch_unwind(AssertUnwindSafe(|| {
-                while let Some(event) = batch.pop_front() {
-                    last = event.time;
-                    events.event(&event);
+                while let Some(news) = batch.pop_front() {
+                    last = news.time();
+                    news.tell(events.as_ref());
                 }
                 if lost > 0 {
                     let text = format!("{lost} events came faster than they could be shown, and are lost");
@@ -120,9 +150,9 @@ impl Line {
     }
 
     /// Waits until there is something to tell, and takes all of it.
-    fn next_batch(&self, batch: &mut VecDeque<Event>, until: Option<Instant>) -> (u64, bool) {
+    fn next_batch(&self, batch: &mut VecDeque<News>, until: Option<Instant>) -> (u64, bool) {
         let mut waiting = self.lock();
-        while batch.is_empty() && waiting.events.is_empty() && !waiting.closed {
+        while batch.is_empty() && waiting.news.is_empty() && !waiting.closed {
             waiting.reader_sleeps = true;
             waiting = match until {
                 None => self.filled.wait(waiting).unwrap_or_else(PoisonError::into_inner),
@@ -136,7 +166,7 @@ impl Line {
             };
         }
         if batch.is_empty() {
-            std::mem::swap(batch, &mut waiting.events);
+            std::mem::swap(batch, &mut waiting.news);
         }
         if std::mem::take(&mut waiting.writers_sleep) {
             self.emptied.notify_all();

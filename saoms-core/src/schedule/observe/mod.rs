@@ -3,5 +3,5 @@
 mod event;
 mod line;
 
-pub use event::{Event, Events, Occurrence, Progress, Quiet};
-pub(super) use line::Line;
+pub use event::{Event, Events, Occurrence, Progress, Quiet, Sent};
+pub(super) use line::{Line, News};
