@@ -1,9 +1,9 @@
-use saoms_api::Field;
+use saoms_api::Message;
 
 use crate::grid::Map;
 
-/// A map as it travels through a service call.
-#[derive(Clone, Debug, PartialEq, Eq, Field)]
+/// A map as it travels through a service call or a topic.
+#[derive(Clone, Debug, PartialEq, Eq, Message)]
 pub struct Area {
     /// How many blocks wide it is.
     pub width: u32,

@@ -10,7 +10,10 @@
 //! | [`CRITICAL_SITUATION`] | [`CriticalSituation`] | robots | robots |
 //! | [`ROBOT_LIST`] | [`RobotList`] | robots | robots, the master of the robots |
 //! | [`POSITION`] | [`Position`] | robots | robots |
+//! | [`AREA`] | [`Area`] | world | whoever watches the fleet |
+//! | [`COLLISION`] | [`Collision`] | world, or robots without one | whoever watches the fleet |
 
+mod collision;
 mod critical_situation;
 mod environment_event;
 mod event_luggage;
@@ -22,6 +25,9 @@ mod robot_state;
 
 use saoms_api::Topic;
 
+use crate::hardware::Area;
+
+pub use collision::Collision;
 pub use critical_situation::{CriticalKind, CriticalSituation, CriticalStage};
 pub use environment_event::EnvironmentEvent;
 pub use event_luggage::{EventLuggage, LuggageStage};
@@ -45,6 +51,12 @@ pub const ROBOT_LIST: Topic<RobotList> = Topic::state("RLMSTOPIC");
 
 /// Where the robots are and where they go next, the newest of each.
 pub const POSITION: Topic<Position> = Topic::state("POSTOPIC");
+
+/// The area that the robots share, said when the world begins.
+pub const AREA: Topic<Area> = Topic::state("AREATOPIC");
+
+/// Robots that were in each other's way.
+pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC");
 
 /// What breaks in robots.
 pub const FAULT: Topic<Fault> = Topic::event("FAULTTOPIC");

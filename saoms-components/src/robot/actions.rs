@@ -2,7 +2,7 @@ use saoms_api::Failure;
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
-use crate::messages::LuggageStage;
+use crate::messages::{Collision, LuggageStage};
 
 use super::{Body, Reply};
 
@@ -60,8 +60,7 @@ impl Body<'_, '_> {
         match kind {
             ActionKind::Move => {
                 self.knowledge.block = block;
-                self.judge(block);
-                return Ok(());
+                return self.judge(block);
             }
             ActionKind::Collect => {
                 self.context.console(format_args!("{name} says: Luggage collected."));
@@ -112,11 +111,13 @@ impl Body<'_, '_> {
     }
 
     /// Without a world nobody else counts collisions: who enters a block that another robot announced to be on does.
-    fn judge(&mut self, block: Block) {
-        if !self.hooks.is_wired() && self.knowledge.lists.peers.is_on(block) {
-            self.context.count("collisions.vertex", 1);
-            self.context.warn(format_args!("collided at {block}"));
-        }
+    fn judge(&mut self, block: Block) -> Result<(), Failure> {
+        let other = self.knowledge.lists.peers.on(block).filter(|_| !self.hooks.is_wired());
+        let Some(other) = other.map(|peer| peer.robot) else { return Ok(()) };
+        let collision = Collision { robot: self.knowledge.number, other, block, swap: false };
+        self.context.count("collisions.vertex", 1);
+        self.context.warn(format_args!("{collision}"));
+        self.topics.say_collision(self.context, collision)
     }
 
     fn show_ready(&mut self, action: Action) {

@@ -20,7 +20,7 @@ use saoms_api::{Class, Component, Context, Failure};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::{EVENT_LUGGAGE, POSITION, ROBOT_LIST};
+use crate::messages::{COLLISION, EVENT_LUGGAGE, POSITION, ROBOT_LIST};
 
 pub use battery::Battery;
 pub use job::Job;
@@ -43,7 +43,7 @@ use topics::Topics;
 #[class(
     name = "saoms.Robot",
     periodic,
-    publishes(EVENT_LUGGAGE, ROBOT_LIST, POSITION),
+    publishes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, COLLISION),
     subscribes(EVENT_LUGGAGE, ROBOT_LIST, POSITION),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),

@@ -1,7 +1,8 @@
 use saoms_api::{Context, Failure, Publisher, Subscription};
 
 use crate::messages::{
-    EVENT_LUGGAGE, EventLuggage, IMMOVABLE, LuggageStage, POSITION, Position, Priority, ROBOT_LIST, RobotList,
+    COLLISION, Collision, EVENT_LUGGAGE, EventLuggage, IMMOVABLE, LuggageStage, POSITION, Position, Priority,
+    ROBOT_LIST, RobotList,
 };
 
 use super::{Job, Knowledge};
@@ -15,6 +16,7 @@ pub(crate) struct Topics {
     robots_heard: Subscription<RobotList>,
     positions: Publisher<Position>,
     positions_heard: Subscription<Position>,
+    collisions: Publisher<Collision>,
     said_robot: Option<RobotList>,
     said_position: Option<Position>,
 }
@@ -31,6 +33,7 @@ impl Topics {
             robots_heard: context.subscribe(&ROBOT_LIST)?,
             positions: context.publish(&POSITION)?,
             positions_heard: context.subscribe(&POSITION)?,
+            collisions: context.publish(&COLLISION)?,
             said_robot: None,
             said_position: None,
         })
@@ -95,6 +98,15 @@ impl Topics {
         stage: LuggageStage,
     ) -> Result<(), Failure> {
         context.send(&self.luggage, job.response(knowledge.number, knowledge.block, stage))
+    }
+
+    /// Says that the robot entered a block that another one was on.
+    pub(crate) fn say_collision(
+        &self,
+        context: &mut Context<'_>,
+        collision: Collision,
+    ) -> Result<(), Failure> {
+        context.send(&self.collisions, collision)
     }
 
     /// Says where the robot is and goes.

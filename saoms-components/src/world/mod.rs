@@ -6,16 +6,16 @@ mod referee;
 #[cfg(test)]
 mod tests;
 
-use saoms_api::{Class, Component, Context, Failure, Level, Subscription, Work};
+use saoms_api::{Class, Component, Context, Failure, Level, Publisher, Subscription, Work};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Area, Hardware, Progress};
-use crate::messages::{ENVIRONMENT, EnvironmentEvent};
+use crate::messages::{AREA, COLLISION, Collision, ENVIRONMENT, EnvironmentEvent};
 
 pub use properties::WorldProperties;
 
 use luggage::{Luggage, Stock};
-use referee::{Collision, Referee};
+use referee::Referee;
 
 /// The physical world of a fleet.
 ///
@@ -25,6 +25,7 @@ use referee::{Collision, Referee};
 #[class(
     name = "saoms.World",
     periodic,
+    publishes(AREA, COLLISION),
     subscribes(ENVIRONMENT),
     service("hardware": Hardware)
 )]
@@ -33,6 +34,7 @@ pub struct World {
     referee: Referee,
     stock: Stock,
     events: Subscription<EnvironmentEvent>,
+    collisions: Publisher<Collision>,
     vote: Option<Work>,
 }
 
@@ -46,12 +48,16 @@ impl Component for World {
             referee: Referee::new(map),
             stock: Stock::default(),
             events: Subscription::default(),
+            collisions: Publisher::default(),
             vote: None,
         })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.subscribe(&ENVIRONMENT)?;
+        self.collisions = context.publish(&COLLISION)?;
+        let area = context.publish(&AREA)?;
+        context.send(&area, self.referee.map().into())?;
         for section in ["luggage.delivered", "collisions.vertex", "collisions.swap", "stranded"] {
             context.count(section, 0);
         }
@@ -100,7 +106,7 @@ impl World {
         match self.referee.begin_move(robot, to, until)? {
             Ok(collision) => {
                 if let Some(collision) = collision {
-                    report(context, collision);
+                    self.report(context, collision)?;
                 }
                 Ok(self.referee.progress(robot, context.now()))
             }
@@ -109,6 +115,18 @@ impl World {
                 Ok(Progress::Failed)
             }
         }
+    }
+
+    fn report(&self, context: &mut Context<'_>, collision: Collision) -> Result<(), Failure> {
+        if collision.swap {
+            // It was counted as meeting in one block when the first of the two moved.
+            context.count("collisions.vertex", -1);
+            context.count("collisions.swap", 1);
+        } else {
+            context.count("collisions.vertex", 1);
+        }
+        context.warn(format_args!("{collision}"));
+        context.send(&self.collisions, collision)
     }
 
     /// The end of collecting or depositing.
@@ -133,21 +151,6 @@ impl World {
         }
         self.referee.end_handling(robot);
         Ok(Progress::Done)
-    }
-}
-
-fn report(context: &mut Context<'_>, collision: Collision) {
-    let Collision { robots: (one, other), block, swap, seen } = collision;
-    if swap {
-        context.count("collisions.swap", 1);
-        if seen {
-            // It was counted as meeting in one block when the first of the two moved.
-            context.count("collisions.vertex", -1);
-        }
-        context.warn(format_args!("robots {one} and {other} collide: they exchange blocks at {block}"));
-    } else {
-        context.count("collisions.vertex", 1);
-        context.warn(format_args!("robots {one} and {other} collide at {block}"));
     }
 }
 

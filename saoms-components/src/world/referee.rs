@@ -4,6 +4,7 @@ use saoms_api::{Failure, Time};
 
 use crate::grid::{Block, Map};
 use crate::hardware::{Action, Progress};
+use crate::messages::Collision;
 
 /// Where the robots really are, and who collided.
 ///
@@ -38,17 +39,6 @@ struct Meeting {
     from: Block,
     other: u32,
     block: Block,
-}
-
-/// Two robots were in each other's way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Collision {
-    pub(super) robots: (u32, u32),
-    pub(super) block: Block,
-    /// Whether they exchanged their blocks.
-    pub(super) swap: bool,
-    /// Whether an exchange was taken for a meeting before.
-    pub(super) seen: bool,
 }
 
 impl Referee {
@@ -190,12 +180,12 @@ impl Referee {
             |meeting: &Meeting| meeting.other == robot && meeting.block == from && meeting.from == to;
         if let Some(place) = self.meetings.iter().position(exchanges) {
             let meeting = self.meetings.remove(place);
-            return Some(Collision { robots: (meeting.entered, robot), block: from, swap: true, seen: true });
+            return Some(Collision { robot: meeting.entered, other: robot, block: from, swap: true });
         }
         let other = self.holder(to, robot)?;
         let meeting = Meeting { entered: robot, from, other, block: to };
         self.meetings.push(meeting);
-        Some(Collision { robots: (robot, other), block: to, swap: false, seen: false })
+        Some(Collision { robot, other, block: to, swap: false })
     }
 
     fn hold(&mut self, block: Block) {

@@ -3,9 +3,10 @@ use std::time::Duration;
 use saoms_api::Time;
 
 use super::luggage::{Luggage, Stock};
-use super::referee::{Collision, Referee};
+use super::referee::Referee;
 use crate::grid::{Block, Map};
 use crate::hardware::Progress;
+use crate::messages::Collision;
 
 fn block(x: i32, y: i32) -> Block {
     Block::new(x, y)
@@ -80,7 +81,7 @@ fn moves_lead_to_free_blocks_beside() {
 #[test]
 fn two_robots_on_one_block_collide_once() {
     let mut referee = referee(&[block(0, 0), block(1, 0)]);
-    let collision = Collision { robots: (1, 2), block: block(1, 0), swap: false, seen: false };
+    let collision = Collision { robot: 1, other: 2, block: block(1, 0), swap: false };
     assert_eq!(hop(&mut referee, 1, block(1, 0)), Some(collision));
     assert_eq!(hop(&mut referee, 2, block(2, 0)), None);
     assert_eq!(hop(&mut referee, 1, block(0, 0)), None);
@@ -91,7 +92,7 @@ fn two_robots_on_one_block_collide_once() {
 fn robots_that_exchange_their_blocks_collide_by_that_alone() {
     let mut referee = referee(&[block(0, 0), block(1, 0)]);
     assert!(hop(&mut referee, 1, block(1, 0)).is_some());
-    let swap = Collision { robots: (1, 2), block: block(1, 0), swap: true, seen: true };
+    let swap = Collision { robot: 1, other: 2, block: block(1, 0), swap: true };
     assert_eq!(hop(&mut referee, 2, block(0, 0)), Some(swap));
     assert_eq!(hop(&mut referee, 1, block(2, 0)), None);
 }

@@ -40,7 +40,12 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    pub(super) fn new(assembly: Assembly, settings: Settings, clock: Clock, events: Arc<dyn Events>) -> Shared {
+    pub(super) fn new(
+        assembly: Assembly,
+        settings: Settings,
+        clock: Clock,
+        events: Arc<dyn Events>,
+    ) -> Shared {
         let engine = Engine::new(&assembly, &settings);
         let line = Line::new(events.as_ref(), clock.is_virtual());
         Shared {

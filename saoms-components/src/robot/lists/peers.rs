@@ -44,8 +44,8 @@ impl Peers {
         self.newest.get(place).map(|(position, _)| position)
     }
 
-    /// Whether another robot is on the block, as far as was heard.
-    pub fn is_on(&self, block: Block) -> bool {
-        self.all().any(|peer| peer.block == block)
+    /// The other robot that is on the block, as far as was heard.
+    pub fn on(&self, block: Block) -> Option<&Position> {
+        self.all().find(|peer| peer.block == block)
     }
 }

@@ -104,5 +104,6 @@ fn the_newest_position_of_each_counts() {
         |peers: Vec<&Position>| peers.iter().map(|peer| (peer.robot, peer.block.x)).collect::<Vec<_>>();
     assert_eq!(shown(lists.peers.all().collect()), [(1, 4), (3, 2)]);
     assert_eq!(shown(lists.peers.heard().collect()), [(3, 2)]);
-    assert!(lists.peers.is_on(Block::new(4, 0)) && !lists.peers.is_on(Block::new(7, 0)));
+    let on = |x| lists.peers.on(Block::new(x, 0)).map(|peer| peer.robot);
+    assert_eq!((on(4), on(7)), (Some(1), None));
 }
