@@ -1,7 +1,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use saoms_api::Field;
+use saoms_api::{Field, Value};
 
 /// A block of the area: robots move from one to the next, and luggage lies on one.
 ///
@@ -70,6 +70,12 @@ const fn toward(from: i32, to: i32) -> i32 {
         from - 1
     } else {
         from
+    }
+}
+
+impl From<Block> for Value {
+    fn from(block: Block) -> Value {
+        Value::Pair(block.x, block.y)
     }
 }
 

@@ -1,10 +1,11 @@
-use saoms_api::Failure;
+use saoms_api::{Context, Failure};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
-use crate::messages::{Collision, LuggageStage};
+use crate::messages::Collision;
 
-use super::{Body, Reply};
+use super::RobotKnowledge;
+use super::hooks::Reply;
 
 /// How an action of the hardware stands after this execution's call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,110 +20,120 @@ pub(crate) enum Outcome {
     Failed,
 }
 
-impl Body<'_, '_> {
+impl Outcome {
+    /// Whether the action is not over, or has yet to begin.
+    pub(crate) const fn is_open(self) -> bool {
+        matches!(self, Outcome::Running | Outcome::NotBegun)
+    }
+}
+
+impl RobotKnowledge {
     /// Starts an action and, where it is done at once, takes in what it changed.
-    pub(crate) fn begin(&mut self, action: Action) -> Result<Outcome, Failure> {
+    pub(crate) fn begin(&mut self, context: &mut Context<'_>, action: Action) -> Result<Outcome, Failure> {
         if action.kind != ActionKind::Move {
-            self.show_ready(action);
+            self.show_ready(context, action);
         }
-        match self.hooks.begin(self.context, self.knowledge.number, action)? {
+        match self.hooks.begin(context, self.number, action)? {
             Reply::Later => Ok(Outcome::NotBegun),
             Reply::Answer(progress) => {
                 if action.kind == ActionKind::Move {
-                    self.knowledge.next = action.block;
+                    self.next = action.block;
                 }
-                self.take_in(action, progress)
+                self.take_in(context, action, progress)
             }
         }
     }
 
     /// Asks how the running action goes and, where it is over, takes in what it changed. `None` when none is running.
-    pub(crate) fn poll(&mut self) -> Result<Option<(Action, Outcome)>, Failure> {
+    pub(crate) fn poll(&mut self, context: &mut Context<'_>) -> Result<Option<(Action, Outcome)>, Failure> {
         let Some(action) = self.hooks.running() else { return Ok(None) };
-        let outcome = match self.hooks.poll(self.context, self.knowledge.number)? {
+        let outcome = match self.hooks.poll(context, self.number)? {
             Reply::Later => Outcome::Running,
-            Reply::Answer(progress) => self.take_in(action, progress)?,
+            Reply::Answer(progress) => self.take_in(context, action, progress)?,
         };
         Ok(Some((action, outcome)))
     }
 
-    fn take_in(&mut self, action: Action, progress: Progress) -> Result<Outcome, Failure> {
+    fn take_in(
+        &mut self,
+        context: &mut Context<'_>,
+        action: Action,
+        progress: Progress,
+    ) -> Result<Outcome, Failure> {
         match progress {
             Progress::Running => Ok(Outcome::Running),
-            Progress::Done => self.done(action).map(|()| Outcome::Done),
-            Progress::Failed => self.failed(action).map(|()| Outcome::Failed),
+            Progress::Done => self.done(context, action).map(|()| Outcome::Done),
+            Progress::Failed => {
+                self.failed(context, action);
+                Ok(Outcome::Failed)
+            }
         }
     }
 
-    fn done(&mut self, action: Action) -> Result<(), Failure> {
+    fn done(&mut self, context: &mut Context<'_>, action: Action) -> Result<(), Failure> {
         let Action { kind, block, luggage } = action;
-        let name = &self.knowledge.name;
+        let name = &self.name;
         match kind {
             ActionKind::Move => {
-                self.knowledge.block = block;
-                return self.judge(block);
+                self.block = block;
+                self.judge(context, block)?;
             }
             ActionKind::Collect => {
-                self.context.console(format_args!("{name} says: Luggage collected."));
-                self.context.info(format_args!("collected luggage {luggage} at {block}"));
-                self.knowledge.variables.has_luggage = true;
-                return Ok(());
+                context.console(format_args!("{name} says: Luggage collected."));
+                context.info(format_args!("collected luggage {luggage} at {block}"));
+                self.variables.has_luggage = true;
             }
             ActionKind::Deposit => {
-                self.context.console(format_args!("{name} says: Luggage deposited."));
-                self.context.info(format_args!("deposited luggage {luggage} at {block}"));
+                context.console(format_args!("{name} says: Luggage deposited."));
+                context.info(format_args!("deposited luggage {luggage} at {block}"));
+                self.delivered = self.job;
+                if self.job.is_some() && !self.hooks.is_wired() {
+                    context.count("luggage.delivered", 1);
+                }
+                self.drop_job();
             }
         }
-        if let Some(job) = self.knowledge.job {
-            self.respond(&job, LuggageStage::Delivered)?;
-            if !self.hooks.is_wired() {
-                self.context.count("luggage.delivered", 1);
-            }
-        }
-        self.drop_job();
         Ok(())
     }
 
-    fn failed(&mut self, action: Action) -> Result<(), Failure> {
+    fn failed(&mut self, context: &mut Context<'_>, action: Action) {
         let Action { kind, block, luggage } = action;
         match kind {
             ActionKind::Move => {
-                self.knowledge.next = self.knowledge.block;
-                self.context.warn(format_args!("could not move to {block}"));
+                self.next = self.block;
+                context.warn(format_args!("could not move to {block}"));
             }
             ActionKind::Collect => {
-                self.context
+                context
                     .warn(format_args!("could not collect luggage {luggage} at {block}: gives the job up"));
                 self.drop_job();
             }
             ActionKind::Deposit => {
-                self.context
-                    .warn(format_args!("could not deposit luggage {luggage} at {block}: tries again"));
+                context.warn(format_args!("could not deposit luggage {luggage} at {block}: tries again"));
             }
         }
-        Ok(())
     }
 
     /// The robot is free again.
     fn drop_job(&mut self) {
-        let variables = &mut self.knowledge.variables;
+        let variables = &mut self.variables;
         (variables.busy, variables.transporter, variables.has_luggage) = (false, false, false);
-        self.knowledge.job = None;
+        self.job = None;
     }
 
     /// Without a world nobody else counts collisions: who enters a block that another robot announced to be on does.
-    fn judge(&mut self, block: Block) -> Result<(), Failure> {
-        let other = self.knowledge.lists.peers.on(block).filter(|_| !self.hooks.is_wired());
+    fn judge(&self, context: &mut Context<'_>, block: Block) -> Result<(), Failure> {
+        let other = self.lists.peers.on(block).filter(|_| !self.hooks.is_wired());
         let Some(other) = other.map(|peer| peer.robot) else { return Ok(()) };
-        let collision = Collision { robot: self.knowledge.number, other, block, swap: false };
-        self.context.count("collisions.vertex", 1);
-        self.context.warn(format_args!("{collision}"));
-        self.topics.say_collision(self.context, collision)
+        let collision = Collision { robot: self.number, other, block, swap: false };
+        context.count("collisions.vertex", 1);
+        context.warn(format_args!("{collision}"));
+        context.send(&self.collisions, collision)
     }
 
-    fn show_ready(&mut self, action: Action) {
+    fn show_ready(&self, context: &mut Context<'_>, action: Action) {
         let what = if action.kind == ActionKind::Collect { "collect" } else { "deposit" };
-        let (name, block) = (&self.knowledge.name, action.block);
-        self.context.console(format_args!("{name} says: Ready to {what} luggage in position {block}"));
+        let (name, block) = (&self.name, action.block);
+        context.console(format_args!("{name} says: Ready to {what} luggage in position {block}"));
     }
 }

@@ -1,7 +1,7 @@
 use saoms_api::{CallError, Context, Failure};
 
 use crate::grid::{Block, Map};
-use crate::hardware::{Action, HardwareReference, Progress};
+use crate::hardware::{Action, ActionKind, HardwareReference, Progress};
 
 /// A robot's way to its hardware: what its reference `world` leads to. Where it leads nowhere, every action succeeds at once.
 #[derive(Debug, Default)]
@@ -67,6 +67,16 @@ impl Hooks {
     /// The action that takes its time.
     pub(crate) fn running(&self) -> Option<Action> {
         self.running
+    }
+
+    /// Whether the gripper is at work.
+    pub(crate) fn is_handling(&self) -> bool {
+        self.running.is_some_and(|action| action.kind != ActionKind::Move)
+    }
+
+    /// Whether the wheels are at work.
+    pub(crate) fn is_moving(&self) -> bool {
+        self.running.is_some_and(|action| action.kind == ActionKind::Move)
     }
 
     /// Starts an action.

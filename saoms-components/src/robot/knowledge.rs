@@ -1,10 +1,17 @@
-use crate::grid::Block;
+use saoms_api::{Context, Failure, Knowledge, Publisher, Subscription, Value};
 
+use crate::grid::Block;
+use crate::hardware::Action;
+use crate::messages::{Collision, EventLuggage, Position, Priority, RobotList};
+
+use super::actions::Outcome;
+use super::hooks::Hooks;
+use super::safe::{Energy, Leg, Traffic};
 use super::{Battery, Job, Lists, Routes};
 
-/// What a robot knows: about itself, its job, the others, and the area.
+/// What a robot knows: about itself, its job, the others, and the area. Its loops share it.
 #[derive(Debug)]
-pub struct Knowledge {
+pub struct RobotKnowledge {
     /// Its name.
     pub name: String,
     /// Its number.
@@ -27,12 +34,26 @@ pub struct Knowledge {
     pub lists: Lists,
     /// The area and the ways through it.
     pub routes: Routes,
+    /// Its hardware.
+    pub(super) hooks: Hooks,
+    /// Where it tells of collisions that no world sees.
+    pub(super) collisions: Publisher<Collision>,
+    /// The hardware's action that was running when this execution started, and what became of it.
+    pub(super) polled: Option<(Action, Outcome)>,
+    /// What it deposited and did not tell yet.
+    pub(super) delivered: Option<Job>,
+    /// How long its battery lasts.
+    pub(super) energy: Energy,
+    /// Who is around it.
+    pub(super) traffic: Traffic,
+    /// Where it goes.
+    pub(super) leg: Leg,
 }
 
-impl Knowledge {
+impl RobotKnowledge {
     /// What a robot knows that starts at its charger.
-    pub fn new(name: String, number: u32, charge_block: Block, battery: Battery) -> Knowledge {
-        Knowledge {
+    pub fn new(name: String, number: u32, charge_block: Block, battery: Battery) -> RobotKnowledge {
+        RobotKnowledge {
             name,
             number,
             period: 0,
@@ -44,6 +65,13 @@ impl Knowledge {
             variables: Variables::default(),
             lists: Lists::new(number),
             routes: Routes::default(),
+            hooks: Hooks::default(),
+            collisions: Publisher::default(),
+            polled: None,
+            delivered: None,
+            energy: Energy::default(),
+            traffic: Traffic::default(),
+            leg: Leg::default(),
         }
     }
 
@@ -56,6 +84,50 @@ impl Knowledge {
     pub fn destination(&self) -> Option<Block> {
         let job = self.job.as_ref().filter(|_| self.variables.busy)?;
         Some(if self.variables.has_luggage { job.to } else { job.from })
+    }
+
+    /// Takes in what was said about luggage.
+    pub(super) fn hear_luggage(&mut self, luggage: Subscription<EventLuggage>, context: &Context<'_>) {
+        for (header, event) in context.receive(&luggage).with_headers() {
+            self.lists.requests.hear(event, header);
+        }
+    }
+
+    /// What it says about its position when it wants nothing but what it holds.
+    pub fn position(&self) -> Position {
+        Position {
+            robot: self.number,
+            block: self.block,
+            next: self.next,
+            wanted: self.next,
+            priority: Priority { rank: 0, robot: self.number },
+        }
+    }
+
+    /// What it says about itself.
+    pub fn robot(&self, active: bool) -> RobotList {
+        RobotList {
+            robot: self.number,
+            active,
+            battery: self.battery.percent(),
+            in_charge: self.variables.in_charge,
+            charger: self.charge_block,
+            period: self.period,
+        }
+    }
+}
+
+impl Knowledge for RobotKnowledge {
+    fn declaration(&self) -> &'static str {
+        "[]"
+    }
+
+    fn get(&self, _entry: u32) -> Option<Value> {
+        None
+    }
+
+    fn set(&mut self, entry: u32, _value: Value) -> Result<(), Failure> {
+        Err(Failure::new(format!("a robot's knowledge has no entry {entry}")))
     }
 }
 

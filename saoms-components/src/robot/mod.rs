@@ -1,22 +1,21 @@
-//! The robots: what they know, what they hear, and the two policies by which they act.
+//! The robots: what they know, and the loops by which they act.
 //!
-//! [`Knowledge`] is apart from behaviour. In each execution a robot takes in what arrived, uses its battery, says that it is active, and then
-//! acts by its policy: `safe` (jobs, energy, right of way) or `classic` (the rules of the manual). Both drive the same hooks.
+//! A robot is [`RobotKnowledge`] and an ordered list of MAPE-K loops that share it, one for each concern. The policy tells which: those of
+//! [`safe`] (jobs, energy, right of way) or those of [`classic`] (the rules of the manual). Both drive the same hooks.
 
 mod actions;
 mod battery;
-mod body;
-mod classic;
+pub mod classic;
 mod hooks;
 mod job;
 mod knowledge;
 mod lists;
 mod properties;
 mod routes;
-mod safe;
-mod topics;
+pub mod safe;
+mod show;
 
-use saoms_api::{Class, Component, Context, Failure};
+use saoms_api::{Class, Component, Context, Failure, Loops};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
@@ -24,16 +23,12 @@ use crate::messages::{COLLISION, EVENT_LUGGAGE, POSITION, ROBOT_LIST};
 
 pub use battery::Battery;
 pub use job::Job;
-pub use knowledge::{Knowledge, Variables};
+pub use knowledge::{RobotKnowledge, Variables};
 pub use lists::{Lists, Peers, Request, Requests, Rival};
 pub use properties::{Policy, RobotProperties};
 pub use routes::Routes;
 
-use body::Body;
-use classic::Classic;
 use hooks::{Hooks, Reply};
-use safe::Safe;
-use topics::Topics;
 
 /// Brings luggage from one block to another, together with other robots.
 ///
@@ -59,17 +54,9 @@ use topics::Topics;
     also("robot.Robot010", number = 10)
 )]
 pub struct Robot {
-    knowledge: Knowledge,
-    hooks: Hooks,
-    topics: Topics,
-    rules: Rules,
-}
-
-/// The behaviour of a policy.
-#[derive(Debug)]
-enum Rules {
-    Safe(Safe),
-    Classic(Classic),
+    knowledge: RobotKnowledge,
+    policy: Policy,
+    loops: Loops,
 }
 
 impl Component for Robot {
@@ -80,68 +67,57 @@ impl Component for Robot {
         let charge_block = properties.charge_block(number)?;
         let battery = Battery::new(properties.battery, properties.discharge);
         let name = properties.id.trim().to_owned();
-        Ok(Robot {
-            knowledge: Knowledge::new(name, number, charge_block, battery),
-            hooks: Hooks::default(),
-            topics: Topics::default(),
-            rules: match properties.policy {
-                Policy::Safe => Rules::Safe(Safe::default()),
-                Policy::Classic => Rules::Classic(Classic::default()),
-            },
-        })
+        let knowledge = RobotKnowledge::new(name, number, charge_block, battery);
+        Ok(Robot { knowledge, policy: properties.policy, loops: Loops::default() })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.topics = Topics::new(context)?;
-        self.hooks = Hooks::new(context)?;
+        self.loops = match self.policy {
+            Policy::Safe => safe::loops()?,
+            Policy::Classic => classic::loops()?,
+        };
+        self.knowledge.hooks = Hooks::new(context)?;
+        self.knowledge.collisions = context.publish(&COLLISION)?;
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
         self.enter(context)?;
-        if matches!(self.rules, Rules::Safe(_)) {
-            // Before anybody moves, everybody has to know which blocks are held.
-            self.topics.say_position(context, self.knowledge.position())?;
-        }
-        Ok(())
+        self.loops.initialize(&mut self.knowledge, context)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let entered = self.enter(context)?;
-        self.topics.listen(context, &mut self.knowledge);
-        if !entered {
-            return Ok(());
+        if entered {
+            context.console(format_args!(
+                "Execution {} of {} starts at {}",
+                context.execution(),
+                self.knowledge.name,
+                Timestamp(context.now())
+            ));
         }
-        context.console(format_args!(
-            "Execution {} of {} starts at {}",
-            context.execution(),
-            self.knowledge.name,
-            Timestamp(context.now())
-        ));
-        let mut body = Body {
-            knowledge: &mut self.knowledge,
-            hooks: &mut self.hooks,
-            topics: &mut self.topics,
-            context,
-        };
-        match &mut self.rules {
-            Rules::Safe(safe) => safe.execute(&mut body),
-            Rules::Classic(classic) => classic.execute(&mut body),
+        self.knowledge.polled = None;
+        self.loops.monitor(&mut self.knowledge, context)?;
+        if entered {
+            self.knowledge.show_lists(context);
+            self.loops.adapt(&mut self.knowledge, context)?;
+            self.knowledge.show_battery(context);
         }
+        Ok(())
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.hooks.stop(context, self.knowledge.number)?;
-        self.topics.say_robot(context, &self.knowledge, false)
+        self.knowledge.hooks.stop(context, self.knowledge.number)?;
+        self.loops.shutdown(&mut self.knowledge, context)
     }
 }
 
 impl Robot {
     /// Says to the world that the robot is there, and learns the map; `false` while the world cannot be reached.
     fn enter(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
-        if self.hooks.has_entered() {
+        let knowledge = &mut self.knowledge;
+        if knowledge.hooks.has_entered() {
             return Ok(true);
         }
-        let knowledge = &mut self.knowledge;
-        match self.hooks.enter(context, knowledge.number, &knowledge.name, knowledge.block)? {
+        match knowledge.hooks.enter(context, knowledge.number, &knowledge.name, knowledge.block)? {
             Reply::Later => Ok(false),
             Reply::Answer((block, map)) => {
                 (knowledge.block, knowledge.next) = (block, block);

@@ -20,12 +20,20 @@ pub struct Lists {
     pub requests: Requests,
     /// Where the other robots are and go.
     pub peers: Peers,
+    /// Robots that cannot move any more, until it is known where they are.
+    pub lost: Vec<u32>,
 }
 
 impl Lists {
     /// The empty lists of the robot with this number.
     pub fn new(number: u32) -> Lists {
-        Lists { number, active: Vec::new(), requests: Requests::new(number), peers: Peers::new(number) }
+        Lists {
+            number,
+            active: Vec::new(),
+            requests: Requests::new(number),
+            peers: Peers::new(number),
+            lost: Vec::new(),
+        }
     }
 
     /// The longest time from one execution to the next of the other robots, in microseconds.

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use saoms_api::Time;
+use saoms_api::{Cause, Header, Time};
 
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage};
@@ -22,6 +22,8 @@ pub struct Request {
     pub job: Job,
     /// When it was asked for.
     pub since: Time,
+    /// Why.
+    pub cause: Cause,
     /// The other robots that took an interest and did not take it back.
     pub rivals: Vec<Rival>,
     /// How many executions the battery has to last before this robot thinks about it again; 0 while it did not.
@@ -63,10 +65,10 @@ impl Requests {
         Requests { number, open: Vec::new(), claimed: None }
     }
 
-    /// Takes in a request or a response that was sent at this time; the own responses do not count.
-    pub fn hear(&mut self, event: &EventLuggage, sent: Time) {
+    /// Takes in a request or a response; the own responses do not count.
+    pub fn hear(&mut self, event: &EventLuggage, header: Header) {
         if event.stage == LuggageStage::Request {
-            return self.hear_request(event, sent);
+            return self.hear_request(event, header);
         }
         if event.robot == self.number {
             return;
@@ -85,11 +87,17 @@ impl Requests {
         }
     }
 
-    fn hear_request(&mut self, event: &EventLuggage, since: Time) {
+    fn hear_request(&mut self, event: &EventLuggage, header: Header) {
         let mut known = self.open.iter().chain(&self.claimed);
         if !known.any(|request| request.job.luggage == event.luggage) {
             let job = Job { luggage: event.luggage, from: event.from, to: event.to };
-            self.open.push(Request { job, since, rivals: Vec::new(), needs: 0 });
+            self.open.push(Request {
+                job,
+                since: header.sent,
+                cause: header.cause,
+                rivals: Vec::new(),
+                needs: 0,
+            });
         }
     }
 

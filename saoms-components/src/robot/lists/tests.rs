@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use saoms_api::Time;
+use saoms_api::{Cause, Header, Time};
 
 use super::{Lists, Rival};
 use crate::grid::Block;
@@ -8,8 +8,8 @@ use crate::messages::{EventLuggage, LuggageStage, Position, RobotList};
 
 const MINE: u32 = 2;
 
-fn at(seconds: u64) -> Time {
-    Time::START + Duration::from_secs(seconds)
+fn at(seconds: u64) -> Header {
+    Header { sender: 0, sent: Time::START + Duration::from_secs(seconds), cause: Cause::default() }
 }
 
 fn request(luggage: u32) -> EventLuggage {

@@ -24,7 +24,7 @@ const SHORT_PATIENCE: u32 = 3;
 
 /// A robot's view of the robots around it, and what it wants.
 #[derive(Debug, Default)]
-pub(super) struct Traffic {
+pub(crate) struct Traffic {
     near: Vec<Position>,
     wanted: Option<Block>,
     /// The block that it left last: not the first choice when another one is as good.
@@ -89,9 +89,9 @@ impl Traffic {
         self.waited = 0;
     }
 
-    /// Whether nobody else holds or wants the block.
-    pub(super) fn is_clear(&self, block: Block) -> bool {
-        !self.near.iter().any(|peer| peer.holds(block) || peer.wanted == block)
+    /// Another robot that holds the block, or wants it.
+    pub(super) fn in_the_way(&self, block: Block) -> Option<u32> {
+        self.near.iter().find(|peer| peer.holds(block) || peer.wanted == block).map(|peer| peer.robot)
     }
 
     /// For how many executions the robot wanted to go on and could not.

@@ -1,0 +1,116 @@
+use saoms_api::{Context, Failure, Loop, Record, Recordable, record};
+
+use crate::robot::RobotKnowledge;
+
+/// The battery level at which a robot has to charge, in percent.
+const LOW: u32 = 35;
+
+/// Uses the battery, and goes under charge when it is low.
+#[derive(Debug, Default)]
+pub struct BatteryMS;
+
+/// How the battery stands.
+#[derive(Clone, Copy, Debug)]
+pub enum BatterySymptom {
+    /// It is low, in percent.
+    Low(f64),
+    /// It is charged.
+    Full,
+}
+
+/// What to do about it.
+#[derive(Clone, Copy, Debug)]
+pub enum BatteryDecision {
+    /// Go under charge after the present job.
+    Charge,
+    /// Be ready.
+    BeReady,
+}
+
+impl Recordable for BatterySymptom {
+    fn record(&self) -> Record {
+        match *self {
+            BatterySymptom::Low(battery) => record!("has low battery: {battery} %", battery),
+            BatterySymptom::Full => record!("is fully charged"),
+        }
+    }
+}
+
+impl Recordable for BatteryDecision {
+    fn record(&self) -> Record {
+        match self {
+            BatteryDecision::Charge => record!("goes under charge after its job"),
+            BatteryDecision::BeReady => record!("is ready"),
+        }
+    }
+}
+
+impl Loop for BatteryMS {
+    type Properties = ();
+    type Knowledge = RobotKnowledge;
+    type Symptom = BatterySymptom;
+    type Decision = BatteryDecision;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(BatteryMS)
+    }
+
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
+        if knowledge.variables.in_charge {
+            knowledge.battery.charge();
+        } else if knowledge.block != knowledge.charge_block {
+            knowledge.battery.drain();
+        }
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<BatterySymptom>, Failure> {
+        let (variables, battery) = (&knowledge.variables, &knowledge.battery);
+        Ok(if variables.in_charge {
+            battery.is_full().then_some(BatterySymptom::Full)
+        } else {
+            let low = battery.is_at_most(LOW) && knowledge.block != knowledge.charge_block;
+            (low && !variables.ready_to_go_under_charge).then(|| BatterySymptom::Low(battery.percent()))
+        })
+    }
+
+    fn plan(
+        &mut self,
+        symptom: BatterySymptom,
+        _knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<BatteryDecision>, Failure> {
+        Ok(Some(match symptom {
+            BatterySymptom::Low(_) => BatteryDecision::Charge,
+            BatterySymptom::Full => BatteryDecision::BeReady,
+        }))
+    }
+
+    fn execute(
+        &mut self,
+        decision: BatteryDecision,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let variables = &mut knowledge.variables;
+        match decision {
+            BatteryDecision::Charge => {
+                variables.ready_to_go_under_charge = true;
+                let battery = &knowledge.battery;
+                context.info(format_args!("has low battery ({battery} %): charges after its job"));
+            }
+            BatteryDecision::BeReady => {
+                let name = &knowledge.name;
+                context.console(format_args!("{name} is now fully charged and ready (but still asleep)"));
+                // It sleeps for the rest of this execution, and nobody has to wake it in the next.
+                variables.in_charge = variables.busy;
+                variables.busy = false;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,76 @@
+use saoms_api::{Context, Failure, Loop, Publisher, Record, Subscription, record};
+
+use crate::messages::{ROBOT_LIST, RobotList};
+use crate::robot::RobotKnowledge;
+
+/// Knows which robots are active, and says in each execution that this one is.
+#[derive(Debug, Default)]
+pub struct RobotListMS {
+    robots: Publisher<RobotList>,
+    robots_heard: Subscription<RobotList>,
+    known: usize,
+}
+
+impl Loop for RobotListMS {
+    type Properties = ();
+    type Knowledge = RobotKnowledge;
+    type Symptom = Record;
+    type Decision = Record;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(RobotListMS::default())
+    }
+
+    fn initialize(
+        &mut self,
+        _knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.robots = context.publish(&ROBOT_LIST)?;
+        self.robots_heard = context.subscribe(&ROBOT_LIST)?;
+        Ok(())
+    }
+
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        for robot in context.receive(&self.robots_heard) {
+            knowledge.lists.hear_robot(robot);
+            knowledge.routes.learn_charger(robot.charger);
+        }
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Record>, Failure> {
+        context.send(&self.robots, knowledge.robot(true))?;
+        let robots = knowledge.lists.active.len();
+        let changed = std::mem::replace(&mut self.known, robots) != robots;
+        Ok(changed.then(|| {
+            record!("knows of {robots} other robots", robots = u32::try_from(robots).unwrap_or(u32::MAX))
+        }))
+    }
+
+    fn plan(
+        &mut self,
+        _symptom: Record,
+        _knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<Record>, Failure> {
+        Ok(None)
+    }
+
+    fn execute(
+        &mut self,
+        _decision: Record,
+        _knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.send(&self.robots, knowledge.robot(false))
+    }
+}

@@ -1,0 +1,294 @@
+use saoms_api::{Cause, Context, Failure, Level, Loop, Publisher, Record, Recordable, Subscription, record};
+
+use crate::grid::Block;
+use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
+use crate::robot::{Job, Request, RobotKnowledge};
+
+use super::energy::Means;
+
+/// A request that waits for so many executions counts as one block closer, so that none waits for ever.
+const PATIENCE: u64 = 4;
+
+/// Decides which luggage this robot brings.
+///
+/// A free robot takes an interest in one request and says so, from where it is. It takes the job in an execution in which no interest of
+/// another robot is known; where there are several, all but the closest take theirs back and the closest waits for that. Of two robots
+/// at least one hears of the other's interest before it decides, so no luggage is taken twice, however late messages are.
+#[derive(Debug, Default)]
+pub struct EventLuggageMS {
+    /// From where the robot said that it is interested.
+    said_at: Block,
+    /// Whether it warned that some luggage is out of its reach.
+    warned: bool,
+    luggage: Publisher<EventLuggage>,
+    luggage_heard: Subscription<EventLuggage>,
+}
+
+/// What there is to decide about luggage.
+#[derive(Clone, Copy, Debug)]
+pub enum EventLuggageSymptom {
+    /// Luggage waits, and suits this robot best.
+    Waiting {
+        /// Its place on the list.
+        place: usize,
+        /// What there is to bring.
+        job: Job,
+        /// How far away it is.
+        distance: u32,
+    },
+    /// This robot is interested, and nobody else is.
+    Alone(Job),
+    /// Another robot is interested and closer, or the battery got low.
+    Beaten {
+        /// What this robot was interested in.
+        job: Job,
+        /// The other robot; `None` where this one has to charge.
+        by: Option<u32>,
+    },
+    /// Another robot took what this one was interested in.
+    Gone,
+}
+
+/// What to do about it.
+#[derive(Clone, Copy, Debug)]
+pub enum EventLuggageDecision {
+    /// Take an interest, and say so.
+    TakeInterest {
+        /// The request's place on the list.
+        place: usize,
+        /// What there is to bring.
+        job: Job,
+    },
+    /// Think about it again when the battery lasts for so many executions.
+    Postpone {
+        /// The request's place on the list.
+        place: usize,
+        /// The executions.
+        needs: u32,
+    },
+    /// Leave it to others: it is out of reach.
+    Refuse {
+        /// The request's place on the list.
+        place: usize,
+        /// What there is to bring.
+        job: Job,
+    },
+    /// Bring it.
+    Take(Job),
+    /// Take the interest back.
+    Release(Job),
+    /// Look for other luggage.
+    Forget,
+}
+
+impl Recordable for EventLuggageSymptom {
+    fn record(&self) -> Record {
+        match *self {
+            EventLuggageSymptom::Waiting { job: Job { luggage, from, .. }, distance, .. } => {
+                record!("luggage {luggage} waits at {from}, {distance} blocks away", luggage, from, distance)
+            }
+            EventLuggageSymptom::Alone(Job { luggage, .. }) => {
+                record!("no other robot is interested in luggage {luggage}", luggage)
+            }
+            EventLuggageSymptom::Beaten { job: Job { luggage, .. }, by: Some(robot) } => {
+                record!("robot {robot} is closer to luggage {luggage}", robot, luggage)
+            }
+            EventLuggageSymptom::Beaten { job: Job { luggage, .. }, by: None } => {
+                record!("has to charge, and said that it would bring luggage {luggage}", luggage)
+            }
+            EventLuggageSymptom::Gone => record!("another robot takes the luggage"),
+        }
+    }
+}
+
+impl Recordable for EventLuggageDecision {
+    fn record(&self) -> Record {
+        match *self {
+            EventLuggageDecision::TakeInterest { job: Job { luggage, .. }, .. } => {
+                record!("would bring luggage {luggage}, and asks who else would", luggage)
+            }
+            EventLuggageDecision::Postpone { needs, .. } => {
+                record!("charges first: that takes {needs} executions", needs)
+            }
+            EventLuggageDecision::Refuse { job: Job { luggage, .. }, .. } => {
+                record!("leaves luggage {luggage} to others: its battery never lasts for that", luggage)
+            }
+            EventLuggageDecision::Take(Job { luggage, from, to }) => {
+                record!("brings luggage {luggage} from {from} to {to}", luggage, from, to)
+            }
+            EventLuggageDecision::Release(Job { luggage, .. }) => {
+                record!("leaves luggage {luggage} to others", luggage)
+            }
+            EventLuggageDecision::Forget => record!("looks for other luggage"),
+        }
+    }
+}
+
+impl Loop for EventLuggageMS {
+    type Properties = ();
+    type Knowledge = RobotKnowledge;
+    type Symptom = EventLuggageSymptom;
+    type Decision = EventLuggageDecision;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(EventLuggageMS::default())
+    }
+
+    fn initialize(
+        &mut self,
+        _knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.luggage = context.publish(&EVENT_LUGGAGE)?;
+        self.luggage_heard = context.subscribe(&EVENT_LUGGAGE)?;
+        Ok(())
+    }
+
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        knowledge.hear_luggage(self.luggage_heard, context);
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<Option<EventLuggageSymptom>, Failure> {
+        if knowledge.variables.busy || knowledge.hooks.running().is_some() {
+            return Ok(None);
+        }
+        if knowledge.variables.transporter {
+            return Ok(self.look_at_claimed(knowledge));
+        }
+        if knowledge.energy.must_charge() {
+            return Ok(None);
+        }
+        knowledge.keep_usual_reserve();
+        let Some((symptom, cause)) = look_for_luggage(knowledge, context) else { return Ok(None) };
+        context.because(cause);
+        Ok(Some(symptom))
+    }
+
+    fn plan(
+        &mut self,
+        symptom: EventLuggageSymptom,
+        knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<EventLuggageDecision>, Failure> {
+        Ok(Some(match symptom {
+            EventLuggageSymptom::Waiting { place, job, .. } => match knowledge.means(&job) {
+                Means::Enough => EventLuggageDecision::TakeInterest { place, job },
+                Means::Needs(needs) => EventLuggageDecision::Postpone { place, needs },
+                Means::Never => EventLuggageDecision::Refuse { place, job },
+            },
+            EventLuggageSymptom::Alone(job) => EventLuggageDecision::Take(job),
+            EventLuggageSymptom::Beaten { job, .. } => EventLuggageDecision::Release(job),
+            EventLuggageSymptom::Gone => EventLuggageDecision::Forget,
+        }))
+    }
+
+    fn execute(
+        &mut self,
+        decision: EventLuggageDecision,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let stage = match decision {
+            EventLuggageDecision::TakeInterest { place, job } => {
+                knowledge.lists.requests.claim(place);
+                knowledge.variables.transporter = true;
+                self.said_at = knowledge.block;
+                let name = &knowledge.name;
+                context.console(format_args!("{name} is bringing luggage from {} to {}", job.from, job.to));
+                (job, LuggageStage::Interest)
+            }
+            EventLuggageDecision::Postpone { place, needs } => {
+                knowledge.lists.requests.open_mut()[place].needs = needs;
+                return Ok(());
+            }
+            EventLuggageDecision::Refuse { place, job } => {
+                knowledge.lists.requests.remove(place);
+                self.warn(&job, knowledge, context);
+                return Ok(());
+            }
+            EventLuggageDecision::Take(job) => {
+                knowledge.lists.requests.settle();
+                knowledge.variables.busy = true;
+                knowledge.job = Some(job);
+                knowledge.set_out(&job);
+                context.info(format_args!("takes luggage {} from {} to {}", job.luggage, job.from, job.to));
+                (job, LuggageStage::Taken)
+            }
+            EventLuggageDecision::Release(job) => {
+                knowledge.variables.transporter = false;
+                knowledge.lists.requests.put_back();
+                (job, LuggageStage::Release)
+            }
+            EventLuggageDecision::Forget => {
+                knowledge.variables.transporter = false;
+                return Ok(());
+            }
+        };
+        let (job, stage) = stage;
+        context.send(&self.luggage, job.response(knowledge.number, knowledge.block, stage))
+    }
+}
+
+impl EventLuggageMS {
+    /// How what this robot is interested in stands; `None` while it waits for others to take their interest back.
+    fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<EventLuggageSymptom> {
+        let Some(request) = knowledge.lists.requests.claimed() else {
+            return Some(EventLuggageSymptom::Gone);
+        };
+        let job = request.job;
+        if knowledge.energy.must_charge() {
+            return Some(EventLuggageSymptom::Beaten { job, by: None });
+        }
+        let by = closer_rival(request, self.said_at, knowledge.number);
+        if by.is_some() {
+            return Some(EventLuggageSymptom::Beaten { job, by });
+        }
+        request.rivals.is_empty().then_some(EventLuggageSymptom::Alone(job))
+    }
+
+    fn warn(&mut self, job: &Job, knowledge: &RobotKnowledge, context: &mut Context<'_>) {
+        let level = if std::mem::replace(&mut self.warned, true) { Level::Debug } else { Level::Warning };
+        let Job { luggage, from, to } = *job;
+        let full = knowledge.battery.executions_when_full();
+        context.log(
+            level,
+            format_args!(
+                "cannot bring luggage {luggage} from {from} to {to}: no way leads there and back within the {full} executions of a full battery"
+            ),
+        );
+    }
+}
+
+/// The request that suits this robot best, and what caused it.
+fn look_for_luggage(
+    knowledge: &RobotKnowledge,
+    context: &Context<'_>,
+) -> Option<(EventLuggageSymptom, Cause)> {
+    let (now, period) = (context.now(), context.period().as_nanos().max(1));
+    let (block, number) = (knowledge.block, knowledge.number);
+    let left = knowledge.battery.executions_left();
+    let score = |request: &Request| {
+        let credit = now.since(request.since).as_nanos() / period / u128::from(PATIENCE);
+        i128::from(block.distance(request.job.from)) - i128::try_from(credit).unwrap_or(i128::MAX)
+    };
+    let suits = |request: &Request| request.needs <= left && closer_rival(request, block, number).is_none();
+    let requests = knowledge.lists.requests.open().iter().enumerate();
+    let best = requests.filter(|(_, request)| suits(request)).min_by_key(|(_, request)| score(request));
+    best.map(|(place, request)| {
+        let distance = block.distance(request.job.from);
+        (EventLuggageSymptom::Waiting { place, job: request.job, distance }, request.cause)
+    })
+}
+
+/// A robot that is interested and closer; at the same distance the lower number is.
+fn closer_rival(request: &Request, block: Block, number: u32) -> Option<u32> {
+    let from = request.job.from;
+    let mine = (block.distance(from), number);
+    let closer = |rival: &&crate::robot::Rival| (rival.block.distance(from), rival.robot) < mine;
+    request.rivals.iter().find(closer).map(|rival| rival.robot)
+}

@@ -1,0 +1,63 @@
+use saoms_api::Time;
+
+use crate::grid::Block;
+use crate::messages::Priority;
+use crate::robot::RobotKnowledge;
+
+/// The way to one goal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Leg {
+    pub(super) goal: Option<Block>,
+    pub(super) urgency: Urgency,
+    since: Time,
+}
+
+/// What a way is for, the most urgent last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Urgency {
+    /// Nothing: the robot is where it wants to be.
+    #[default]
+    None,
+    /// Going home without a job.
+    Home,
+    /// Bringing luggage.
+    Job,
+    /// Reaching the charger in time.
+    Energy,
+}
+
+impl Leg {
+    /// The more urgent way goes first; of two alike, the one that lasts longer. It stays the same on the whole way: robots that swap their
+    /// priorities would push each other to and fro.
+    pub(super) fn priority(&self, robot: u32) -> Priority {
+        const MOST: u64 = (1 << 56) - 1;
+        // Quarters of microseconds: the time of a run fits for more than 500 years.
+        let age = MOST - (self.since.as_nanos() >> 8).min(MOST);
+        Priority { rank: (self.urgency as u64) << 56 | age, robot }
+    }
+}
+
+impl RobotKnowledge {
+    /// Decides where to go from now on, and how urgently.
+    pub(super) fn set_leg(&mut self, now: Time) {
+        let (goal, urgency) = if self.energy.must_charge() {
+            (Some(self.charge_block), Urgency::Energy)
+        } else if let Some(destination) = self.destination() {
+            (Some(destination), Urgency::Job)
+        } else if self.variables.transporter {
+            (None, Urgency::None)
+        } else {
+            (Some(self.charge_block), Urgency::Home)
+        };
+        let arrived = goal.is_none_or(|goal| goal == self.next);
+        let urgency = if arrived { Urgency::None } else { urgency };
+        if (goal, urgency) != (self.leg.goal, self.leg.urgency) {
+            self.leg = Leg { goal, urgency, since: now };
+        }
+        if let Some(goal) = goal {
+            self.routes.head_for(goal);
+        }
+        self.variables.ready_to_go_under_charge = self.energy.must_charge();
+        self.variables.reaching_charge = urgency == Urgency::Energy;
+    }
+}

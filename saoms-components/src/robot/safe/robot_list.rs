@@ -1,0 +1,114 @@
+use saoms_api::{Context, Failure, Loop, Publisher, Record, Recordable, Subscription, record};
+
+use crate::messages::{ROBOT_LIST, RobotList};
+use crate::robot::RobotKnowledge;
+
+/// Knows which robots are active, and says that this one is.
+///
+/// It repeats that only where others learn something from it: when its battery changed, and when it starts or ends charging.
+#[derive(Debug, Default)]
+pub struct RobotListMS {
+    said: Option<RobotList>,
+    robots: Publisher<RobotList>,
+    robots_heard: Subscription<RobotList>,
+}
+
+/// A robot repeats that it is active when its battery changed by so many percent.
+const BATTERY_STEP: f64 = 5.0;
+
+/// What others do not know about this robot.
+#[derive(Clone, Copy, Debug)]
+pub struct RobotListSymptom {
+    battery: f64,
+    in_charge: bool,
+}
+
+/// To say so.
+#[derive(Clone, Copy, Debug)]
+pub struct SayRobot;
+
+impl Recordable for RobotListSymptom {
+    fn record(&self) -> Record {
+        let battery = self.battery;
+        match self.in_charge {
+            true => record!("is in charge with {battery} %, which the others do not know", battery),
+            false => record!("has {battery} % left, which the others do not know", battery),
+        }
+    }
+}
+
+impl Recordable for SayRobot {
+    fn record(&self) -> Record {
+        record!("tells them")
+    }
+}
+
+impl Loop for RobotListMS {
+    type Properties = ();
+    type Knowledge = RobotKnowledge;
+    type Symptom = RobotListSymptom;
+    type Decision = SayRobot;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(RobotListMS::default())
+    }
+
+    fn initialize(
+        &mut self,
+        _knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.robots = context.publish(&ROBOT_LIST)?;
+        self.robots_heard = context.subscribe(&ROBOT_LIST)?;
+        Ok(())
+    }
+
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        for robot in context.receive(&self.robots_heard) {
+            knowledge.lists.hear_robot(robot);
+            knowledge.routes.learn_charger(robot.charger);
+            if robot.is_out_of_battery() {
+                knowledge.lists.lost.push(robot.robot);
+            }
+        }
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<RobotListSymptom>, Failure> {
+        let (battery, in_charge) = (knowledge.battery.percent(), knowledge.variables.in_charge);
+        let news = self.said.as_ref().is_none_or(|said| {
+            said.in_charge != in_charge
+                || (said.battery - battery).abs() >= BATTERY_STEP
+                || (knowledge.energy.is_stranded() && said.battery > 0.0)
+        });
+        Ok(news.then_some(RobotListSymptom { battery, in_charge }))
+    }
+
+    fn plan(
+        &mut self,
+        _symptom: RobotListSymptom,
+        _knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<SayRobot>, Failure> {
+        Ok(Some(SayRobot))
+    }
+
+    fn execute(
+        &mut self,
+        _decision: SayRobot,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let robot = knowledge.robot(true);
+        self.said = Some(robot.clone());
+        context.send(&self.robots, robot)
+    }
+
+    fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.send(&self.robots, knowledge.robot(false))
+    }
+}
