@@ -35,6 +35,9 @@ impl Console {
             ConsoleStyle::Plain => Shown::Plain,
             ConsoleStyle::Classic => Shown::Classic,
         };
+        if shown == Shown::Classic {
+            print("Starting...\n");
+        }
         let on_terminal = std::io::stdout().is_terminal() && std::io::stderr().is_terminal();
         let bar = (shown == Shown::Plain && on_terminal).then(|| {
             let style = ProgressStyle::with_template("{spinner} {msg}");

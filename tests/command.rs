@@ -159,6 +159,27 @@ fn ctrl_c_ends_through_shutdown_and_still_reports() {
     assert!(report["components"][0]["executions"].as_u64().unwrap() >= 2);
 }
 
+/// Five hours west of Greenwich, or as the manual's figures have it.
+#[test]
+fn the_classic_console_shows_local_time_or_that_of_the_figures() {
+    let fleet = file(&folder("date"), "one.composite", ONE_ROBOT);
+    let first = |arguments: &[&str]| {
+        let arguments = [&["run", &fleet, "--for", "50ms", "--console", "classic"], arguments].concat();
+        let shown = stdout(&command(&arguments).env("TZ", "XXX5").output().unwrap());
+        shown.lines().find(|line| line.starts_with("Execution 0 of")).unwrap().to_owned()
+    };
+    assert_eq!(first(&["--virtual"]), "Execution 0 of Robot001 starts at 2015-01-23 14:32:35.0");
+    let zone_now = || {
+        let utc = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+        saoms_components::console::Timestamp(utc - std::time::Duration::from_secs(5 * 3600)).to_string()
+    };
+    // What sorts as text: dates to the second.
+    let second = |date: &str| date.split('.').next().unwrap().to_owned();
+    let (before, shown, after) = (zone_now(), first(&[]), zone_now());
+    let shown = second(shown.strip_prefix("Execution 0 of Robot001 starts at ").unwrap());
+    assert!(second(&before) <= shown && shown <= second(&after), "{before} {shown} {after}");
+}
+
 /// Nobody reads what the fleet says, so that it cannot end by itself once it was asked to.
 #[test]
 fn a_second_ctrl_c_ends_at_once() {

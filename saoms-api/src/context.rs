@@ -50,6 +50,11 @@ impl<'a> Context<'a> {
         self.host.now()
     }
 
+    /// The present local date and time of day, as the time since 1970-01-01 00:00. `None` in virtual time, which has no date.
+    pub fn date(&self) -> Option<Duration> {
+        self.host.date()
+    }
+
     /// When the present execution was due.
     pub fn due(&self) -> Time {
         self.host.due()
@@ -240,6 +245,8 @@ pub trait Host {
     fn sender(&self) -> u32;
     /// See [`Context::now`].
     fn now(&self) -> Time;
+    /// See [`Context::date`].
+    fn date(&self) -> Option<Duration>;
     /// See [`Context::due`].
     fn due(&self) -> Time;
     /// See [`Context::execution`].

@@ -1,8 +1,9 @@
 //! What the lines of the original's console have in common.
 
 use std::fmt;
+use std::time::Duration;
 
-use saoms_api::Time;
+use saoms_api::Context;
 
 /// A list as Java prints it: `[a, b]`.
 pub struct JavaList<I>(pub I);
@@ -28,22 +29,28 @@ impl<I> fmt::Debug for JavaList<I> {
     }
 }
 
-/// A time of the run as the manual's figures show it: a run starts in the second in which that of figure 8.1 did, and decimals end
-/// with their last digit that is not 0, at least one.
+/// A date and time of day, given since 1970-01-01 00:00, as the manual's figures show it: decimals end with their last digit that is
+/// not 0, at least one.
 #[derive(Clone, Copy, Debug)]
-pub struct Timestamp(pub Time);
+pub struct Timestamp(pub Duration);
 
-/// 2015-01-23 14:32:35 in seconds since 1970.
-const EPOCH: u64 = 1_422_023_555;
+/// 2015-01-23 14:32:35: the second in which the run of the manual's figure 8.1 started.
+const START: Duration = Duration::from_secs(1_422_023_555);
+
+impl Timestamp {
+    /// The present date; a run in virtual time, which has none, starts in the second in which that of figure 8.1 did.
+    pub fn now(context: &Context<'_>) -> Timestamp {
+        Timestamp(context.date().unwrap_or_else(|| START + Duration::from_nanos(context.now().as_nanos())))
+    }
+}
 
 impl fmt::Display for Timestamp {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let millis = self.0.as_nanos() / 1_000_000;
-        let seconds = EPOCH + millis / 1000;
+        let (seconds, millis) = (self.0.as_secs(), self.0.subsec_millis());
         let (year, month, day) = date(seconds / 86_400);
         let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
         write!(formatter, "{year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}.")?;
-        match millis % 1000 {
+        match millis {
             0 => formatter.write_str("0"),
             tenths if tenths % 100 == 0 => write!(formatter, "{}", tenths / 100),
             hundredths if hundredths % 10 == 0 => write!(formatter, "{:02}", hundredths / 10),
@@ -71,7 +78,7 @@ mod tests {
     use super::*;
 
     fn shown(millis: u64) -> String {
-        Timestamp(Time::from_nanos(millis * 1_000_000)).to_string()
+        Timestamp(START + Duration::from_millis(millis)).to_string()
     }
 
     #[test]

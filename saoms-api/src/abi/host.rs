@@ -68,6 +68,8 @@ pub struct HostFunctions {
     pub name: unsafe extern "C" fn(*mut c_void) -> Bytes,
     pub sender: unsafe extern "C" fn(*mut c_void) -> u32,
     pub now: unsafe extern "C" fn(*mut c_void) -> u64,
+    /// In nanoseconds since 1970-01-01 00:00 of local time; `UINT64_MAX`: there is no date.
+    pub date: unsafe extern "C" fn(*mut c_void) -> u64,
     pub due: unsafe extern "C" fn(*mut c_void) -> u64,
     pub execution: unsafe extern "C" fn(*mut c_void) -> u64,
     /// In nanoseconds.
@@ -180,6 +182,7 @@ getters! {
     name -> Bytes, Bytes::NONE, |host| Bytes::text(host.name());
     sender -> u32, 0, |host| host.sender();
     now -> u64, 0, |host| host.now().as_nanos();
+    date -> u64, u64::MAX, |host| host.date().map_or(u64::MAX, nanos);
     due -> u64, 0, |host| host.due().as_nanos();
     execution -> u64, 0, |host| host.execution();
     period -> u64, 0, |host| nanos(host.period());
@@ -451,6 +454,7 @@ static FUNCTIONS: HostFunctions = HostFunctions {
     name,
     sender,
     now,
+    date,
     due,
     execution,
     period,

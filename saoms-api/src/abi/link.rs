@@ -98,6 +98,11 @@ impl Host for Link<'_> {
         time(get!(self.now))
     }
 
+    fn date(&self) -> Option<Duration> {
+        let nanos = get!(self.date);
+        (nanos != u64::MAX).then(|| Duration::from_nanos(nanos))
+    }
+
     fn due(&self) -> Time {
         time(get!(self.due))
     }

@@ -76,6 +76,10 @@ impl Host for FakeHost {
         2
     }
 
+    fn date(&self) -> Option<Duration> {
+        None
+    }
+
     fn period(&self) -> Duration {
         Duration::from_millis(500)
     }

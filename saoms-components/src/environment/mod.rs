@@ -66,7 +66,7 @@ impl Component for Environment {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.publish(&ENVIRONMENT)?;
         self.responses = context.subscribe(&EVENT_LUGGAGE)?;
-        let now = Timestamp(context.now());
+        let now = Timestamp::now(context);
         context.console(format_args!("Environment tests start at {now}"));
         if self.scenario.events().is_empty() {
             context.info(format_args!("has no scenario: publishes nothing"));
@@ -105,7 +105,7 @@ impl Component for Environment {
 impl Environment {
     fn play(&mut self, context: &mut Context<'_>, event: Event) -> Result<(), Failure> {
         self.played += 1;
-        let (test, now) = (self.played, Timestamp(context.now()));
+        let (test, now) = (self.played, Timestamp::now(context));
         match event {
             Event::Luggage { from, to } => {
                 self.luggage += 1;

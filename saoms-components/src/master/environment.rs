@@ -36,13 +36,13 @@ impl Component for MasterEnvironment {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         self.exceptional = context.publish(&EXCEPTIONAL_EVENT)?;
         context.count("luggage.requested", 0);
-        let now = Timestamp(context.now());
+        let now = Timestamp::now(context);
         context.console(format_args!("MasterEnvironmentManagingSystem starts at {now}"));
         Ok(())
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let now = Timestamp(context.now());
+        let now = Timestamp::now(context);
         for event in context.receive(&self.events) {
             for luggage in &event.luggage {
                 context.count("luggage.requested", 1);

@@ -35,7 +35,7 @@ impl Component for MasterRobot {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robots = context.subscribe(&ROBOT_LIST)?;
         self.exceptional = context.subscribe(&EXCEPTIONAL_EVENT)?;
-        let now = Timestamp(context.now());
+        let now = Timestamp::now(context);
         context.console(format_args!("MasterRobotManagingSystem starts at {now}"));
         Ok(())
     }

@@ -91,7 +91,7 @@ impl Component for Robot {
                 "Execution {} of {} starts at {}",
                 context.execution(),
                 self.knowledge.name,
-                Timestamp(context.now())
+                Timestamp::now(context)
             ));
         }
         self.knowledge.polled = None;

@@ -272,6 +272,10 @@ impl Host for View<'_> {
         self.seat().execution
     }
 
+    fn date(&self) -> Option<Duration> {
+        None
+    }
+
     fn period(&self) -> Duration {
         self.seat().period
     }

@@ -1,19 +1,21 @@
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use super::sys;
 
 /// The time of a run in nanoseconds since its start, from the machine's clock or from a number that jumps.
 #[derive(Debug)]
 pub(super) enum Clock {
-    /// The machine's monotonic clock, and where the run started on it. Before the start time stands at zero.
-    Real { start: AtomicU64 },
+    /// The machine's monotonic clock, where the run started on it, and which local date its zero is. Before the start time stands at zero.
+    Real { start: AtomicU64, zero: u64 },
     /// From one due execution to the next.
     Virtual { now: AtomicU64 },
 }
 
 impl Clock {
     pub(super) fn real() -> Clock {
-        Clock::Real { start: AtomicU64::new(u64::MAX) }
+        let zero = sys::local_date().saturating_sub(sys::monotonic());
+        Clock::Real { start: AtomicU64::new(u64::MAX), zero }
     }
 
     pub(super) fn simulated() -> Clock {
@@ -26,7 +28,7 @@ impl Clock {
 
     /// Starts the run: now is zero.
     pub(super) fn start(&self) {
-        if let Clock::Real { start } = self {
+        if let Clock::Real { start, .. } = self {
             start.store(sys::monotonic(), Ordering::Relaxed);
         }
     }
@@ -34,7 +36,7 @@ impl Clock {
     #[inline]
     pub(super) fn now(&self) -> u64 {
         match self {
-            Clock::Real { start } => sys::monotonic().saturating_sub(start.load(Ordering::Relaxed)),
+            Clock::Real { start, .. } => sys::monotonic().saturating_sub(start.load(Ordering::Relaxed)),
             Clock::Virtual { now } => now.load(Ordering::Relaxed),
         }
     }
@@ -42,8 +44,17 @@ impl Clock {
     /// Where a time of the run lies on the machine's clock.
     pub(super) fn on_machine(&self, time: u64) -> u64 {
         match self {
-            Clock::Real { start } => start.load(Ordering::Relaxed).saturating_add(time),
+            Clock::Real { start, .. } => start.load(Ordering::Relaxed).saturating_add(time),
             Clock::Virtual { .. } => time,
+        }
+    }
+
+    /// The local date and time of day since 1970-01-01 00:00. It does not follow what happens to the machine's date during the run, so
+    /// that it never jumps.
+    pub(super) fn date(&self) -> Option<Duration> {
+        match self {
+            Clock::Real { zero, .. } => Some(Duration::from_nanos(zero.saturating_add(sys::monotonic()))),
+            Clock::Virtual { .. } => None,
         }
     }
 

@@ -61,6 +61,10 @@ impl Host for ComponentHost<'_> {
         Time::from_nanos(if self.shared.clock.is_virtual() { self.part.now } else { self.shared.clock.now() })
     }
 
+    fn date(&self) -> Option<Duration> {
+        self.shared.clock.date()
+    }
+
     fn due(&self) -> Time {
         Time::from_nanos(self.part.due)
     }

@@ -13,6 +13,19 @@ pub(super) fn monotonic() -> u64 {
     now.tv_sec as u64 * 1_000_000_000 + now.tv_nsec as u64
 }
 
+/// The local date and time of day in nanoseconds since 1970-01-01 00:00.
+pub(super) fn local_date() -> u64 {
+    let mut now = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: `now` is a valid, writable timespec for the length of the call, which keeps no pointer to it.
+    unsafe { libc::clock_gettime(libc::CLOCK_REALTIME, &raw mut now) };
+    // SAFETY: all of the struct are numbers and a pointer, for which zero is a value.
+    let mut local: libc::tm = unsafe { std::mem::zeroed() };
+    // SAFETY: both point to valid values for the length of the call, which keeps neither pointer. It reads the environment, as does every
+    // caller of `std::env`; nothing in this process writes to it.
+    unsafe { libc::localtime_r(&raw const now.tv_sec, &raw mut local) };
+    (now.tv_sec + local.tm_gmtoff) as u64 * 1_000_000_000 + now.tv_nsec as u64
+}
+
 /// Where one thread sleeps until an absolute time, and others wake it.
 ///
 /// A futex wait with an absolute deadline has no drift, respects the thread's timer slack, and costs nothing to those who do not wake.
