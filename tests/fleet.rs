@@ -140,7 +140,7 @@ fn a_wrong_scenario_is_found_before_anything_runs() {
     let found = Fleet::of_text(wrong).diagnostics();
     assert!(found.starts_with("error"), "{found}");
     assert!(
-        found.contains("property `scenario`, line 2: found ``, expected a block such as (3,10)"),
+        found.contains("property `scenario`: line 2: found ``, expected a block such as (3,10)"),
         "{found}"
     );
 }

@@ -61,8 +61,8 @@ pub trait Component: Send + Sized + 'static {
     /// Makes the component.
     ///
     /// # Errors
-    /// The values do not fit together; the message says which and why. One that begins with "property `NAME`: " is shown at that
-    /// property in the composite.
+    /// The values do not fit together; the message says which and why. [`Finding`](crate::Finding)s are shown in the composite at the
+    /// very values, or parts of values, that they are about, all of them at once.
     fn new(properties: Self::Properties) -> Result<Self, Failure>;
 
     /// Asks for topics and references.

@@ -1,22 +1,34 @@
 use std::fmt;
 
+use crate::Finding;
+
 /// Why a component cannot go on, in words for the person who runs the fleet.
 ///
 /// The host adds the component's name and the time. What happens next is the `restart` policy of the composite.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
     message: String,
+    findings: Vec<Finding>,
 }
 
 impl Failure {
     /// A failure with this message.
     pub fn new(message: impl Into<String>) -> Failure {
-        Failure { message: message.into() }
+        Failure { message: message.into(), findings: Vec::new() }
+    }
+
+    pub(crate) fn with_findings(message: String, findings: Vec<Finding>) -> Failure {
+        Failure { message, findings }
     }
 
     /// The message.
     pub fn message(&self) -> &str {
         &self.message
+    }
+
+    /// What is wrong where, when a constructor found the values not to fit together and said so; see [`Finding`].
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
     }
 }
 
@@ -30,7 +42,7 @@ impl std::error::Error for Failure {}
 
 impl From<String> for Failure {
     fn from(message: String) -> Failure {
-        Failure { message }
+        Failure::new(message)
     }
 }
 

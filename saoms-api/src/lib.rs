@@ -71,10 +71,13 @@ mod context;
 pub mod declaration;
 mod failure;
 mod field;
+mod finding;
 mod message;
+mod nearest;
 mod property;
 mod registration;
 mod report;
+mod rule;
 mod service;
 mod task;
 mod time;
@@ -86,10 +89,13 @@ pub use component::{Class, Component, DynComponent};
 pub use context::{Context, Host, Level};
 pub use failure::{CallError, Failure};
 pub use field::{Arguments, Field};
+pub use finding::{Finding, Place};
 pub use message::{Header, Message, Messages, SharedMessage};
+pub use nearest::{nearest, nearest_few};
 pub use property::{Properties, PropertyField, PropertyValue};
 pub use registration::Registration;
 pub use report::{ReportValue, Work};
+pub use rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 pub use service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
 pub use task::{TaskInterface, TaskInterfaceReference};
 pub use time::{Time, format_duration, parse_duration};
@@ -104,6 +110,7 @@ pub mod generated {
     pub use crate::property::{
         PropertyShape, bounds_fit, chosen, complex, contains, default_fits, only_known, property,
     };
+    pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};
     pub use inventory;
 }

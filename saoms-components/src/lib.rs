@@ -13,4 +13,5 @@ pub mod manual;
 pub mod master;
 pub mod messages;
 pub mod robot;
+pub mod text;
 pub mod world;

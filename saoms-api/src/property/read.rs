@@ -1,6 +1,6 @@
 use super::PropertyField;
 use crate::declaration::{PropertyKind, Rule};
-use crate::{Failure, Properties, PropertyValue};
+use crate::{Failure, Finding, Place, Properties, PropertyValue};
 
 /// Reads one property from the values of a composite.
 ///
@@ -12,7 +12,7 @@ pub fn property<T: PropertyField>(
     default: Option<&str>,
     rule: &Rule<'_>,
 ) -> Result<T, Failure> {
-    let failure = |message: String| Failure::new(format!("property `{name}`: {message}"));
+    let failure = |message: String| Failure::from(Finding::new(Place::property(name), message));
     let given = values.iter().find(|(given, _)| given == name).map(|(_, value)| value);
     let value = match (given, default) {
         (Some(value), _) => value,

@@ -6,7 +6,9 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-use saoms_api::{Class, Component, Context, Failure, Properties, Publisher, Subscription, Time, Work};
+use saoms_api::{
+    Class, Component, Context, Failure, Finding, Place, Properties, Publisher, Subscription, Time, Work,
+};
 
 use crate::console::Timestamp;
 use crate::messages::{ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, LuggageStage};
@@ -50,7 +52,7 @@ impl Component for Environment {
 
     fn new(properties: EnvironmentProperties) -> Result<Self, Failure> {
         let scenario = Scenario::read(properties.scenario.iter().map(String::as_str))
-            .map_err(|error| Failure::new(format!("property `scenario`, {error}")))?;
+            .map_err(|error| Finding::new(Place::property("scenario"), error.to_string()))?;
         Ok(Environment {
             scenario,
             played: 0,

@@ -10,4 +10,3 @@ mod tests;
 pub use block::Block;
 pub use distances::{Distances, MOVE, UNREACHABLE};
 pub use map::Map;
-pub use read::MapError;

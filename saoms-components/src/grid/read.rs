@@ -1,29 +1,13 @@
-use std::fmt;
+use std::collections::BTreeMap;
 
 use super::{Block, Map};
+use crate::text::{TextFault, bytes};
 
-/// Why a text is no map: in which row, what was found, what was expected.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MapError {
-    /// The line of the map's text, from 1, blank lines counted.
-    pub line: usize,
-    /// What was found, and what was expected.
-    pub message: String,
-}
-
-impl fmt::Display for MapError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "line {}: {}", self.line, self.message)
-    }
-}
-
-impl std::error::Error for MapError {}
-
-/// The header of a map file, as far as it was read.
+/// The header of a map file, as far as it was read: the sides, and where they are.
 #[derive(Default)]
-struct Header {
-    width: Option<u32>,
-    height: Option<u32>,
+struct Header<'a> {
+    width: Option<(u32, &'a str)>,
+    height: Option<(u32, &'a str)>,
     ended: bool,
 }
 
@@ -39,70 +23,96 @@ impl Map {
     ///
     /// let map = Map::read("height 2\nwidth 3\nmap\n..@\n...").unwrap();
     /// assert!(map.is_free(Block::new(2, 1)) && !map.is_free(Block::new(2, 0)));
+    ///
+    /// let faults = Map::read("..@\n.x.\n....").unwrap_err();
+    /// assert_eq!(faults[0].bytes, 5..6);
+    /// assert_eq!(faults[1].message, "found 4 blocks in this row, expected 3 as in the others");
     /// ```
     ///
     /// # Errors
-    /// The first line that does not fit.
-    pub fn read(text: &str) -> Result<Map, MapError> {
-        let mut header = Header::default();
-        let mut rows: Vec<(usize, &str)> = Vec::new();
-        for (number, line) in text.lines().enumerate().map(|(at, line)| (at + 1, line.trim())) {
-            if line.is_empty() || (rows.is_empty() && header.take(number, line)?) {
-                continue;
+    /// Every line that does not fit.
+    pub fn read(text: &str) -> Result<Map, Vec<TextFault>> {
+        let (mut header, mut faults) = (Header::default(), Vec::new());
+        let mut rows: Vec<&str> = Vec::new();
+        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            match header.take(line) {
+                _ if !rows.is_empty() => rows.push(line),
+                Ok(true) => {}
+                Ok(false) => rows.push(line),
+                Err((part, message)) => faults.push(TextFault::of(text, part, message)),
             }
-            rows.push((number, line));
         }
-        let last = text.lines().count().max(1);
-        let error = |line: usize, message: String| Err(MapError { line, message });
-        let Some((first, row)) = rows.first().copied() else {
-            return error(last, "found no rows, expected one line of `.` and `@` a row".to_owned());
+        let Some(first) = rows.first().copied() else {
+            faults
+                .push(TextFault::new(0..text.len(), "found no rows, expected one line of `.` and `@` a row"));
+            return Err(faults);
         };
-        let width = header.width.map_or(row.len(), |width| width as usize);
-        let height = header.height.map_or(rows.len(), |height| height as usize);
+        let width = header.width.map_or_else(|| usual_length(&rows), |(width, _)| width as usize);
+        let height = header.height.map_or(rows.len(), |(height, _)| height as usize);
         let longest = Map::LONGEST as usize;
         if width > longest || height > longest {
-            return error(
-                first,
-                format!("found {width} x {height} blocks, expected at most {longest} on a side"),
-            );
+            let message = format!("found {width} x {height} blocks, expected at most {longest} on a side");
+            let side = if width > longest { header.width } else { header.height };
+            faults.push(TextFault::of(text, side.map_or(first, |(_, side)| side), message));
+            return Err(faults);
         }
-        if rows.len() != height {
-            let (line, _) = rows.get(height).or(rows.last()).copied().unwrap_or((last, ""));
-            return error(line, format!("found {} rows, expected the {height} of the header", rows.len()));
+        if let Some((_, side)) = header.height.filter(|_| rows.len() != height) {
+            let message = format!("found {} rows, expected the {height} of the header", rows.len());
+            let beyond = rows.get(height).map_or(bytes(text, side), |row| bytes(text, row));
+            faults.push(TextFault::new(beyond, message));
         }
         #[expect(clippy::cast_possible_truncation, reason = "both are at most `LONGEST`")]
         let mut map = Map::new(width as u32, height as u32);
-        for (y, (line, row)) in (0..).zip(rows) {
-            map.read_row(y, row, width).map_err(|message| MapError { line, message })?;
+        let width_said = header.width.map(|(width, _)| width);
+        for (y, row) in (0..).zip(rows) {
+            if let Err((part, message)) = map.read_row(y, row, width, width_said) {
+                faults.push(TextFault::of(text, part, message));
+            }
         }
-        Ok(map)
+        if faults.is_empty() { Ok(map) } else { Err(faults) }
     }
 
-    fn read_row(&mut self, y: i32, row: &str, width: usize) -> Result<(), String> {
-        let found = row.chars().count();
-        if found != width {
-            return Err(format!("found {found} blocks, expected {width} as in the other rows"));
-        }
-        for (x, sign) in (0..).zip(row.chars()) {
+    fn read_row<'a>(
+        &mut self,
+        y: i32,
+        row: &'a str,
+        width: usize,
+        said: Option<u32>,
+    ) -> Result<(), (&'a str, String)> {
+        for (x, (start, sign)) in (0..).zip(row.char_indices()) {
             match sign {
                 '.' | 'G' | 'E' | 'S' => {}
                 '@' | 'O' | 'T' | 'W' => {
                     self.set_blocked(Block::new(x, y));
                 }
                 other => {
-                    return Err(format!(
-                        "found `{other}`, expected `.` for a free block or `@` for a blocked one"
-                    ));
+                    let message =
+                        format!("found `{other}`, expected `.` for a free block or `@` for a blocked one");
+                    return Err((&row[start..start + other.len_utf8()], message));
                 }
             }
         }
-        Ok(())
+        let found = row.chars().count();
+        if found == width {
+            return Ok(());
+        }
+        let whose = if said.is_some() { "in the header" } else { "in the others" };
+        Err((row, format!("found {found} blocks in this row, expected {width} as {whose}")))
     }
 }
 
-impl Header {
+/// The length that most rows have; of equally many the one that comes first.
+fn usual_length(rows: &[&str]) -> usize {
+    let mut counts: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for (place, row) in rows.iter().enumerate() {
+        counts.entry(row.chars().count()).or_insert((0, rows.len() - place)).0 += 1;
+    }
+    counts.into_iter().max_by_key(|(_, rank)| *rank).map_or(0, |(length, _)| length)
+}
+
+impl<'a> Header<'a> {
     /// Takes a line of the header; `false` when it is none.
-    fn take(&mut self, number: usize, line: &str) -> Result<bool, MapError> {
+    fn take(&mut self, line: &'a str) -> Result<bool, (&'a str, String)> {
         if self.ended {
             return Ok(false);
         }
@@ -110,9 +120,9 @@ impl Header {
         let (word, value) = (words.next().unwrap_or_default(), words.next());
         let side = || {
             let side = value.and_then(|value| value.parse().ok()).filter(|side| *side > 0);
-            let found = value.unwrap_or("nothing");
+            let found = value.map_or("nothing".to_owned(), |value| format!("`{value}`"));
             let message = format!("found {found} after `{word}`, expected a number of blocks");
-            side.ok_or(MapError { line: number, message })
+            side.zip(value).ok_or((value.unwrap_or(line), message))
         };
         match word {
             "type" => {}

@@ -50,20 +50,42 @@ fn maps_are_read_with_and_without_a_header() {
 
 #[test]
 fn wrong_maps_say_where_and_why() {
-    for (text, error) in [
-        ("", "line 1: found no rows, expected one line of `.` and `@` a row"),
-        ("height 2\nwidth 3\nmap", "line 3: found no rows, expected one line of `.` and `@` a row"),
-        ("...\n..", "line 2: found 2 blocks, expected 3 as in the other rows"),
-        ("...\n.x.", "line 2: found `x`, expected `.` for a free block or `@` for a blocked one"),
-        ("height 3\nwidth 1\nmap\n.\n.", "line 5: found 2 rows, expected the 3 of the header"),
-        ("height 1\nwidth 1\nmap\n.\n.", "line 5: found 2 rows, expected the 1 of the header"),
-        ("height x\nwidth 1\nmap\n.", "line 1: found x after `height`, expected a number of blocks"),
-        ("height\nwidth 1\nmap\n.", "line 1: found nothing after `height`, expected a number of blocks"),
+    for (text, found) in [
+        ("", &["`` found no rows, expected one line of `.` and `@` a row"][..]),
+        ("width 3\nmap", &["`width 3\nmap` found no rows, expected one line of `.` and `@` a row"]),
+        (
+            "..\n...\n ...\n....",
+            &[
+                "`..` found 2 blocks in this row, expected 3 as in the others",
+                "`....` found 4 blocks in this row, expected 3 as in the others",
+            ],
+        ),
+        (
+            "...\n.x.\n\n#..",
+            &[
+                "`x` found `x`, expected `.` for a free block or `@` for a blocked one",
+                "`#` found `#`, expected `.` for a free block or `@` for a blocked one",
+            ],
+        ),
+        ("height 3\nwidth 1\nmap\n.\n.", &["`3` found 2 rows, expected the 3 of the header"]),
+        ("height 1\nwidth 1\nmap\n@\n.", &["`.` found 2 rows, expected the 1 of the header"]),
+        (
+            "height x\nwidth\nmap\n.",
+            &[
+                "`x` found `x` after `height`, expected a number of blocks",
+                "`width` found nothing after `width`, expected a number of blocks",
+            ],
+        ),
+        ("width 2\nmap\n...", &["`...` found 3 blocks in this row, expected 2 as in the header"]),
+        ("width 9000\nmap\n.", &["`9000` found 9000 x 1 blocks, expected at most 8192 on a side"]),
     ] {
-        assert_eq!(Map::read(text).unwrap_err().to_string(), error, "{text:?}");
+        let faults = Map::read(text).unwrap_err();
+        let shown: Vec<String> =
+            faults.iter().map(|fault| format!("`{}` {fault}", &text[fault.bytes.clone()])).collect();
+        assert_eq!(shown, found, "{text:?}");
     }
     let wide = ".".repeat(9000);
-    assert!(Map::read(&wide).unwrap_err().to_string().contains("expected at most 8192 on a side"));
+    assert!(Map::read(&wide).unwrap_err()[0].message.contains("expected at most 8192 on a side"));
 }
 
 /// Moves and costs by relaxing every block again and again.

@@ -1,4 +1,4 @@
-use saoms_api::{CallError, Class, Component, Context, Failure, Properties, Work};
+use saoms_api::{CallError, Class, Component, Context, Failure, Finding, Place, Properties, Work};
 
 use super::{Point, RobotInterface, RobotInterfaceReference};
 
@@ -32,7 +32,13 @@ impl Component for Navigator {
     type Properties = NavigatorProperties;
 
     fn new(properties: NavigatorProperties) -> Result<Self, Failure> {
-        let path: Vec<Point> = properties.path.iter().map(|text| corner(text)).collect::<Result<_, _>>()?;
+        let path: Vec<Option<Point>> = properties.path.iter().map(|text| corner(text)).collect();
+        let wrong = properties.path.iter().zip(&path).enumerate().filter(|(_, (_, corner))| corner.is_none());
+        let findings: Vec<Finding> = wrong.map(|(value, (text, _))| wrong_corner(value, text)).collect();
+        if !findings.is_empty() {
+            return Err(findings.into());
+        }
+        let path: Vec<Point> = path.into_iter().flatten().collect();
         let square = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)].map(|(x, y)| Point { x, y });
         Ok(Navigator {
             path: if path.is_empty() { square.to_vec() } else { path },
@@ -71,12 +77,15 @@ impl Component for Navigator {
     }
 }
 
-fn corner(text: &str) -> Result<Point, Failure> {
+fn corner(text: &str) -> Option<Point> {
     let mut numbers = text.split([' ', ',']).filter(|word| !word.is_empty()).map(str::parse::<f64>);
     match (numbers.next(), numbers.next(), numbers.next()) {
-        (Some(Ok(x)), Some(Ok(y)), None) if x.is_finite() && y.is_finite() => Ok(Point { x, y }),
-        _ => {
-            Err(Failure::new(format!("property `path`: found `{text}`, expected two numbers such as `3 0`")))
-        }
+        (Some(Ok(x)), Some(Ok(y)), None) if x.is_finite() && y.is_finite() => Some(Point { x, y }),
+        _ => None,
     }
+}
+
+fn wrong_corner(value: usize, text: &str) -> Finding {
+    let place = Place::property("path").part(value, 0..text.len());
+    Finding::new(place, format!("found `{text}`, expected two numbers such as `3 0`"))
 }

@@ -1,8 +1,9 @@
 use std::time::Duration;
 
-use saoms_api::{Failure, Properties};
+use saoms_api::{Finding, Properties};
 
 use crate::grid::{Block, Map};
+use crate::text::TextFault;
 
 /// What a composite says about the world.
 #[derive(Clone, Debug, Properties)]
@@ -26,21 +27,26 @@ pub struct WorldProperties {
 }
 
 impl WorldProperties {
-    pub(super) fn map(&self) -> Result<Map, Failure> {
-        let mut map = match &self.map {
-            None => Map::new(self.width, self.height),
-            Some(text) => {
-                Map::read(text).map_err(|error| Failure::new(format!("property `map`, {error}")))?
-            }
-        };
-        for text in &self.blocked {
-            let failure = |message| Failure::new(format!("property `blocked`: {message}"));
-            let block: Block = text.parse().map_err(failure)?;
-            if !map.set_blocked(block) {
-                let (x, y) = (map.width() - 1, map.height() - 1);
-                return Err(failure(format!("found {block}, expected a block from (0,0) to ({x},{y})")));
-            }
+    /// The map with all blocked blocks, or everything that is wrong with it.
+    pub(crate) fn map(&self) -> Result<Map, Vec<Finding>> {
+        let (mut map, mut findings) =
+            match self.map.as_deref().map_or(Ok(Map::new(self.width, self.height)), Map::read) {
+                Ok(map) => (Some(map), Vec::new()),
+                Err(faults) => (None, faults.into_iter().map(|fault| fault.finding("map", 0)).collect()),
+            };
+        for (value, text) in self.blocked.iter().enumerate() {
+            let problem = match (text.parse(), &mut map) {
+                (Err(problem), _) => Some(problem),
+                (Ok(block), Some(map)) => (!map.set_blocked(block)).then(|| outside(map, block)),
+                (Ok(_), None) => None,
+            };
+            let Some(problem) = problem else { continue };
+            findings.push(TextFault::new(0..text.len(), problem).finding("blocked", value));
         }
-        Ok(map)
+        map.filter(|_| findings.is_empty()).ok_or(findings)
     }
+}
+
+fn outside(map: &Map, block: Block) -> String {
+    format!("found {block}, expected a block from (0,0) to ({},{})", map.width() - 1, map.height() - 1)
 }

@@ -1,34 +1,33 @@
 //! Whether the values of each component fit together, as its constructor sees it.
 
-use saoms_api::PropertyValue;
-
 use super::classes::ClassIndex;
+use super::findings::{Subject, diagnostic};
 use super::report::Report;
-use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::Component;
-use crate::source::Location;
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use saoms_api::contain::contained;
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
 ///
-/// A judgement that begins with "property `NAME`" is shown at what `places` has for that property, any other at the component's name.
-pub(super) fn check(
-    component: &Component,
-    class: &ClassIndex<'_>,
-    values: &[(String, PropertyValue)],
-    places: &[(String, Location)],
-    report: &mut Report<'_>,
-) {
-    let Err(failure) = contained(|| class.class.construct(values).map(drop)).and_then(|result| result) else {
-        return;
-    };
-    let message = format!("component {}: {failure}", quoted(&component.name));
+/// What it finds is shown at the values that it is about, any other judgement at the component's name.
+pub(super) fn check(subject: Subject<'_>, class: &ClassIndex<'_>, report: &mut Report<'_>) {
+    let constructed = contained(|| class.class.construct(subject.values).map(drop));
+    let Err(failure) = constructed.and_then(|result| result) else { return };
     let help = format!(
         "{} says what its properties mean",
         quoted(&format!("saoms components {}", class.class.name()))
     );
-    let named = failure.message().strip_prefix("property `").and_then(|rest| Some(rest.split_once('`')?.0));
-    let place = named.and_then(|name| places.iter().find(|(given, _)| given == name));
-    let at = place.map_or(component.name.location, |(_, place)| *place);
-    report.push(Diagnostic::new(&codes::CONSTRUCTION, at, message).help(help));
+    if failure.findings().is_empty() {
+        let message = format!("component {}: {failure}", quoted(subject.name));
+        report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help));
+        return;
+    }
+    for finding in failure.findings() {
+        let one = diagnostic(&codes::CONSTRUCTION, Severity::Error, finding, subject, &|_| None, report);
+        let Some(one) = one else { continue };
+        report.push(if one.help.is_empty() && one.suggestions.is_empty() {
+            one.help(help.clone())
+        } else {
+            one
+        });
+    }
 }

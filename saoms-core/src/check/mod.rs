@@ -10,6 +10,7 @@ mod construct;
 mod contracts;
 mod cycles;
 mod endpoint;
+mod findings;
 mod fleet;
 mod parameters;
 mod promote;
@@ -33,11 +34,13 @@ use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
 use crate::diagnostic::Diagnostics;
 use crate::model::Composite;
 use crate::registry::Registry;
-use crate::source::{Location, Sources};
+use crate::source::Sources;
 
 use classes::ClassIndex;
-use fleet::Fleet;
+use findings::Subject;
+use fleet::{Fleet, Member};
 use parameters::Parameters;
+use properties::Written;
 use report::Report;
 pub use setting::Setting;
 use values::Values;
@@ -79,19 +82,26 @@ pub fn check(
     saoms_api::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
         if let (Some(class), Some(resolved)) = (member.class, resolved) {
-            construct::check(member.component, &classes[class], &resolved.values, &resolved.places, report);
+            construct::check(resolved.subject(member), &classes[class], report);
         }
     }
     if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
 }
 
 /// What the properties of a component come to.
-struct Resolved {
+struct Resolved<'r> {
     /// The values of the class's own properties.
     values: Vec<(String, PropertyValue)>,
     /// Where the composite gives them.
-    places: Vec<(String, Location)>,
+    written: Vec<Written<'r>>,
     task: Option<TaskSettings>,
+}
+
+impl Resolved<'_> {
+    fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
+        let name = &member.component.name;
+        Subject { name: name.as_str(), at: name.location, values: &self.values, written: &self.written }
+    }
 }
 
 /// Checks everything about components that needs no look at wires; `None` for one with a fault.
@@ -100,7 +110,7 @@ fn components<'a>(
     classes: &[ClassIndex<'a>],
     mut parameters: Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<Option<Resolved>> {
+) -> Vec<Option<Resolved<'a>>> {
     let mut values = Values::default();
     let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
@@ -125,7 +135,7 @@ fn components<'a>(
             let mut values = checked.values(class, |slot| slot.own);
             let absent = class.class.presets().iter().filter(|(name, _)| checked.get(class, name).is_none());
             values.extend(absent.cloned());
-            Resolved { values, places: checked.places(class), task }
+            Resolved { values, written: checked.places(class), task }
         }));
     }
     parameters.finish(report);
@@ -136,7 +146,7 @@ fn components<'a>(
 fn assemble(
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
-    resolved: Vec<Option<Resolved>>,
+    resolved: Vec<Option<Resolved<'_>>>,
     wiring: &Wiring,
 ) -> Option<Assembly> {
     let mut components = Vec::with_capacity(resolved.len());

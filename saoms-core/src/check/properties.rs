@@ -5,7 +5,7 @@ use saoms_api::PropertyValue;
 use super::classes::{ClassIndex, Slot};
 use super::fleet::{Fleet, Member};
 use super::parameters::Parameters;
-use super::raw::{Raw, raw};
+use super::raw::{Piece, Raw, raw};
 use super::report::Report;
 use super::values::{Path, Use, Values};
 use crate::assembly::TaskProperties;
@@ -19,6 +19,10 @@ pub(super) struct Given {
     pub(super) value: PropertyValue,
     /// Where the value is, to point at.
     pub(super) place: Location,
+    /// Where its further values are, where it has several.
+    pub(super) more: Vec<Location>,
+    /// The `source` that leads to a value elsewhere.
+    pub(super) source: Option<Location>,
 }
 
 impl Given {
@@ -28,6 +32,23 @@ impl Given {
             PropertyValue::Text(text) => Some(Text::new(text.as_str().into(), self.place)),
             _ => None,
         }
+    }
+}
+
+/// Where the values of a property are written.
+pub(super) struct Written<'r> {
+    pub(super) property: &'r str,
+    pub(super) first: Location,
+    /// Those of further values, where it has several.
+    pub(super) more: Vec<Location>,
+    /// The `source` that leads to values elsewhere.
+    pub(super) source: Option<Location>,
+}
+
+impl Written<'_> {
+    /// Where this value is.
+    pub(super) fn value(&self, index: usize) -> Option<Location> {
+        index.checked_sub(1).map_or(Some(self.first), |further| self.more.get(further).copied())
     }
 }
 
@@ -46,9 +67,13 @@ impl Checked {
     }
 
     /// Where the class's own properties are given.
-    pub(super) fn places(&self, class: &ClassIndex<'_>) -> Vec<(String, Location)> {
+    pub(super) fn places<'r>(&self, class: &ClassIndex<'r>) -> Vec<Written<'r>> {
         let slots = class.properties.iter().zip(&self.given);
-        slots.filter_map(|(slot, given)| Some((slot.own?.name.clone(), given.as_ref()?.place))).collect()
+        let places = slots.filter_map(|(slot, given)| {
+            let (property, given) = (&slot.own?.name, given.as_ref()?);
+            Some(Written { property, first: given.place, more: given.more.clone(), source: given.source })
+        });
+        places.collect()
     }
 
     /// The values of those properties that `of` finds a declaration for.
@@ -164,14 +189,15 @@ fn value<'a>(
         }
         found = own;
     }
-    let place = found.0.first().map_or(used.property, |piece| piece.location());
+    let place = found.0.first().map_or(used.property, Piece::location);
+    let more = found.0.iter().skip(1).map(Piece::location).collect();
     let both: [Option<&PropertyDeclaration>; 2] = [slot.own, slot.task];
     let value = match both {
         [Some(own), Some(task)] => values.convert(found, path, &[own, task], used, report),
         [Some(one), None] | [None, Some(one)] => values.convert(found, path, &[one], used, report),
         [None, None] => None,
     };
-    Ok(Some(Given { value: value.ok_or(())?, place }))
+    Ok(Some(Given { value: value.ok_or(())?, place, more, source: used.source }))
 }
 
 fn report_unknown(property: &Property, class: &ClassIndex<'_>, report: &mut Report<'_>) {

@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, nearest, quoted};
 use crate::source::{FileId, Location, Sources, Span, Text};
+use crate::xml::written_part;
 
 /// How many right names are looked at for all wrong ones together: in a large file full of wrong names every search goes
 /// through all right ones.
@@ -38,13 +39,32 @@ impl<'a> Report<'a> {
         self.diagnostics.has_errors()
     }
 
-    /// The place of a part of `text`; that of all of it where references in the file hide which characters they are.
+    /// The place of a part of `text`, in bytes of the text as it is meant.
     pub(super) fn part(&self, text: &Text, part: Range<usize>) -> Location {
-        let Location { file, span } = text.location;
-        if self.sources.snippet(text.location) != text.as_str() {
-            return text.location;
+        self.part_of(text, text.location, part)
+    }
+
+    /// The place of a part of the text that is written at a place.
+    pub(super) fn part_of(&self, text: &str, written: Location, part: Range<usize>) -> Location {
+        let Location { file, span } = written;
+        let end = part.end.min(text.len());
+        let part = part.start.min(end)..end;
+        match written_part(self.sources.snippet(written), text, part) {
+            Some(part) => {
+                Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file)
+            }
+            None => written,
         }
-        Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file)
+    }
+
+    /// Whether what stands in the file is XML, and not the bare text of a value.
+    pub(super) fn is_xml(&self, file: FileId) -> bool {
+        self.sources.get(file).text().trim_start_matches('\u{feff}').trim_start().starts_with('<')
+    }
+
+    /// Whether there are so many diagnostics of this code at this place's file that one more is counted and not shown.
+    pub(super) fn skip(&mut self, code: &'static Code, severity: Severity, at: Location) -> bool {
+        self.diagnostics.skip(code, severity, at)
     }
 
     /// A diagnostic about a name that stands for nothing: with the likeliest right one as a suggestion, or else with all

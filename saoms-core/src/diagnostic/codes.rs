@@ -1,24 +1,12 @@
 //! The table of every kind of diagnostic.
 //!
 //! A code never changes its meaning and is never used again. `S0` is files and XML, `S1` the SCA vocabulary, `S2`
-//! names and wiring, `S3` classes and properties, `S4` tasks and topics.
+//! names and wiring, `S3` classes and properties, `S4` tasks and topics. `S5` is what rules of crates of components find
+//! (see [`FleetRule`](saoms_api::FleetRule)); each of them declares its own code.
 
-use super::Severity::{self, Error, Warning};
+use saoms_api::Severity::{Error, Warning};
 
-/// A kind of diagnostic.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Code {
-    /// The stable code, as `S0101`.
-    pub id: &'static str,
-    /// A stable name, as `unknown-attribute`.
-    pub name: &'static str,
-    /// What it means, in a sentence.
-    pub meaning: &'static str,
-    /// How bad it is unless something says otherwise.
-    pub severity: Severity,
-    /// The rule of the SCA specification it enforces, when there is just one.
-    pub rule: Option<&'static str>,
-}
+pub use saoms_api::Code;
 
 macro_rules! codes {
     ($($constant:ident = $id:literal $severity:ident $name:literal $(($rule:literal))? : $meaning:literal;)*) => {

@@ -8,7 +8,6 @@ pub mod codes;
 mod collector;
 mod human;
 mod json;
-mod nearest;
 mod quoted;
 mod sarif;
 #[cfg(test)]
@@ -19,33 +18,11 @@ pub use codes::Code;
 pub use collector::Diagnostics;
 pub use human::human;
 pub use json::json;
-pub use nearest::{nearest, nearest_few};
 pub use quoted::quoted;
+pub use saoms_api::{Severity, nearest, nearest_few};
 pub use sarif::sarif;
 
 use crate::source::Location;
-
-/// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Severity {
-    /// Worth knowing.
-    Note,
-    /// Probably not meant; nothing is stopped by it.
-    Warning,
-    /// Nothing starts.
-    Error,
-}
-
-impl Severity {
-    /// Its name in lower case, as in the output for machines.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Note => "note",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
-    }
-}
 
 /// A further place that explains the diagnostic, with what is to be seen there.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -80,12 +80,13 @@ fn add(
 ///
 /// # Errors
 /// What to say there when there is no such file or it is no text in UTF-8.
-pub(super) fn value(path: &Path, max_size: u64, named: Location) -> Result<String, Diagnostic> {
+pub(super) fn value(path: &Path, max_size: u64, named: Location) -> Result<String, Box<Diagnostic>> {
     let max_size = max_size.min(LIMIT);
-    let bytes = bytes(path, max_size).map_err(|failure| failure.diagnostic(path, max_size, named, &VALUE))?;
+    let bytes = bytes(path, max_size)
+        .map_err(|failure| Box::new(failure.diagnostic(path, max_size, named, &VALUE)))?;
     text(path, bytes, &VALUE).map_err(|wrong| {
         let Wrong { code, message, help, .. } = *wrong;
-        Diagnostic::new(code, named, message).help(help)
+        Box::new(Diagnostic::new(code, named, message).help(help))
     })
 }
 

@@ -30,7 +30,7 @@ pub fn read_values(
         if !known.contains_key(&path) {
             match read::value(&path, max_size, file.location) {
                 Ok(text) => _ = known.insert(path.clone(), add(&path, text, sources)),
-                Err(diagnostic) => diagnostics.push(diagnostic),
+                Err(diagnostic) => diagnostics.push(*diagnostic),
             }
         }
         details.from_file = known.get(&path).cloned();

@@ -11,25 +11,24 @@ pub(super) fn attribute_value(raw: &str) -> Cow<'_, str> {
         return Cow::Borrowed(raw);
     }
     let mut value = String::with_capacity(raw.len());
-    let mut rest = raw;
-    while let Some(character) = rest.chars().next() {
-        rest = match character {
-            '&' => reference(rest, &mut value),
-            '\r' if rest.starts_with("\r\n") => {
-                value.push(' ');
-                &rest[2..]
-            }
-            '\t' | '\n' | '\r' => {
-                value.push(' ');
-                &rest[1..]
-            }
-            _ => {
-                value.push(character);
-                &rest[character.len_utf8()..]
-            }
-        };
-    }
+    attribute_characters(raw, |character, _| value.push(character));
     Cow::Owned(value)
+}
+
+/// Each character that an attribute's value stands for, with the bytes that it is written with.
+fn attribute_characters(raw: &str, mut each: impl FnMut(char, Range<usize>)) {
+    let mut at = 0;
+    while let Some(character) = raw[at..].chars().next() {
+        let rest = &raw[at..];
+        let (character, length) = match character {
+            '&' => reference(rest),
+            '\r' if rest.starts_with("\r\n") => (' ', 2),
+            '\t' | '\n' | '\r' => (' ', 1),
+            _ => (character, character.len_utf8()),
+        };
+        each(character, at..at + length);
+        at += length;
+    }
 }
 
 /// Whether character data means itself: no markup, references or line ends to resolve.
@@ -44,23 +43,74 @@ pub(super) fn character_data(stretch: &str) -> Cow<'_, str> {
         return Cow::Borrowed(stretch);
     }
     let mut text = String::with_capacity(stretch.len());
+    data_characters(stretch, |character, _| text.push(character));
+    Cow::Owned(text)
+}
+
+/// Each character that a stretch without elements stands for, with the bytes that it is written with.
+fn data_characters(stretch: &str, mut each: impl FnMut(char, Range<usize>)) {
     for (piece, literal) in pieces(stretch) {
-        let mut rest = &stretch[piece];
-        while let Some(character) = rest.chars().next() {
-            rest = match character {
-                '&' if !literal => reference(rest, &mut text),
-                '\r' => {
-                    text.push('\n');
-                    rest.strip_prefix("\r\n").unwrap_or(&rest[1..])
-                }
-                _ => {
-                    text.push(character);
-                    &rest[character.len_utf8()..]
-                }
+        let mut at = piece.start;
+        while let Some(character) = stretch[at..piece.end].chars().next() {
+            let rest = &stretch[at..piece.end];
+            let (character, length) = match character {
+                '&' if !literal => reference(rest),
+                '\r' if rest.starts_with("\r\n") => ('\n', 2),
+                '\r' => ('\n', 1),
+                _ => (character, character.len_utf8()),
             };
+            each(character, at..at + length);
+            at += length;
         }
     }
-    Cow::Owned(text)
+}
+
+/// The bytes that a part of a value is written with. `written` is the stretch, or the attribute, that the value was read from, and may
+/// have white space at its ends that the value has not; `None` when it is another one.
+pub(crate) fn written_part(written: &str, value: &str, part: Range<usize>) -> Option<Range<usize>> {
+    if written == value {
+        return Some(part);
+    }
+    let data = Written::of(|each| data_characters(written, each));
+    let found = data.part(value, part.clone());
+    found.or_else(|| Written::of(|each| attribute_characters(written, each)).part(value, part))
+}
+
+/// A text, and the bytes that each of its characters is written with.
+struct Written {
+    text: String,
+    characters: Vec<(usize, Range<usize>)>,
+}
+
+impl Written {
+    fn of(characters: impl FnOnce(&mut dyn FnMut(char, Range<usize>))) -> Self {
+        let mut written = Self { text: String::new(), characters: Vec::new() };
+        characters(&mut |character, bytes| {
+            written.characters.push((written.text.len(), bytes));
+            written.text.push(character);
+        });
+        written
+    }
+
+    fn part(&self, value: &str, part: Range<usize>) -> Option<Range<usize>> {
+        let start = self.text.len() - self.text.trim_start_matches(is_space).len();
+        if trim(&self.text) != value {
+            return None;
+        }
+        let bytes = |at: usize| {
+            let place = self.characters.partition_point(|(first, _)| *first <= start + at);
+            self.characters.get(place.checked_sub(1)?).map(|(_, bytes)| bytes.clone())
+        };
+        if part.is_empty() {
+            let at = if part.start >= value.len() {
+                bytes(part.start.checked_sub(1)?)?.end
+            } else {
+                bytes(part.start)?.start
+            };
+            return Some(at..at);
+        }
+        Some(bytes(part.start)?.start..bytes(part.end - 1)?.end)
+    }
 }
 
 /// Where a stretch without elements holds text, white space at the ends of each piece left out.
@@ -109,14 +159,12 @@ fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, bool)> {
     })
 }
 
-/// Appends what the reference at the start of `text` stands for, and gives what follows it.
-fn reference<'a>(text: &'a str, out: &mut String) -> &'a str {
-    let Some((inside, rest)) = text[1..].split_once(';') else {
-        out.push('&');
-        return &text[1..];
-    };
-    out.push(resolve(inside).unwrap_or('\u{fffd}'));
-    rest
+/// What the reference at the start of `text` stands for, and how many bytes it has.
+fn reference(text: &str) -> (char, usize) {
+    match text[1..].find(';') {
+        Some(length) => (resolve(&text[1..1 + length]).unwrap_or('\u{fffd}'), length + 2),
+        None => ('&', 1),
+    }
 }
 
 /// The character that a reference names (`lt`, `#60`, `#x3C`), when it is one that XML allows.

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use saoms_api::{
-    Class, Component, Context, Failure, Message, Properties, PropertyField, Registration, TaskInterface,
-    Topic, interface,
+    Class, Component, Context, Failure, Finding, Message, Place, Properties, PropertyField, Registration,
+    TaskInterface, Topic, interface,
 };
 use saoms_core::registry::Registry;
 
@@ -22,6 +22,7 @@ pub(crate) fn registry() -> Registry {
         Registration::of::<Shouter>(),
         Registration::of::<Tracker>(),
         Registration::of::<Fragile>(),
+        Registration::of::<Reader>(),
     ];
     for one in all {
         registry.add(one).unwrap();
@@ -154,7 +155,7 @@ impl Component for Robot {
             return Err(Failure::new("a red robot drives at most 2 m/s"));
         }
         if properties.speed == 1.25 {
-            return Err(Failure::new("property `speed`: nobody drives at 1.25 m/s"));
+            return Err(Finding::new(Place::property("speed"), "nobody drives at 1.25 m/s").into());
         }
         Ok(Self)
     }
@@ -243,5 +244,42 @@ impl Component for Fragile {
 
     fn new((): ()) -> Result<Self, Failure> {
         panic!("do not touch")
+    }
+}
+
+#[derive(Properties)]
+pub(crate) struct ReaderProperties {
+    /// What it reads.
+    words: Vec<String>,
+    /// What it reads aloud.
+    title: Option<String>,
+}
+
+/// Knows all words but those that begin with `b`.
+#[derive(Class)]
+#[class(name = "example.Reader", passive)]
+pub(crate) struct Reader;
+
+impl Component for Reader {
+    type Properties = ReaderProperties;
+
+    fn new(properties: ReaderProperties) -> Result<Self, Failure> {
+        let words = properties.words.iter().enumerate().map(|(value, text)| ("words", value, text));
+        let mut findings: Vec<Finding> = Vec::new();
+        for (property, value, text) in words.chain(properties.title.iter().map(|text| ("title", 0, text))) {
+            for word in text.split_whitespace().filter(|word| word.starts_with('b')) {
+                let start = word.as_ptr() as usize - text.as_ptr() as usize;
+                let place = Place::property(property).part(value, start..start + word.len());
+                let mut finding = Finding::new(place, format!("cannot read `{word}`"));
+                if word == "b&" {
+                    finding = finding.instead("a&").help("begin at the begin");
+                }
+                if let Some(first) = findings.first() {
+                    finding = finding.label(first.place().clone(), "the first");
+                }
+                findings.push(finding);
+            }
+        }
+        if findings.is_empty() { Ok(Self) } else { Err(findings.into()) }
     }
 }

@@ -5,6 +5,7 @@
 mod assemblies;
 mod classes;
 mod files;
+mod findings;
 mod mutations;
 mod names;
 mod parameters;

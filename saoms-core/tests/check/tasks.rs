@@ -74,8 +74,8 @@ fn topic_renames() {
         3:47-53 warning S4003: class `example.Robot001` uses no topic `POS002`: nothing is renamed
           help: its topics are `POSTOPIC` and `ORDERS`
         &#80;OSTOPIC,a::POSTOPIC,b
-        3:30-56 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
-          3:30-56 first here
+        3:46-54 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
+          3:30-42 first here
     "#]].assert_eq(&all);
 }
 

@@ -7,7 +7,7 @@ const LONGEST: usize = 128;
 /// (one for each three characters of the name, at least one).
 ///
 /// ```
-/// use saoms_core::diagnostic::nearest;
+/// use saoms_api::nearest;
 ///
 /// assert_eq!(nearest("peroid", ["delay", "period"]), Some("period"));
 /// assert_eq!(nearest("PERIOD", ["periods", "period"]), Some("period"));

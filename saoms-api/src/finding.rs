@@ -1,0 +1,191 @@
+use std::fmt;
+use std::ops::Range;
+
+use crate::{Failure, Severity};
+
+/// A place in a composite: a component, a property of it, or a part of what the property's text says.
+///
+/// A text is the value as the component gets it; the host knows where each of its bytes is written, entity references, CDATA
+/// sections and files included.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    pub(crate) component: Option<usize>,
+    pub(crate) property: Option<String>,
+    pub(crate) part: Option<(usize, Range<usize>)>,
+}
+
+impl Place {
+    /// A component of a [`FleetView`](crate::FleetView), by its index: its name in the composite.
+    pub fn component(index: usize) -> Place {
+        Place { component: Some(index), ..Place::default() }
+    }
+
+    /// A property of the component that says so.
+    pub fn property(name: impl Into<String>) -> Place {
+        Place { property: Some(name.into()), ..Place::default() }
+    }
+
+    /// The same place in a component of a fleet.
+    #[must_use]
+    pub fn in_component(self, index: usize) -> Place {
+        Place { component: Some(index), ..self }
+    }
+
+    /// These bytes of a value of the property: of the first value 0, or of a further one where it takes many.
+    #[must_use]
+    pub fn part(self, value: usize, bytes: Range<usize>) -> Place {
+        Place { part: Some((value, bytes)), ..self }
+    }
+
+    /// The index of the component; `None` for the one that says so.
+    pub fn component_index(&self) -> Option<usize> {
+        self.component
+    }
+
+    /// The name of the property; `None` for the component itself.
+    pub fn property_name(&self) -> Option<&str> {
+        self.property.as_deref()
+    }
+
+    /// Which value, and which bytes of it; `None` for all of the property.
+    pub fn value_part(&self) -> Option<(usize, Range<usize>)> {
+        self.part.clone()
+    }
+}
+
+/// Something that is wrong with what a composite says, with its very place.
+///
+/// ```
+/// use saoms_api::{Failure, Finding, Place};
+///
+/// let plan = "go (3,1)\ngo nowhere";
+/// let finding = Finding::new(Place::property("plan").part(0, 12..19), "found `nowhere`, expected a block such as (3,10)");
+/// assert_eq!(&plan[12..19], "nowhere");
+/// assert_eq!(
+///     Failure::from(finding).message(),
+///     "property `plan`: found `nowhere`, expected a block such as (3,10)"
+/// );
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    place: Place,
+    message: String,
+    help: Vec<String>,
+    instead: Option<String>,
+    others: Vec<(Place, String)>,
+    severity: Option<Severity>,
+}
+
+impl Finding {
+    /// What was found there, and what was expected.
+    pub fn new(place: Place, message: impl Into<String>) -> Finding {
+        Finding {
+            place,
+            message: message.into(),
+            help: Vec::new(),
+            instead: None,
+            others: Vec::new(),
+            severity: None,
+        }
+    }
+
+    /// Adds a line of help.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Finding {
+        self.help.push(text.into());
+        self
+    }
+
+    /// Says what probably is meant: a text that can stand in place of the part.
+    #[must_use]
+    pub fn instead(mut self, text: impl Into<String>) -> Finding {
+        self.instead = Some(text.into());
+        self
+    }
+
+    /// Adds a further place that explains it, with what is to be seen there.
+    #[must_use]
+    pub fn label(mut self, place: Place, text: impl Into<String>) -> Finding {
+        self.others.push((place, text.into()));
+        self
+    }
+
+    /// Sets how bad it is, other than the rule's code says. What a constructor refuses is always an error.
+    #[must_use]
+    pub fn severity(mut self, severity: Severity) -> Finding {
+        self.severity = Some(severity);
+        self
+    }
+
+    /// The same finding about a component of a fleet, and its further places too.
+    #[must_use]
+    pub fn in_component(mut self, index: usize) -> Finding {
+        self.place.component.get_or_insert(index);
+        for (place, _) in &mut self.others {
+            place.component.get_or_insert(index);
+        }
+        self
+    }
+
+    /// The same finding with another place.
+    #[must_use]
+    pub fn at(self, place: Place) -> Finding {
+        Finding { place, ..self }
+    }
+
+    /// The place.
+    pub fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// What was found, and what was expected.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// Lines of help.
+    pub fn helps(&self) -> &[String] {
+        &self.help
+    }
+
+    /// What probably is meant in place of the part.
+    pub fn replacement(&self) -> Option<&str> {
+        self.instead.as_deref()
+    }
+
+    /// Further places, with what is to be seen there.
+    pub fn labels(&self) -> &[(Place, String)] {
+        &self.others
+    }
+
+    /// How bad it is, where that is other than the rule's code says.
+    pub fn own_severity(&self) -> Option<Severity> {
+        self.severity
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.place.property {
+            Some(property) => write!(formatter, "property `{property}`: {}", self.message),
+            None => formatter.write_str(&self.message),
+        }
+    }
+}
+
+impl From<Finding> for Failure {
+    fn from(finding: Finding) -> Failure {
+        vec![finding].into()
+    }
+}
+
+impl From<Vec<Finding>> for Failure {
+    fn from(findings: Vec<Finding>) -> Failure {
+        let message = match &findings[..] {
+            [] => "the values do not fit together".to_owned(),
+            [one] => one.to_string(),
+            [first, more @ ..] => format!("{first} (and {} more)", more.len()),
+        };
+        Failure::with_findings(message, findings)
+    }
+}

@@ -1,0 +1,154 @@
+use std::time::Duration;
+
+use crate::{Class, Finding, Properties, PropertyValue};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// Probably not meant; nothing is stopped by it.
+    Warning,
+    /// Nothing starts.
+    Error,
+}
+
+impl Severity {
+    /// Its name in lower case, as in the output for machines.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// A kind of diagnostic.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Code {
+    /// The stable code, as `S0101`.
+    pub id: &'static str,
+    /// A stable name, as `unknown-attribute`.
+    pub name: &'static str,
+    /// What it means, in a sentence.
+    pub meaning: &'static str,
+    /// How bad it is unless something says otherwise.
+    pub severity: Severity,
+    /// The rule of the SCA specification it enforces, when there is just one.
+    pub rule: Option<&'static str>,
+}
+
+/// A rule over a whole fleet, which a crate of components adds to the checker: what no component can see alone.
+///
+/// It is asked when every component is resolved, before anything runs, and is pure: the same fleet, the same findings.
+///
+/// ```
+/// use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
+///
+/// /// One clock is enough.
+/// fn one_clock(fleet: &FleetView<'_>) -> Vec<Finding> {
+///     let clocks = fleet.components().iter().enumerate().filter(|(_, component)| component.class == "example.Clock");
+///     clocks.skip(1).map(|(index, _)| Finding::new(Place::component(index), "this is a second clock").help("keep one")).collect()
+/// }
+///
+/// static ONE_CLOCK: FleetRule = FleetRule {
+///     code: Code {
+///         id: "X0001",
+///         name: "one-clock",
+///         meaning: "A fleet has several clocks.",
+///         severity: Severity::Warning,
+///         rule: None,
+///     },
+///     check: one_clock,
+/// };
+/// saoms_api::fleet_rules!(ONE_CLOCK);
+/// ```
+#[derive(Debug)]
+pub struct FleetRule {
+    /// The code of its findings.
+    pub code: Code,
+    /// What it finds in a fleet.
+    pub check: fn(&FleetView<'_>) -> Vec<Finding>,
+}
+
+/// How rules that are linked in become known.
+#[doc(hidden)]
+#[derive(Debug)]
+pub struct LinkedRule(pub &'static FleetRule);
+
+inventory::collect!(LinkedRule);
+
+impl FleetRule {
+    /// The rules that are linked into this program, in no particular order.
+    pub fn linked() -> impl Iterator<Item = &'static FleetRule> {
+        inventory::iter::<LinkedRule>().map(|linked| linked.0)
+    }
+}
+
+/// Makes rules known to the checker of every program that this crate is linked into: the paths of `static` [`FleetRule`]s.
+#[macro_export]
+macro_rules! fleet_rules {
+    ($($rule:path),* $(,)?) => {
+        $(const _: () = {
+            $crate::generated::inventory::submit! { $crate::generated::LinkedRule(&$rule) }
+        };)*
+    };
+}
+
+/// All components of a fleet, as rules see them.
+#[derive(Clone, Copy, Debug)]
+pub struct FleetView<'a> {
+    components: &'a [ComponentView<'a>],
+}
+
+impl<'a> FleetView<'a> {
+    /// For hosts: a view of these components.
+    pub fn new(components: &'a [ComponentView<'a>]) -> FleetView<'a> {
+        FleetView { components }
+    }
+
+    /// The components in document order; the place of one here is its index.
+    pub fn components(&self) -> &'a [ComponentView<'a>] {
+        self.components
+    }
+
+    /// The components of a class, with their indices and properties.
+    pub fn all<C: Class>(&self) -> impl Iterator<Item = (usize, C::Properties)> + use<'a, C> {
+        let components = self.components.iter().enumerate();
+        components.filter_map(|(index, component)| Some((index, component.properties::<C>()?)))
+    }
+}
+
+/// A component of a fleet, as rules see it.
+#[derive(Clone, Debug)]
+pub struct ComponentView<'a> {
+    /// Its path in the composite.
+    pub path: &'a str,
+    /// The name of its class, as declared.
+    pub class: &'a str,
+    /// The declaration of its class.
+    pub declaration: &'a str,
+    /// The values of the class's own properties, presets included; what is absent takes its default.
+    pub values: &'a [(String, PropertyValue)],
+    /// From one execution to the next, where it is periodic.
+    pub period: Option<Duration>,
+    /// Whether its messages go to a broker, where others may be that this fleet does not know.
+    pub has_broker: bool,
+    /// The topics that it publishes, by their names before any `topicRename`.
+    pub publishes: Vec<&'a str>,
+    /// Its references that are wired, and the index of the component that each leads to.
+    pub wires: Vec<(&'a str, usize)>,
+}
+
+impl ComponentView<'_> {
+    /// Its properties, where it is of this class.
+    pub fn properties<C: Class>(&self) -> Option<C::Properties> {
+        (self.declaration == C::DECLARATION).then(|| C::Properties::from_values(self.values).ok()).flatten()
+    }
+
+    /// The index of the component that this reference leads to.
+    pub fn target(&self, reference: &str) -> Option<usize> {
+        self.wires.iter().find(|(name, _)| *name == reference).map(|(_, target)| *target)
+    }
+}
