@@ -52,9 +52,20 @@ pub(crate) struct FleetArguments {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(crate) settings: Vec<String>,
 
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
+
     /// Refuse larger files
     #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
     pub(crate) max_size: u64,
+}
+
+/// Where classes come from that are not linked into this program.
+#[derive(Debug, Args)]
+pub(crate) struct PluginArguments {
+    /// Use the classes of this plugin, or of all plugins in this folder; may be repeated
+    #[arg(long = "plugin", value_name = "PATH")]
+    pub(crate) plugins: Vec<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -159,6 +170,9 @@ pub(crate) struct FmtArguments {
 pub(crate) struct ComponentsArguments {
     /// The class to describe, by any of its names
     pub(crate) name: Option<String>,
+
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
 
     /// Text for people, or JSON
     #[arg(long, value_enum, default_value_t = Format::Human)]

@@ -8,7 +8,10 @@ use crate::fleet::checked;
 use crate::output::{counted, eprint, print};
 
 pub(crate) fn check(arguments: &CheckArguments) -> Exit {
-    let outcome = checked(&arguments.fleet);
+    let outcome = match checked(&arguments.fleet) {
+        Ok(outcome) => outcome,
+        Err(exit) => return exit,
+    };
     match arguments.format {
         CheckFormat::Json => print(&outcome.json()),
         CheckFormat::Sarif => print(&outcome.sarif()),

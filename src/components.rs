@@ -9,11 +9,14 @@ use serde_json::{Value, json};
 
 use crate::Exit;
 use crate::arguments::{ComponentsArguments, Format};
-use crate::fleet::registry;
 use crate::output::{eprint, print};
+use crate::plugins::registry;
 
 pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
-    let registry = registry();
+    let registry = match registry(&arguments.plugins, &[]) {
+        Ok(registry) => registry,
+        Err(exit) => return exit,
+    };
     let chosen: Vec<&Class> = match &arguments.name {
         None => registry.iter().map(AsRef::as_ref).filter(|class| !class.is_alias()).collect(),
         Some(name) => match registry.get(name) {

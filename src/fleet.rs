@@ -6,12 +6,11 @@ use saoms_core::assembly::Assembly;
 use saoms_core::check::{Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::load::{load_file, read, read_values};
-use saoms_core::registry::Registry;
 use saoms_core::source::Sources;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::output::eprint;
+use crate::plugins::registry;
 
 /// The outcome of loading and checking.
 pub(crate) struct Checked {
@@ -22,8 +21,11 @@ pub(crate) struct Checked {
 }
 
 /// Loads the files and checks them as one fleet.
-pub(crate) fn checked(arguments: &FleetArguments) -> Checked {
-    let registry = registry();
+///
+/// # Errors
+/// A plugin cannot be used, which was told.
+pub(crate) fn checked(arguments: &FleetArguments) -> Result<Checked, Exit> {
+    let registry = registry(&arguments.plugins, &arguments.files)?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
     let settings = arguments.settings.iter();
@@ -39,7 +41,7 @@ pub(crate) fn checked(arguments: &FleetArguments) -> Checked {
         composites.push(composite);
     }
     let assembly = check(&composites, &registry, &settings, &sources, &mut diagnostics);
-    Checked { assembly, sources, diagnostics: diagnostics.into_sorted() }
+    Ok(Checked { assembly, sources, diagnostics: diagnostics.into_sorted() })
 }
 
 impl Checked {
@@ -63,17 +65,5 @@ impl Checked {
     /// How many diagnostics are of this severity.
     pub(crate) fn count(&self, severity: Severity) -> usize {
         self.diagnostics.iter().filter(|one| one.severity == severity).count()
-    }
-}
-
-/// The classes that are linked into this program.
-pub(crate) fn registry() -> Registry {
-    match Registry::linked() {
-        Ok(registry) => registry,
-        Err(error) => {
-            // A fault of this build, not of the user: no composite could be checked.
-            eprint(&format!("error: {error}\n"));
-            std::process::exit(Exit::Failed as i32);
-        }
     }
 }

@@ -10,6 +10,7 @@ mod console;
 mod fleet;
 mod fmt;
 mod output;
+mod plugins;
 mod run;
 mod summary;
 

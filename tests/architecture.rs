@@ -14,6 +14,7 @@ const CORE: &[&str] = &[
     "format",
     "load",
     "registry",
+    "plugin",
     "assembly",
     "check",
     "assemble",

@@ -8,6 +8,7 @@ pub mod diagnostic;
 pub mod format;
 pub mod load;
 pub mod model;
+pub mod plugin;
 pub mod registry;
 pub mod report;
 pub mod schedule;

@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use std::fmt;
+use std::path::Path;
+
 use saoms_api::{DynComponent, Failure, PropertyValue, Registration};
 
 use super::ClassDeclaration;
@@ -12,7 +15,8 @@ pub struct Class {
     pub(super) name: String,
     pub(super) declaration: Arc<ClassDeclaration>,
     pub(super) presets: Vec<(String, PropertyValue)>,
-    pub(super) registration: Registration,
+    pub(super) text: Arc<str>,
+    pub(super) provider: Arc<dyn Provider>,
 }
 
 impl Class {
@@ -32,13 +36,18 @@ impl Class {
     }
 
     /// The declaration as its author's build wrote it: a JSON object in the shape of [`saoms_api::declaration`].
-    pub fn declaration_json(&self) -> &'static str {
-        self.registration.declaration()
+    pub fn declaration_json(&self) -> &str {
+        &self.text
     }
 
     /// The values that this name presets, for properties that a composite does not give.
     pub fn presets(&self) -> &[(String, PropertyValue)] {
         &self.presets
+    }
+
+    /// The library that the class comes from; `None` for one that is linked into the program.
+    pub fn origin(&self) -> Option<&Path> {
+        self.provider.origin()
     }
 
     /// Constructs a component. `values` are all values, those preset by the name included; absent ones take their
@@ -47,6 +56,28 @@ impl Class {
     /// # Errors
     /// A value is missing or wrong, or the values do not fit together.
     pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
-        self.registration.construct(values)
+        self.provider.construct(values)
+    }
+}
+
+/// Where the code of a class comes from.
+pub trait Provider: fmt::Debug + Send + Sync {
+    /// As [`Class::construct`].
+    ///
+    /// # Errors
+    /// As there.
+    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
+
+    /// As [`Class::origin`].
+    fn origin(&self) -> Option<&Path>;
+}
+
+impl Provider for Registration {
+    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        Registration::construct(self, values)
+    }
+
+    fn origin(&self) -> Option<&Path> {
+        None
     }
 }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use saoms_api::Registration;
 
-pub use class::Class;
+pub use class::{Class, Provider};
 pub use declaration::{
     Alias, ClassDeclaration, ClassKind, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
     ServiceDeclaration, TopicDeclaration,
@@ -82,7 +82,19 @@ impl Registry {
     /// # Errors
     /// The declaration is malformed or of another version of the contract, or one of its names is taken.
     pub fn add(&mut self, registration: Registration) -> Result<(), RegistryError> {
-        let classes = read(registration)?;
+        self.add_provided(registration.declaration(), Arc::new(registration))
+    }
+
+    /// Adds a class by its declaration and where its code comes from, under all its names. After an error the registry is as it was before.
+    ///
+    /// # Errors
+    /// As [`Registry::add`].
+    pub fn add_provided(
+        &mut self,
+        declaration: &str,
+        provider: Arc<dyn Provider>,
+    ) -> Result<(), RegistryError> {
+        let classes = read(declaration, &provider)?;
         for (place, class) in classes.iter().enumerate() {
             let taken = self.classes.get(&class.name).map(|other| &other.declaration.name);
             let again = classes[..place].iter().find(|other| other.name == class.name);
@@ -146,14 +158,16 @@ struct Head {
     class: String,
 }
 
-/// The class of a registration under each of its names, the declared one first.
-fn read(registration: Registration) -> Result<Vec<Class>, RegistryError> {
-    let declaration = Arc::new(read_text(registration.declaration())?);
+/// A class under each of its names, the declared one first.
+fn read(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Class>, RegistryError> {
+    let declaration = Arc::new(read_text(text)?);
+    let text: Arc<str> = text.into();
     let class = |name: &str, presets| Class {
         name: name.to_owned(),
         declaration: Arc::clone(&declaration),
         presets,
-        registration,
+        text: Arc::clone(&text),
+        provider: Arc::clone(provider),
     };
     let also = declaration.also.iter().map(|alias| {
         let presets = alias.preset.iter().map(|(name, value)| (name.clone(), value.as_str().into()));

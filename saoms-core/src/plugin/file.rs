@@ -1,0 +1,66 @@
+//! The section of a library that holds its metadata, read without running anything.
+
+use std::fs;
+use std::path::Path;
+
+use object::elf::{self, FileHeader64, Machine};
+use object::read::elf::{FileHeader as _, SectionHeader as _};
+use object::{Endianness, FileKind};
+use saoms_api::abi::SECTION;
+
+use super::PluginError;
+
+/// The machine that this program runs on, as ELF files say it.
+const MACHINE: Machine = if cfg!(target_arch = "aarch64") { elf::EM_AARCH64 } else { elf::EM_X86_64 };
+
+/// Larger files are no libraries of components.
+const LARGEST: u64 = 4 << 30;
+
+/// The text of the section.
+pub(super) fn read_section(path: &Path) -> Result<String, PluginError> {
+    let path_of = || path.to_owned();
+    let unreadable = |message: String| PluginError::Unreadable { path: path_of(), message };
+    let size = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?.len();
+    if size > LARGEST {
+        return Err(unreadable(format!("it has {size} bytes")));
+    }
+    let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+    let broken = |error: object::Error| PluginError::Broken { path: path_of(), message: error.to_string() };
+    match FileKind::parse(&*bytes) {
+        Ok(FileKind::Elf64) => {}
+        Ok(FileKind::Elf32) => {
+            return Err(PluginError::Machine { path: path_of(), found: "a 32-bit machine".to_owned() });
+        }
+        _ => return Err(PluginError::NoLibrary { path: path_of() }),
+    }
+    let header = FileHeader64::<Endianness>::parse(&*bytes).map_err(broken)?;
+    let endian = header.endian().map_err(broken)?;
+    let machine = header.e_machine(endian);
+    if machine != MACHINE {
+        return Err(PluginError::Machine { path: path_of(), found: name(machine) });
+    }
+    if header.e_type(endian) != elf::ET_DYN {
+        return Err(PluginError::NoLibrary { path: path_of() });
+    }
+    let sections = header.sections(endian, &*bytes).map_err(broken)?;
+    let Some((_, section)) = sections.section_by_name(endian, SECTION.as_bytes()) else {
+        return Err(PluginError::NoMetadata { path: path_of() });
+    };
+    let data = section.data(endian, &*bytes).map_err(broken)?;
+    // A text of a C compiler ends with zeros.
+    let end = data.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+    let text = data.get(..end).unwrap_or_default().to_vec();
+    String::from_utf8(text).map_err(|error| PluginError::Metadata {
+        path: path_of(),
+        message: format!("they are no text: {error}"),
+    })
+}
+
+fn name(machine: Machine) -> String {
+    match machine.0 {
+        62 => "x86_64".to_owned(),
+        183 => "aarch64".to_owned(),
+        243 => "riscv64".to_owned(),
+        other => format!("machine {other} of the ELF format"),
+    }
+}

@@ -1,0 +1,75 @@
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::{Plugin, PluginError};
+
+/// Where libraries are looked for.
+#[derive(Clone, Debug, Default)]
+pub struct Search {
+    /// Files and folders that somebody named: what is wrong with them is an error.
+    pub named: Vec<PathBuf>,
+    /// Folders that are looked through where they exist; files in them without metadata are not ours.
+    pub folders: Vec<PathBuf>,
+}
+
+/// What a search came to.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// The plugins, in the order of the places and by name within a folder; each file once.
+    pub plugins: Vec<Arc<Plugin>>,
+    /// What is wrong with those that somebody named.
+    pub errors: Vec<PluginError>,
+    /// What is wrong with others, which are left out.
+    pub left_out: Vec<PluginError>,
+}
+
+impl Search {
+    /// Reads the metadata of all libraries; nothing in them runs.
+    pub fn run(&self) -> Found {
+        let mut found = Found::default();
+        let mut seen = BTreeSet::new();
+        let mut look = |path: &Path, named: bool, found: &mut Found| {
+            // The same file by another way is no second plugin.
+            if !seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())) {
+                return;
+            }
+            match Plugin::open(path) {
+                Ok(plugin) => found.plugins.push(plugin),
+                Err(error) if named => found.errors.push(error),
+                Err(PluginError::NoMetadata { .. } | PluginError::NoLibrary { .. }) => {}
+                Err(error) => found.left_out.push(error),
+            }
+        };
+        for path in &self.named {
+            if !path.is_dir() {
+                look(path, true, &mut found);
+                continue;
+            }
+            let libraries = libraries(path);
+            for library in &libraries {
+                look(library, false, &mut found);
+            }
+            if libraries.is_empty() {
+                let message = "there is no library (`*.so`) in this folder".to_owned();
+                found.errors.push(PluginError::Unreadable { path: path.clone(), message });
+            }
+        }
+        for library in self.folders.iter().flat_map(|folder| libraries(folder)) {
+            look(&library, false, &mut found);
+        }
+        found
+    }
+}
+
+/// The libraries of a folder, by name; none where it does not exist.
+fn libraries(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let mut found: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|ending| ending == "so") && path.is_file())
+        .collect();
+    found.sort();
+    found
+}
