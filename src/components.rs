@@ -109,7 +109,12 @@ fn described(class: &Class) -> String {
     let references = declaration.references.iter().map(|reference| {
         interface_lines(
             &reference.name,
-            if reference.optional { ", optional" } else { "" },
+            match (reference.optional, reference.many) {
+                (true, true) => ", optional, many",
+                (true, false) => ", optional",
+                (false, true) => ", many",
+                (false, false) => "",
+            },
             &reference.interface,
         )
     });

@@ -3,9 +3,10 @@
 use std::io::IsTerminal;
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::{Setting, check};
+use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
-use saoms_core::load::{load_file, read, read_values};
+use saoms_core::load::{load_file, load_named, read, read_values};
+use saoms_core::model::Contribution;
 use saoms_core::source::Sources;
 
 use crate::Exit;
@@ -40,7 +41,10 @@ pub(crate) fn checked(arguments: &FleetArguments) -> Result<Checked, Exit> {
         read_values(&mut composite, arguments.max_size, &mut sources, &mut diagnostics);
         composites.push(composite);
     }
-    let assembly = check(&composites, &registry, &settings, &sources, &mut diagnostics);
+    let mut contribution = Contribution::of(composites);
+    load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
+    let options = Options::with_settings(settings);
+    let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
     Ok(Checked { assembly, sources, diagnostics: diagnostics.into_sorted() })
 }
 

@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 // Its classes are found only where the crate is used.
 use saoms_components as _;
 use saoms_core::assembly::Assembly;
-use saoms_core::check::check;
+use saoms_core::check::{Options, check};
 use saoms_core::diagnostic::{Diagnostics, Severity, human};
 use saoms_core::load::load_file;
+use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
 use saoms_core::report::{RunReport, Status};
 use saoms_core::schedule::{Fleet, Quiet, Settings};
@@ -31,7 +32,10 @@ pub(crate) fn checked(text: String) -> Outcome<Checked> {
     let file = sources.add("benchmark.composite", text);
     let composite = load_file(file, &sources, &mut diagnostics);
     let loaded = Instant::now();
-    let assembly = composite.and_then(|one| check(&[one], &registry, &[], &sources, &mut diagnostics));
+    let assembly = composite.and_then(|one| {
+        let fleet = Contribution::of(vec![one]);
+        check(&fleet, &registry, &Options::default(), &sources, &mut diagnostics)
+    });
     let done = Instant::now();
     match assembly {
         Some(assembly) => Ok(Checked { assembly, load: loaded - start, check: done - loaded }),

@@ -103,7 +103,7 @@ pub trait Component: Send + Sized + 'static {
 /// | `periodic` or `passive` | whether it is executed in each period; a passive one cannot subscribe |
 /// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
 /// | `service("move": Robot)` | a service with this [interface](crate::Interface), which the component implements |
-/// | `reference("gps": Gps)`, `reference("gps": Gps, optional)` | a service of another component that this one calls |
+/// | `reference("gps": Gps)`, `reference("gps": Gps, optional)`, `reference("gps": Gps, many)` | a service of another component that this one calls |
 /// | `also("robot.Robot001", number = 1)` | a further name, with properties preset to literals |
 ///
 /// Linked classes register themselves: [`Registration::linked`](crate::Registration::linked) lists them.

@@ -128,6 +128,55 @@ impl<'a> Context<'a> {
         self.host.reference(name, R::INTERFACE).map(R::from_index)
     }
 
+    /// A handle for each target of a reference that the class declares as `many`, in the order of the composite; none where it
+    /// has none. Only in `initialize`.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Context, Failure, interface};
+    ///
+    /// /// Lights something.
+    /// #[interface(name = "example.Light")]
+    /// pub trait Light {
+    ///     /// On or off.
+    ///     fn switch(&mut self, context: &mut Context<'_>, on: bool) -> Result<(), Failure>;
+    /// }
+    ///
+    /// /// Switches all lights that the composite wires it to.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Switch", periodic, reference("lights": Light, optional, many))]
+    /// struct Switch {
+    ///     lights: Vec<LightReference>,
+    /// }
+    ///
+    /// impl Component for Switch {
+    ///     type Properties = ();
+    ///
+    ///     fn new((): ()) -> Result<Self, Failure> {
+    ///         Ok(Switch { lights: Vec::new() })
+    ///     }
+    ///
+    ///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         self.lights = context.references("lights")?;
+    ///         Ok(())
+    ///     }
+    ///
+    ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         for light in &self.lights {
+    ///             light.switch(context, true)?;
+    ///         }
+    ///         Ok(())
+    ///     }
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// The class declares no reference of this name and interface.
+    pub fn references<R: Reference>(&mut self, name: &str) -> Result<Vec<R>, Failure> {
+        let first = self.host.reference(name, R::INTERFACE)?;
+        let targets = self.host.targets(first);
+        Ok((0..targets).map(|target| R::from_index(first | target << TARGET_SHIFT)).collect())
+    }
+
     /// Whether the reference leads to a service.
     pub fn is_wired<R: Reference>(&self, reference: &R) -> bool {
         self.host.is_wired(reference.index())
@@ -236,6 +285,9 @@ impl<'a> Context<'a> {
     }
 }
 
+/// Where in a handle of a reference the number of the target is; below it is the place of the reference in its class.
+pub const TARGET_SHIFT: u32 = 16;
+
 /// What a host gives to a component: the scheduler in a run, a stand-in in a test, a function table behind a plugin's boundary.
 /// Component authors use [`Context`].
 pub trait Host {
@@ -279,6 +331,11 @@ pub trait Host {
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure>;
     /// See [`Context::is_wired`].
     fn is_wired(&self, reference: u32) -> bool;
+    /// How many targets a reference has. The handle of one of them is that of the reference with the number of the target, from 0,
+    /// in the bits from [`TARGET_SHIFT`] on.
+    fn targets(&self, reference: u32) -> u32 {
+        u32::from(self.is_wired(reference))
+    }
     /// Calls through a reference.
     ///
     /// # Errors

@@ -86,7 +86,7 @@ mod topic;
 pub use adaptation::{Cause, DynLoop, Knowledge, Loop, Loops, Phase, Record, Recordable, Subject, Value};
 pub use chance::Chance;
 pub use component::{Class, Component, DynComponent};
-pub use context::{Context, Host, Level};
+pub use context::{Context, Host, Level, TARGET_SHIFT};
 pub use failure::{CallError, Failure};
 pub use field::{Arguments, Field};
 pub use finding::{Finding, Place};

@@ -20,7 +20,7 @@ struct Declared {
     publishes: Vec<Path>,
     subscribes: Vec<Path>,
     services: Vec<(LitStr, Path)>,
-    references: Vec<(LitStr, Path, bool)>,
+    references: Vec<(LitStr, Path, Multiplicity)>,
     also: Vec<Also>,
 }
 
@@ -144,12 +144,12 @@ impl Declared {
                 let list;
                 parenthesized!(list in meta.input);
                 let (name, interface) = named(&list)?;
-                let optional = optional(&list)?;
+                let multiplicity = Multiplicity::of(&list)?;
                 end(&list)?;
                 if self.references.iter().any(|(other, ..)| other.value() == name.value()) {
                     return Err(Error::new(name.span(), "another reference has this name, too"));
                 }
-                self.references.push((name, interface, optional));
+                self.references.push((name, interface, multiplicity));
             }
             "also" => {
                 let list;
@@ -189,9 +189,10 @@ impl Declared {
             text.plain("}");
         });
         text.plain(",\"references\":");
-        text.list(&self.references, |text, (name, of, optional)| {
+        text.list(&self.references, |text, (name, of, multiplicity)| {
             interface(text, name, of);
-            text.plain(&format!(",\"optional\":{optional}}}"));
+            text.plain(&format!(",\"optional\":{}", multiplicity.optional));
+            text.plain(if multiplicity.many { ",\"many\":true}" } else { "}" });
         });
         text.plain("}");
         Ok(text)
@@ -262,14 +263,28 @@ fn named(list: ParseStream<'_>) -> Result<(LitStr, Path)> {
     Ok((name, list.parse()?))
 }
 
-/// `, optional`.
-fn optional(list: ParseStream<'_>) -> Result<bool> {
-    if !list.peek(Token![,]) || !list.peek2(Ident) {
-        return Ok(false);
+/// How many targets a reference takes: one unless its words say otherwise.
+#[derive(Clone, Copy, Default)]
+struct Multiplicity {
+    optional: bool,
+    many: bool,
+}
+
+impl Multiplicity {
+    /// `, optional` and `, many`.
+    fn of(list: ParseStream<'_>) -> Result<Multiplicity> {
+        let mut multiplicity = Multiplicity::default();
+        while list.peek(Token![,]) && list.peek2(Ident) {
+            list.parse::<Token![,]>()?;
+            let word: Ident = list.parse()?;
+            match word.to_string().as_str() {
+                "optional" if !multiplicity.optional => multiplicity.optional = true,
+                "many" if !multiplicity.many => multiplicity.many = true,
+                _ => return Err(Error::new(word.span(), "expected `optional` or `many`, each once")),
+            }
+        }
+        Ok(multiplicity)
     }
-    list.parse::<Token![,]>()?;
-    let word: Ident = list.parse()?;
-    if word == "optional" { Ok(true) } else { Err(Error::new(word.span(), "expected `optional`")) }
 }
 
 fn end(list: ParseStream<'_>) -> Result<()> {

@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::{Setting, check};
+use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, human};
-use saoms_core::load::{MAX_SIZE, load_file, read, read_values};
+use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
+use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Events, Quiet, Settings};
@@ -106,7 +107,10 @@ impl Fleet {
             read_values(&mut composite, MAX_SIZE, &mut sources, &mut diagnostics);
             composites.push(composite);
         }
-        let assembly = check(&composites, &registry, &settings, &sources, &mut diagnostics);
+        let mut contribution = Contribution::of(composites);
+        load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
+        let options = Options::with_settings(settings);
+        let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
         (assembly, sources, diagnostics.into_sorted())
     }
 }

@@ -15,7 +15,7 @@
 //!   "publishes": [{"topic": "POSTOPIC", "kind": "state", "message": "Position", "schema": {"name": "Position", "fields": []}}],
 //!   "subscribes": [],
 //!   "services": [{"name": "move", "interface": {"name": "resources.robotEnvironment.Robot", "operations": []}}],
-//!   "references": [{"name": "world", "interface": {"name": "saoms.World", "operations": []}, "optional": true}]
+//!   "references": [{"name": "world", "interface": {"name": "saoms.World", "operations": []}, "optional": true, "many": true}]
 //! }
 //! ```
 //! - `contract` is the version of this shape.

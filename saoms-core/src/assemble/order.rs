@@ -9,32 +9,32 @@ pub(super) fn providers_first(assembly: &Assembly) -> Vec<usize> {
     let components = &assembly.components;
     let mut order = Vec::with_capacity(components.len());
     let mut seen = vec![false; components.len()];
-    let mut path: Vec<(usize, usize)> = Vec::new();
+    // Components, each with the place of the next wire to follow: reference and target.
+    let mut path: Vec<(usize, usize, usize)> = Vec::new();
     for root in 0..components.len() {
         visit(root, &mut seen, &mut path);
-        while let Some((component, next)) = path.last_mut() {
+        while let Some((component, reference, next)) = path.last_mut() {
             let component = *component;
-            match components[component].references.get(*next) {
-                None => {
-                    order.push(component);
-                    path.pop();
-                }
-                Some(wire) => {
-                    *next += 1;
-                    if let Some(target) =
-                        wire.target.as_ref().filter(|target| target.component < components.len())
-                    {
-                        visit(target.component, &mut seen, &mut path);
-                    }
-                }
+            let Some(wire) = components[component].references.get(*reference) else {
+                order.push(component);
+                path.pop();
+                continue;
+            };
+            let Some(target) = wire.targets.get(*next) else {
+                (*reference, *next) = (*reference + 1, 0);
+                continue;
+            };
+            *next += 1;
+            if target.component < components.len() {
+                visit(target.component, &mut seen, &mut path);
             }
         }
     }
     order
 }
 
-fn visit(component: usize, seen: &mut [bool], path: &mut Vec<(usize, usize)>) {
+fn visit(component: usize, seen: &mut [bool], path: &mut Vec<(usize, usize, usize)>) {
     if !std::mem::replace(&mut seen[component], true) {
-        path.push((component, 0));
+        path.push((component, 0, 0));
     }
 }

@@ -3,7 +3,7 @@ use std::collections::HashMap;
 use saoms_api::PropertyValue;
 
 use super::order::providers_first;
-use crate::assembly::{Assembly, ComponentSpec, Wire};
+use crate::assembly::{Assembly, ComponentSpec, Target, Wire};
 
 /// What turns one fleet into another. Components are the same when their paths are; numbers are places in the two assemblies.
 ///
@@ -103,9 +103,11 @@ fn differences(
     if before.task != after.task {
         differences.push(Difference::Task);
     }
-    let leads_to = |assembly: &Assembly, wire: &Wire| {
-        let target = wire.target.as_ref()?;
-        Some((assembly.components.get(target.component)?.path.clone(), target.service.clone()))
+    let leads_to = |assembly: &Assembly, wire: &Wire| -> Vec<Option<(String, String)>> {
+        let of = |target: &Target| {
+            Some((assembly.components.get(target.component)?.path.clone(), target.service.clone()))
+        };
+        wire.targets.iter().map(of).collect()
     };
     for wire in &after.references {
         let same = before.references.iter().any(|known| {

@@ -61,7 +61,10 @@ fn assembly(text: &str) -> Assembly {
                 Some(target) => spec.references.push(Wire {
                     reference: format!("r{}", spec.references.len()),
                     interface: "i".to_owned(),
-                    target: place(target).map(|component| Target { component, service: "s".to_owned() }),
+                    targets: place(target)
+                        .map(|component| Target { component, service: "s".to_owned() })
+                        .into_iter()
+                        .collect(),
                 }),
             }
         }
@@ -136,8 +139,11 @@ fn assembly_of_chain(text: &str) -> Assembly {
     let first = assembly.components.remove(0);
     let count = text.lines().count();
     for (place, line) in text.lines().enumerate() {
-        let target = (place + 1 < count).then(|| Target { component: place + 1, service: "s".to_owned() });
-        let wire = Wire { reference: "next".to_owned(), interface: "i".to_owned(), target };
+        let targets = (place + 1 < count)
+            .then(|| Target { component: place + 1, service: "s".to_owned() })
+            .into_iter()
+            .collect();
+        let wire = Wire { reference: "next".to_owned(), interface: "i".to_owned(), targets };
         let path = line.split(' ').next().unwrap().to_owned();
         assembly.components.push(ComponentSpec { path, references: vec![wire], ..first.clone() });
     }

@@ -31,7 +31,7 @@ pub struct ComponentSpec {
     pub values: Vec<(String, PropertyValue)>,
     /// How a periodic component runs; `None` for a passive one.
     pub task: Option<TaskSettings>,
-    /// The class's references in the order of its declaration, with the service each leads to.
+    /// The class's references in the order of its declaration, with the services each leads to.
     pub references: Vec<Wire>,
 }
 
@@ -42,8 +42,8 @@ pub struct Wire {
     pub reference: String,
     /// The name of the interface.
     pub interface: String,
-    /// The service, if the reference is wired.
-    pub target: Option<Target>,
+    /// The services it is wired to: at most one unless its class declares it as `many`.
+    pub targets: Vec<Target>,
 }
 
 /// A service of a component.

@@ -58,7 +58,7 @@ impl<'f> Circles<'f> {
     }
 
     fn report(&self, circle: &[usize], fleet: &Fleet<'_>, report: &mut Report<'_>) {
-        let name = |member: usize| quoted(&fleet.members[member].component.name);
+        let name = |member: usize| quoted(fleet.members[member].path());
         let Some(last) = circle.last().map(|wire| &self.wires[*wire]) else { return };
         if circle.len() == 1 {
             let message =

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::fleet::Fleet;
+use super::fleet::{Fleet, Kind};
 use super::report::{Report, escaped, list, replacing};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -92,6 +92,7 @@ impl<'r> ClassIndex<'r> {
 pub(super) fn resolve<'r>(
     fleet: &mut Fleet<'_>,
     registry: &'r Registry,
+    assume_classes: bool,
     report: &mut Report<'_>,
 ) -> Vec<ClassIndex<'r>> {
     let mut classes = Vec::new();
@@ -100,7 +101,12 @@ pub(super) fn resolve<'r>(
     let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
     for place in 0..fleet.members.len() {
         let component = fleet.members[place].component;
-        let Some(class) = runnable(component, report) else { continue };
+        let Some(class) = runnable(component, assume_classes, report) else {
+            if assume_classes && fleet.members[place].kind == Kind::Nothing {
+                fleet.members[place].kind = given(component);
+            }
+            continue;
+        };
         let index = match known.get(class.as_str()) {
             Some(&index) => index,
             None => match registry.get(class) {
@@ -109,6 +115,10 @@ pub(super) fn resolve<'r>(
                     known.insert(class, classes.len() - 1);
                     classes.len() - 1
                 }
+                None if assume_classes => {
+                    fleet.members[place].kind = Kind::Given;
+                    continue;
+                }
                 None => {
                     let near = near.entry(class).or_insert_with(|| registry.nearest(class));
                     report.push(unknown(class, near, registry));
@@ -116,15 +126,18 @@ pub(super) fn resolve<'r>(
                 }
             },
         };
-        fleet.members[place].class = Some(index);
+        fleet.members[place].kind = Kind::Class(index);
     }
     classes
 }
 
 /// The name of the class of a component that names one.
-fn runnable<'a>(component: &'a Component, report: &mut Report<'_>) -> Option<&'a Text> {
+fn runnable<'a>(component: &'a Component, assume_classes: bool, report: &mut Report<'_>) -> Option<&'a Text> {
     const SUPPORTED: &str = "components are implemented by a class: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
     let Some(implementation) = &component.implementation else {
+        if assume_classes {
+            return None;
+        }
         // Reported by the loader, for SCA 1.0 as a warning.
         let why = "SCA 1.0 allows a component without an implementation, but it cannot run";
         report.escalate(&codes::MISSING_IMPLEMENTATION, component.origin.file(), why);
@@ -133,7 +146,9 @@ fn runnable<'a>(component: &'a Component, report: &mut Report<'_>) -> Option<&'a
     match &implementation.kind {
         ImplementationKind::Java { class } => class.as_ref(),
         ImplementationKind::Rust { class, library } => {
-            if let Some(library) = library {
+            if let Some(library) = library
+                && !assume_classes
+            {
                 let message = "classes from plugins are not supported yet: `library` names one";
                 report.push(
                     Diagnostic::new(&codes::NOT_SUPPORTED_YET, library.location, message)
@@ -143,21 +158,24 @@ fn runnable<'a>(component: &'a Component, report: &mut Report<'_>) -> Option<&'a
             }
             class.as_ref()
         }
-        ImplementationKind::Composite { .. } => {
-            let message = "nested composites are not supported yet: `implementation.composite` cannot run";
-            report.push(
-                Diagnostic::new(&codes::NOT_SUPPORTED_YET, implementation.tag(), message)
-                    .help("put the components of the inner composite in this one")
-                    .help(SUPPORTED),
-            );
-            None
-        }
+        // Unfolded already.
+        ImplementationKind::Composite { .. } => None,
+        ImplementationKind::Other { .. } if assume_classes => None,
         ImplementationKind::Other { kind, .. } => {
             let message = format!("{} cannot run here", quoted(&format!("implementation.{kind}")));
             let one = Diagnostic::new(&codes::IMPLEMENTATION_UNSUPPORTED, implementation.tag(), message);
             report.push(one.help(SUPPORTED));
             None
         }
+    }
+}
+
+/// What a component without a class is when that is taken as given.
+fn given(component: &Component) -> Kind {
+    match component.implementation.as_ref().map(|implementation| &implementation.kind) {
+        // A composite that is faulty, or missing: seen to when the fleet was unfolded.
+        Some(ImplementationKind::Composite { .. }) => Kind::Nothing,
+        _ => Kind::Given,
     }
 }
 

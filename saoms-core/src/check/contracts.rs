@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::classes::ClassIndex;
 use super::fleet::Fleet;
+use super::offer::Offer;
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::model::{Binding, Component, Interface, InterfaceKind, Multiplicity, Part, Reference};
@@ -14,50 +15,69 @@ use crate::source::{Location, Text};
 pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
     for (place, member) in fleet.members.iter().enumerate() {
         let component = member.component;
-        let Some(class) = fleet.class_of(place, classes) else { continue };
         if !component.services.is_empty() {
-            services(component, class, report);
+            let names = component.services.iter().map(|service| &service.name);
+            repeated(names, component, "service", "ASM50002", report);
+            services(place, fleet, classes, report);
         }
         if !component.references.is_empty() {
-            references(component, class, report);
+            let names = component.references.iter().map(|reference| &reference.name);
+            repeated(names, component, "reference", "ASM50007", report);
+            references(place, fleet, classes, report);
         }
     }
 }
 
-fn services(component: &Component, class: &ClassIndex<'_>, report: &mut Report<'_>) {
-    let names = component.services.iter().map(|service| &service.name);
-    repeated(names, component, "service", "ASM50002", report);
-    for service in &component.services {
+/// What implements a component, for people.
+fn whose(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> Option<String> {
+    if let Some(class) = fleet.class_of(member, classes) {
+        return Some(format!("class {}", quoted(class.class.name())));
+    }
+    Some(format!("composite {}", quoted(&fleet.inner(member)?.main().name)))
+}
+
+fn services(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
+    let Some(whose) = whose(member, fleet, classes) else { return };
+    for service in &fleet.members[member].component.services {
         let name = &service.name;
-        match class.services.iter().find(|known| known.name == name.as_str()) {
-            Some(known) => {
-                interface(service.interface.as_deref(), &known.interface, name, "ASM50004", report)
+        match fleet.offer(member, name, classes) {
+            Offer::Service(provider) => {
+                if let Some(declared) = fleet.interface_of(provider, classes) {
+                    interface(service.interface.as_deref(), declared, name, "ASM50004", report);
+                }
             }
-            None => {
-                let known = class.services.iter().map(|known| known.name.as_str());
-                unknown(&codes::UNKNOWN_SERVICE, "service", name, class, known, report);
+            Offer::Open => {}
+            Offer::Missing => {
+                let names = fleet.service_names(member, classes).unwrap_or_default();
+                unknown(&codes::UNKNOWN_SERVICE, "service", name, &whose, names.iter().copied(), report);
             }
         }
-        bindings(&service.bindings, "the service can be called within the program alone", report);
+        if fleet.class_of(member, classes).is_some() {
+            bindings(&service.bindings, "the service can be called within the program alone", report);
+        }
     }
 }
 
-fn references(component: &Component, class: &ClassIndex<'_>, report: &mut Report<'_>) {
-    let names = component.references.iter().map(|reference| &reference.name);
-    repeated(names, component, "reference", "ASM50007", report);
-    for reference in &component.references {
+fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
+    let Some(whose) = whose(member, fleet, classes) else { return };
+    let class = fleet.class_of(member, classes);
+    for reference in &fleet.members[member].component.references {
         let name = &reference.name;
-        match class.references.iter().find(|known| known.name == name.as_str()) {
-            Some(known) => {
-                interface(reference.interface.as_deref(), &known.interface, name, "ASM50011", report);
-                multiplicity(reference, known, class, report);
-            }
-            None => {
-                let known = class.references.iter().map(|known| known.name.as_str());
-                unknown(&codes::UNKNOWN_REFERENCE, "reference", name, class, known, report);
-            }
+        let names = fleet.reference_names(member, classes).unwrap_or_default();
+        let declared =
+            class.and_then(|class| class.references.iter().find(|known| known.name == name.as_str()));
+        let inner =
+            fleet.inner(member).and_then(|inner| inner.references().find(|known| known.name == *name.value));
+        if let Some(declared) = declared {
+            interface(reference.interface.as_deref(), &declared.interface, name, "ASM50011", report);
+            narrows(reference, of_class(declared), &whose, report);
+            bindings(&reference.bindings, "calls through it fail", report);
+        } else if let Some(inner) = inner {
+            let own = inner.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value);
+            narrows(reference, own, &whose, report);
+        } else {
+            unknown(&codes::UNKNOWN_REFERENCE, "reference", name, &whose, names.iter().copied(), report);
         }
-        bindings(&reference.bindings, "calls through it fail", report);
     }
 }
 
@@ -84,15 +104,14 @@ fn unknown<'n>(
     code: &'static Code,
     what: &str,
     name: &Text,
-    class: &ClassIndex<'_>,
+    whose: &str,
     known: impl Iterator<Item = &'n str> + Clone,
     report: &mut Report<'_>,
 ) {
     if name.is_empty() {
         return;
     }
-    let class = quoted(class.class.name());
-    let message = format!("class {class} has no {what} {}", quoted(name));
+    let message = format!("{whose} has no {what} {}", quoted(name));
     let one = report.unknown(code, name.location, message, name, (&format!("its {what}s are"), known));
     report.push(one);
 }
@@ -134,31 +153,35 @@ fn interface(
 
 /// How many targets a reference of the class can have.
 pub(super) fn of_class(declared: &ReferenceDeclaration) -> Multiplicity {
-    if declared.optional { Multiplicity::ZeroOrOne } else { Multiplicity::One }
+    match (declared.optional, declared.many) {
+        (true, false) => Multiplicity::ZeroOrOne,
+        (false, false) => Multiplicity::One,
+        (true, true) => Multiplicity::Any,
+        (false, true) => Multiplicity::OneOrMore,
+    }
 }
 
-fn multiplicity(
-    reference: &Reference,
-    declared: &ReferenceDeclaration,
-    class: &ClassIndex<'_>,
-    report: &mut Report<'_>,
-) {
+/// Checks that the multiplicity that a component gives narrows that of what implements it.
+fn narrows(reference: &Reference, own: Multiplicity, whose: &str, report: &mut Report<'_>) {
     let Some(given) = &reference.multiplicity else { return };
-    let own = of_class(declared);
     if given.value.narrows(own) {
         return;
     }
     let message = format!(
-        "the multiplicity of {} is {} in class {}: {} does not narrow it",
+        "the multiplicity of {} is {} in {whose}: {} does not narrow it",
         quoted(&reference.name),
         quoted(own.name()),
-        quoted(class.class.name()),
         quoted(given.value.name())
     );
     let one = Diagnostic::new(&codes::MULTIPLICITY_WIDER, given.location, message);
+    let narrower = Multiplicity::ALL.into_iter().filter(|one| one.narrows(own));
+    let names: Vec<&str> = narrower.map(Multiplicity::name).collect();
     report.push(match own {
         Multiplicity::One => one.help("leave `multiplicity` out: `1..1` is the default"),
-        _ => one.help("it can be `0..1` or `1..1`"),
+        _ => one.help(format!(
+            "it can be {}",
+            names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(" or ")
+        )),
     });
 }
 

@@ -3,98 +3,114 @@
 use std::collections::HashMap;
 
 use super::classes::ClassIndex;
-use super::report::Report;
-use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Component, Composite, Part};
+use crate::model::{Component, Composite, Contribution, Reference, Service};
 
-/// The components of all files in order.
+/// The components of a fleet in document order, those of inner composites behind the component that each implements.
 ///
 /// Several files form one fleet, as if one composite included them all: components of one file can be wired to those of
 /// another, and names are unique across files.
 pub(super) struct Fleet<'a> {
-    pub(super) composites: &'a [Composite],
+    pub(super) contribution: &'a Contribution,
+    /// What components can see of each other: the first is that of the composites that were asked for.
+    pub(super) scopes: Vec<Scope>,
+    pub(super) units: Vec<Unit<'a>>,
     pub(super) members: Vec<Member<'a>>,
-    by_name: HashMap<&'a str, usize>,
+    pub(super) by_name: HashMap<(usize, &'a str), usize>,
+}
+
+/// Components that can be wired to each other.
+#[derive(Default)]
+pub(super) struct Scope {
+    /// The component that it implements; `None` for the outermost.
+    pub(super) owner: Option<usize>,
+    pub(super) units: Vec<usize>,
+    pub(super) members: Vec<usize>,
+}
+
+/// A composite with all that it includes: one space of property, service and reference names.
+pub(super) struct Unit<'a> {
+    pub(super) scope: usize,
+    /// The composite itself first.
+    pub(super) composites: Vec<&'a Composite>,
 }
 
 /// A component with what is found out about it.
 pub(super) struct Member<'a> {
-    /// The place of its composite.
-    pub(super) composite: usize,
+    /// The composite that it is written in.
+    pub(super) composite: &'a Composite,
+    pub(super) unit: usize,
+    pub(super) scope: usize,
     pub(super) component: &'a Component,
-    /// `None` when it has no class that could run; that is reported.
-    pub(super) class: Option<usize>,
+    /// Whether its composite asks for autowire.
+    pub(super) autowire: bool,
+    pub(super) kind: Kind,
+    /// Its path, where that is more than its name.
+    path: Option<Box<str>>,
+}
+
+/// What implements a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Nothing that could run; that is reported.
+    Nothing,
+    /// The class of this place.
+    Class(usize),
+    /// The composite of this scope.
+    Composite(usize),
+    /// Something that is taken as given.
+    Given,
+}
+
+impl<'a> Member<'a> {
+    pub(super) fn new(composite: &'a Composite, unit: usize, scope: usize, component: &'a Component) -> Self {
+        Self { composite, unit, scope, component, autowire: false, kind: Kind::Nothing, path: None }
+    }
+
+    /// The name that tells it from all others of the fleet: the names of the components around it, and its own.
+    pub(super) fn path(&self) -> &str {
+        self.path.as_deref().unwrap_or(&self.component.name)
+    }
+
+    pub(super) fn set_path(&mut self, path: String) {
+        self.path = Some(path.into());
+    }
+}
+
+impl<'a> Unit<'a> {
+    /// The composite itself.
+    pub(super) fn main(&self) -> &'a Composite {
+        self.composites[0]
+    }
+
+    /// The services of the composite, those of included ones behind its own.
+    pub(super) fn services(&self) -> impl Iterator<Item = &'a Service> + use<'a, '_> {
+        self.composites.iter().flat_map(|composite| &composite.services)
+    }
+
+    /// The references of the composite, those of included ones behind its own.
+    pub(super) fn references(&self) -> impl Iterator<Item = &'a Reference> + use<'a, '_> {
+        self.composites.iter().flat_map(|composite| &composite.references)
+    }
 }
 
 impl<'a> Fleet<'a> {
-    /// Collects the components and checks that names are unique.
-    pub(super) fn of(composites: &'a [Composite], report: &mut Report<'_>) -> Self {
-        let count = composites.iter().map(|composite| composite.components.len()).sum();
-        let mut fleet =
-            Self { composites, members: Vec::with_capacity(count), by_name: HashMap::with_capacity(count) };
-        let mut names: HashMap<(&str, &str), &Composite> = HashMap::new();
-        for (place, composite) in composites.iter().enumerate() {
-            let namespace = composite.target_namespace.as_ref().map_or("", |namespace| namespace.as_str());
-            let name = composite.name.as_str();
-            match names.get(&(namespace, name)) {
-                Some(first) if !name.is_empty() => {
-                    let message = format!("there are two composites {} in one namespace", quoted(name));
-                    report.push(
-                        Diagnostic::new(&codes::COMPOSITE_REPEATED, composite.name.location, message)
-                            .label(first.name.location, "the first")
-                            .help("give each its own name; was one file given twice?"),
-                    );
-                }
-                _ => _ = names.insert((namespace, name), composite),
-            }
-            for include in &composite.includes {
-                let message = "`include` is not supported yet";
-                report.push(
-                    Diagnostic::new(&codes::NOT_SUPPORTED_YET, include.tag(), message).help(
-                        "name the included file on the command line, too: several files form one fleet",
-                    ),
-                );
-            }
-            for component in &composite.components {
-                fleet.add(place, component, report);
-            }
+    /// The component of this name in a scope.
+    pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
+        let by_name: &HashMap<(usize, &str), usize> = &self.by_name;
+        by_name.get(&(scope, name)).copied()
+    }
+
+    /// The names of all components of a scope, in order.
+    pub(super) fn names(&self, scope: usize) -> impl Iterator<Item = &'a str> + Clone {
+        self.scopes[scope].members.iter().map(|member| self.members[*member].component.name.as_str())
+    }
+
+    /// The one unit of the composite that implements a component.
+    pub(super) fn inner(&self, member: usize) -> Option<&Unit<'a>> {
+        match self.members[member].kind {
+            Kind::Composite(scope) => Some(&self.units[*self.scopes[scope].units.first()?]),
+            _ => None,
         }
-        fleet
-    }
-
-    fn add(&mut self, composite: usize, component: &'a Component, report: &mut Report<'_>) {
-        let name = component.name.as_str();
-        let index = self.members.len();
-        self.members.push(Member { composite, component, class: None });
-        if name.is_empty() {
-            return;
-        }
-        match self.by_name.get(name) {
-            None => _ = self.by_name.insert(name, index),
-            Some(&first) => {
-                let message = format!("there are two components {}", quoted(name));
-                report.push(
-                    Diagnostic::new(&codes::COMPONENT_REPEATED, component.name.location, message)
-                        .label(self.members[first].component.name.location, "the first")
-                        .help("give each its own name"),
-                );
-            }
-        }
-    }
-
-    /// The place of the component of this name.
-    pub(super) fn find(&self, name: &str) -> Option<usize> {
-        self.by_name.get(name).copied()
-    }
-
-    /// The names of all components, in order.
-    pub(super) fn names(&self) -> impl Iterator<Item = &'a str> + Clone {
-        self.members.iter().map(|member| member.component.name.as_str())
-    }
-
-    /// The composite of a member.
-    pub(super) fn composite_of(&self, member: &Member<'a>) -> &'a Composite {
-        &self.composites[member.composite]
     }
 
     /// The class of a member.
@@ -103,6 +119,9 @@ impl<'a> Fleet<'a> {
         member: usize,
         classes: &'c [ClassIndex<'r>],
     ) -> Option<&'c ClassIndex<'r>> {
-        Some(&classes[self.members[member].class?])
+        match self.members[member].kind {
+            Kind::Class(class) => Some(&classes[class]),
+            _ => None,
+        }
     }
 }

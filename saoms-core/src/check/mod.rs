@@ -4,6 +4,7 @@
 //! rules to dear ones and looks at everything, so that all faults come in one run. What depends on something that is wrong
 //! is not looked at: one mistake gives one diagnostic.
 
+mod autowire;
 mod circle;
 mod classes;
 mod construct;
@@ -12,6 +13,8 @@ mod cycles;
 mod endpoint;
 mod findings;
 mod fleet;
+mod offer;
+mod options;
 mod parameters;
 mod promote;
 mod properties;
@@ -24,6 +27,7 @@ mod task;
 #[cfg(test)]
 mod tests;
 mod topics;
+mod unfold;
 mod unique;
 mod values;
 mod wires;
@@ -32,13 +36,14 @@ use saoms_api::PropertyValue;
 
 use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
 use crate::diagnostic::Diagnostics;
-use crate::model::Composite;
+use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::Sources;
 
 use classes::ClassIndex;
 use findings::Subject;
-use fleet::{Fleet, Member};
+use fleet::{Fleet, Kind, Member};
+pub use options::Options;
 use parameters::Parameters;
 use properties::Written;
 use report::Report;
@@ -47,12 +52,11 @@ use values::Values;
 use wires::Wiring;
 
 /// Checks composites as one fleet, and resolves them when there is no error among `diagnostics`, those from before
-/// included.
-///
-/// `settings` are values of composite properties that count in place of those in the files.
+/// included, and nothing had to be taken as given.
 ///
 /// ```
-/// use saoms_core::{check::check, diagnostic::Diagnostics, load::load_file, registry::Registry, source::Sources};
+/// use saoms_core::check::{Options, check};
+/// use saoms_core::{diagnostic::Diagnostics, load::load_file, model::Contribution, registry::Registry, source::Sources};
 ///
 /// let text = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="fleet" targetNamespace="urn:fleet">
 ///     <component name="Robot001"><implementation.java class="robot.Robot001"/></component>
@@ -60,28 +64,29 @@ use wires::Wiring;
 /// let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
 /// let file = sources.add("fleet.composite", text);
 /// let fleet = load_file(file, &sources, &mut diagnostics).unwrap();
-/// let assembly = check(&[fleet], &Registry::new(), &[], &sources, &mut diagnostics);
+/// let fleet = Contribution::of(vec![fleet]);
+/// let assembly = check(&fleet, &Registry::new(), &Options::default(), &sources, &mut diagnostics);
 /// assert!(assembly.is_none());
 /// assert_eq!(diagnostics.iter().next().unwrap().message, "there is no class `robot.Robot001`");
 /// ```
 pub fn check(
-    composites: &[Composite],
+    contribution: &Contribution,
     registry: &Registry,
-    settings: &[Setting],
+    options: &Options,
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly> {
     let report = &mut Report::new(sources, diagnostics);
-    let mut fleet = Fleet::of(composites, report);
-    let parameters = Parameters::of(composites, settings, report);
-    let classes = classes::resolve(&mut fleet, registry, report);
+    let mut fleet = unfold::unfold(contribution, options.assume_classes, report);
+    let parameters = Parameters::of(&fleet, &options.settings, report);
+    let classes = classes::resolve(&mut fleet, registry, options.assume_classes, report);
     let resolved = components(&fleet, &classes, parameters, report);
     contracts::check(&fleet, &classes, report);
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);
     saoms_api::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
-        if let (Some(class), Some(resolved)) = (member.class, resolved) {
+        if let (Kind::Class(class), Some(resolved)) = (member.kind, resolved) {
             construct::check(resolved.subject(member), &classes[class], report);
         }
     }
@@ -105,9 +110,9 @@ impl Resolved<'_> {
 }
 
 /// Checks everything about components that needs no look at wires; `None` for one with a fault.
-fn components<'a>(
-    fleet: &Fleet<'a>,
-    classes: &[ClassIndex<'a>],
+fn components<'f, 'a>(
+    fleet: &'f Fleet<'a>,
+    classes: &'f [ClassIndex<'a>],
     mut parameters: Parameters<'a>,
     report: &mut Report<'_>,
 ) -> Vec<Option<Resolved<'a>>> {
@@ -115,17 +120,24 @@ fn components<'a>(
     let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
     let mut all = Vec::with_capacity(fleet.members.len());
-    for member in &fleet.members {
-        let Some(index) = member.class else {
-            // Nothing says what its properties should be, but where they come from can be looked at.
-            for source in member.component.properties.iter().filter_map(|property| property.source()) {
-                let _ = parameters.resolve(member.composite, source, report);
+    for (place, member) in fleet.members.iter().enumerate() {
+        let Kind::Class(index) = member.kind else {
+            properties::repeated(member.component, report);
+            match fleet.inner(place) {
+                Some(inner) => properties::of_composite(member, inner, report),
+                // Nothing says what its properties should be, but where they come from can be looked at.
+                None => {
+                    for source in member.component.properties.iter().filter_map(|property| property.source())
+                    {
+                        let _ = parameters.resolve(member.unit, source, report);
+                    }
+                }
             }
             all.push(None);
             continue;
         };
         let class = &classes[index];
-        let checked = properties::check(fleet, member, class, &mut parameters, &mut values, report);
+        let checked = properties::check(member, class, &mut parameters, &mut values, report);
         unique.add(member, class, &checked, report);
         let is_periodic = class.class.declaration().is_periodic();
         let task = is_periodic.then(|| task::check(member.component, class, &checked, report));
@@ -138,35 +150,47 @@ fn components<'a>(
             Resolved { values, written: checked.places(class), task }
         }));
     }
-    parameters.finish(report);
+    parameters.finish(fleet, report);
     all
 }
 
-/// The assembly; `None` when something is missing, which was reported then.
+/// The assembly; `None` when something is missing, which was reported or is taken as given.
 fn assemble(
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
     resolved: Vec<Option<Resolved<'_>>>,
     wiring: &Wiring,
 ) -> Option<Assembly> {
-    let mut components = Vec::with_capacity(resolved.len());
+    // Components that composites implement are not there in a run: the others close ranks.
+    let is_composite = |member: &fleet::Member<'_>| matches!(member.kind, Kind::Composite(_));
+    let mut count = 0;
+    let places = fleet.members.iter().map(|member| {
+        count += usize::from(!is_composite(member));
+        count.saturating_sub(1)
+    });
+    let places: Vec<usize> = places.collect();
+    let mut components = Vec::with_capacity(count);
     for (place, resolved) in resolved.into_iter().enumerate() {
+        if is_composite(&fleet.members[place]) {
+            continue;
+        }
         let class = fleet.class_of(place, classes)?;
         let Resolved { values, task, .. } = resolved?;
         let references = class.references.iter().zip(&wiring[place]);
-        let references = references.map(|(declared, provider)| Wire {
+        let references = references.map(|(declared, providers)| Wire {
             reference: declared.name.clone(),
             interface: declared.interface.name.clone(),
-            target: provider.and_then(|provider| {
-                let class = fleet.class_of(provider.member, classes)?;
-                Some(Target {
-                    component: provider.member,
-                    service: class.services[provider.service].name.clone(),
+            targets: providers
+                .iter()
+                .filter_map(|provider| {
+                    let class = fleet.class_of(provider.member, classes)?;
+                    let service = class.services[provider.service].name.clone();
+                    Some(Target { component: places[provider.member], service })
                 })
-            }),
+                .collect(),
         });
         components.push(ComponentSpec {
-            path: fleet.members[place].component.name.as_str().to_owned(),
+            path: fleet.members[place].path().to_owned(),
             class: std::sync::Arc::clone(class.class),
             values,
             task,

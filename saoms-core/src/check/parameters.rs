@@ -4,33 +4,51 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::Setting;
+use super::fleet::{Fleet, Unit};
 use super::raw::{Raw, raw};
 use super::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Composite, Property};
-use crate::source::Text;
+use crate::model::{Component, Composite, Property};
+use crate::source::{Location, Text};
 use crate::xml::Element;
 
-/// The properties of all composites, with their values.
+/// The properties of all composites of a fleet, with their values.
 pub(super) struct Parameters<'a> {
-    scopes: Vec<Scope<'a>>,
+    /// By the places of the fleet's units.
+    units: Vec<Declared<'a>>,
 }
 
-/// The properties of one composite.
-struct Scope<'a> {
-    composite: &'a Composite,
+/// The properties of one composite, those of what it includes among them.
+#[derive(Default)]
+struct Declared<'a> {
     by_name: HashMap<&'a str, Parameter<'a>>,
     /// Whether a `source` leads to none of them: one of them is probably meant.
     has_wrong_source: bool,
 }
 
 struct Parameter<'a> {
+    composite: &'a Composite,
     property: &'a Property,
-    setting: Option<&'a Setting>,
+    given: Option<Given<'a>>,
     is_used: bool,
 }
 
-impl<'a> Scope<'a> {
+/// What counts in place of the value that a composite gives its property itself.
+#[derive(Clone, Copy)]
+enum Given<'a> {
+    /// A setting from outside.
+    Setting(&'a Setting),
+    /// What the component says that the composite implements: in this unit and this composite.
+    Component(usize, &'a Composite, &'a Property),
+}
+
+/// The values of a property, and the `source` that leads to them.
+pub(super) struct Found<'a> {
+    pub(super) raw: Raw<'a>,
+    pub(super) source: Option<Location>,
+}
+
+impl<'a> Declared<'a> {
     /// The names of its properties, sorted.
     fn names(&self) -> Vec<&'a str> {
         let mut names: Vec<&str> = self.by_name.keys().copied().collect();
@@ -40,32 +58,30 @@ impl<'a> Scope<'a> {
 }
 
 impl<'a> Parameters<'a> {
-    /// Collects the properties and gives them their settings.
-    pub(super) fn of(composites: &'a [Composite], settings: &'a [Setting], report: &mut Report<'_>) -> Self {
-        let mut scopes: Vec<Scope<'a>> = Vec::with_capacity(composites.len());
-        for composite in composites {
-            let mut by_name: HashMap<&str, Parameter<'a>> = HashMap::new();
-            for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
-                if let Some(first) = by_name.get(property.name.as_str()) {
-                    let message = format!("the composite has two properties {}", quoted(&property.name));
-                    report.push(
-                        Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, property.name.location, message)
-                            .rule("ASM60014")
-                            .label(first.property.name.location, "the first")
-                            .help("give each its own name"),
-                    );
-                    continue;
+    /// Collects the properties and gives them what counts in place of their own values.
+    pub(super) fn of(fleet: &Fleet<'a>, settings: &'a [Setting], report: &mut Report<'_>) -> Self {
+        let units = fleet.units.iter().map(|unit| declared(unit, report)).collect();
+        let mut parameters = Self { units };
+        for (place, unit) in fleet.units.iter().enumerate() {
+            let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
+            let owner = &fleet.members[owner];
+            for property in &owner.component.properties {
+                if let Some(parameter) = parameters.units[place].by_name.get_mut(property.name.as_str()) {
+                    // A second one is reported.
+                    parameter.given.get_or_insert(Given::Component(owner.unit, owner.composite, property));
                 }
-                by_name.insert(&property.name, Parameter { property, setting: None, is_used: false });
             }
-            scopes.push(Scope { composite, by_name, has_wrong_source: false });
         }
-        let mut parameters = Self { scopes };
-        parameters.set(settings, report);
+        parameters.set(fleet, settings, report);
         parameters
     }
 
-    fn set(&mut self, settings: &'a [Setting], report: &mut Report<'_>) {
+    /// The places of the units of composites that run by themselves.
+    fn outermost<'f>(fleet: &'f Fleet<'_>) -> impl Iterator<Item = usize> + use<'f> {
+        fleet.scopes.first().into_iter().flat_map(|scope| scope.units.iter().copied())
+    }
+
+    fn set(&mut self, fleet: &Fleet<'a>, settings: &'a [Setting], report: &mut Report<'_>) {
         let mut first: HashMap<&str, &Setting> = HashMap::new();
         for setting in settings {
             if let Some(earlier) = first.insert(&setting.name, setting) {
@@ -78,14 +94,17 @@ impl<'a> Parameters<'a> {
                 continue;
             }
             let mut is_known = false;
-            for scope in &mut self.scopes {
-                if let Some(parameter) = scope.by_name.get_mut(setting.name.as_str()) {
-                    parameter.setting = Some(setting);
+            for unit in Self::outermost(fleet) {
+                if let Some(parameter) = self.units[unit].by_name.get_mut(setting.name.as_str()) {
+                    parameter.given = Some(Given::Setting(setting));
                     is_known = true;
                 }
             }
             if !is_known {
-                let names: Vec<&str> = self.names();
+                let mut names: Vec<&str> =
+                    Self::outermost(fleet).flat_map(|unit| self.units[unit].names()).collect();
+                names.sort_unstable();
+                names.dedup();
                 let message = format!("no composite has a property {}", quoted(&setting.name));
                 let at = setting.name.location;
                 let known = ("the properties of the composite are", names.iter().copied());
@@ -98,36 +117,46 @@ impl<'a> Parameters<'a> {
         }
     }
 
-    /// The names of all properties, sorted.
-    fn names(&self) -> Vec<&'a str> {
-        let mut names: Vec<&str> = self.scopes.iter().flat_map(Scope::names).collect();
-        names.sort_unstable();
-        names.dedup();
-        names
+    /// The values of a component's property: those that its `source` leads to, or its own. Faults are reported.
+    pub(super) fn values(
+        &mut self,
+        unit: usize,
+        composite: &'a Composite,
+        property: &'a Property,
+        report: &mut Report<'_>,
+    ) -> Result<Found<'a>, ()> {
+        if let Some(source) = property.source() {
+            let raw = self.resolve(unit, source, report)?;
+            if !raw.0.is_empty() {
+                return Ok(Found { raw, source: Some(source.location) });
+            }
+            // A source without a value leaves what stands in the property itself, as SCA says.
+        }
+        Ok(Found { raw: raw(property, &composite.document, report)?, source: None })
     }
 
-    /// What `source` stands for in the composite of this place. Faults are reported.
+    /// What `source` stands for in this unit. Faults are reported.
     pub(super) fn resolve(
         &mut self,
-        scope: usize,
+        unit: usize,
         source: &Text,
         report: &mut Report<'_>,
     ) -> Result<Raw<'a>, ()> {
-        let scope = &mut self.scopes[scope];
+        let unit = &mut self.units[unit];
         let Some((name, path)) = expression(source) else {
-            scope.has_wrong_source = true;
+            unit.has_wrong_source = true;
             let message = format!("{} names no property of the composite", quoted(source));
             let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
                 .help("write `$name`, or `$name/part` for a part of a complex property");
-            if scope.by_name.contains_key(source.as_str()) {
+            if unit.by_name.contains_key(source.as_str()) {
                 one = one.suggest("insert `$`", source.location, format!("${source}"));
             }
             report.push(one);
             return Err(());
         };
-        let Some(parameter) = scope.by_name.get_mut(name) else {
-            scope.has_wrong_source = true;
-            let names = scope.names();
+        let Some(parameter) = unit.by_name.get_mut(name) else {
+            unit.has_wrong_source = true;
+            let names = unit.names();
             let at = report.part(source, 1..1 + name.len());
             let message = format!("the composite has no property {}", quoted(name));
             let known = ("its properties are", names.iter().copied());
@@ -139,10 +168,21 @@ impl<'a> Parameters<'a> {
             return Err(());
         };
         parameter.is_used = true;
-        let whole = match parameter.setting {
-            Some(setting) => Raw::one(&setting.value),
-            None => raw(parameter.property, &scope.composite.document, report)?,
+        let (composite, property) = (parameter.composite, parameter.property);
+        let mut whole = match parameter.given {
+            Some(Given::Setting(setting)) => Raw::one(&setting.value),
+            Some(Given::Component(unit, composite, property)) => {
+                self.values(unit, composite, property, report)?.raw
+            }
+            None => Raw(Vec::new()),
         };
+        if whole.0.is_empty() {
+            whole = raw(property, &composite.document, report)?;
+        }
+        if whole.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
+            // Reported where it should have been supplied.
+            return Err(());
+        }
         let Some(path) = path else { return Ok(whole) };
         let start = source.len() - path.len();
         walk(whole, path).map_err(|(step, message)| {
@@ -152,24 +192,20 @@ impl<'a> Parameters<'a> {
     }
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
-    pub(super) fn finish(self, report: &mut Report<'_>) {
-        for scope in &self.scopes {
-            for property in &scope.composite.properties {
-                let Some(parameter) = scope.by_name.get(property.name.as_str()) else { continue };
+    pub(super) fn finish(self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+        for (unit, declared) in fleet.units.iter().zip(&self.units) {
+            let owner = fleet.scopes[unit.scope].owner.map(|owner| fleet.members[owner].component);
+            for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
+                let Some(parameter) = declared.by_name.get(property.name.as_str()) else { continue };
                 if !std::ptr::eq(parameter.property, property) {
                     continue;
                 }
                 let name = &property.name;
                 let must = property.must_supply().is_some_and(|must| must.value);
-                if must && !property.has_value() && parameter.setting.is_none() {
-                    let message =
-                        format!("the property {} of the composite has to be given a value", quoted(name));
-                    report.push(
-                        Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, name.location, message)
-                            .help(format!("write it in the file, or give `--set {name}=...`")),
-                    );
+                if must && !property.has_value() && parameter.given.is_none() {
+                    report.push(missing(name, owner));
                 }
-                if !parameter.is_used && !scope.has_wrong_source {
+                if !parameter.is_used && !declared.has_wrong_source {
                     let message =
                         format!("the property {} of the composite is used by no component", quoted(name));
                     let one = Diagnostic::new(&codes::UNUSED_PROPERTY, name.location, message);
@@ -178,6 +214,46 @@ impl<'a> Parameters<'a> {
             }
         }
     }
+}
+
+/// The properties of a composite and of what it includes. Repeated ones are reported.
+fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
+    let mut all = Declared::default();
+    let properties = unit
+        .composites
+        .iter()
+        .flat_map(|composite| composite.properties.iter().map(move |property| (*composite, property)));
+    for (composite, property) in properties.filter(|(_, property)| !property.name.is_empty()) {
+        if let Some(first) = all.by_name.get(property.name.as_str()) {
+            let message = format!("the composite has two properties {}", quoted(&property.name));
+            report.push(
+                Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, property.name.location, message)
+                    .rule("ASM60014")
+                    .label(first.property.name.location, "the first")
+                    .help("give each its own name"),
+            );
+            continue;
+        }
+        all.by_name.insert(&property.name, Parameter { composite, property, given: None, is_used: false });
+    }
+    all
+}
+
+/// A composite property that has to be given a value, by the component that the composite implements where there is one.
+fn missing(name: &Text, owner: Option<&Component>) -> Diagnostic {
+    let Some(owner) = owner else {
+        let message = format!("the property {} of the composite has to be given a value", quoted(name));
+        return Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, name.location, message)
+            .help(format!("write it in the file, or give `--set {name}=...`"));
+    };
+    let message = format!(
+        "component {} has to give the property {} of its composite a value",
+        quoted(&owner.name),
+        quoted(name)
+    );
+    Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, owner.name.location, message)
+        .label(name.location, "declared here, without a value")
+        .help(format!("add `<property name=\"{name}\">...</property>`"))
 }
 
 /// `$name` or `$name/path`.

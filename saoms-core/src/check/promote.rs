@@ -3,17 +3,23 @@
 use std::collections::{HashMap, HashSet};
 
 use super::classes::ClassIndex;
-use super::fleet::Fleet;
+use super::fleet::{Fleet, Unit};
 use super::report::{Report, list};
 use super::target::Uri;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::Part;
+use crate::model::{Part, Reference};
 use crate::source::{Location, Text};
 
-/// What is promoted, as (place of the component, place in its class).
+/// A reference of a component, by its name.
+pub(super) type Place<'f> = (usize, &'f str);
+
+/// Which references are promoted.
 #[derive(Default)]
-pub(super) struct Promoted {
-    pub(super) references: HashSet<(usize, usize)>,
+pub(super) struct Promoted<'f> {
+    /// By composites that run by themselves: nothing around them can wire those.
+    pub(super) outermost: HashSet<Place<'f>>,
+    /// By composites that implement components: to these references of theirs.
+    pub(super) to: HashMap<Place<'f>, Vec<Place<'f>>>,
 }
 
 /// Whether services or references are meant.
@@ -40,37 +46,51 @@ impl Side {
 }
 
 /// Checks that what composites promote exists, and that their services and references have names of their own.
-pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) -> Promoted {
+pub(super) fn check<'f>(
+    fleet: &'f Fleet<'_>,
+    classes: &'f [ClassIndex<'_>],
+    report: &mut Report<'_>,
+) -> Promoted<'f> {
     let mut promoted = Promoted::default();
-    for composite in fleet.composites {
-        let services = composite.services.iter().map(|service| &service.name);
-        repeated(services, Side::Service, "ASM60003", report);
-        let references = composite.references.iter().map(|reference| &reference.name);
-        repeated(references, Side::Reference, "ASM60006", report);
-        for promote in composite.services.iter().filter_map(|service| service.promote.as_ref()) {
-            find(promote, Side::Service, fleet, classes, report);
+    for unit in &fleet.units {
+        repeated(unit.services().map(|service| &service.name), Side::Service, "ASM60003", report);
+        repeated(unit.references().map(|reference| &reference.name), Side::Reference, "ASM60006", report);
+        for promote in unit.services().filter_map(|service| service.promote.as_ref()) {
+            find(promote, Side::Service, unit, fleet, classes, report);
         }
-        for reference in &composite.references {
+        let owner = fleet.scopes[unit.scope].owner;
+        for reference in unit.references() {
             let found = reference
                 .promote()
                 .iter()
-                .filter_map(|promote| find(promote, Side::Reference, fleet, classes, report));
-            let found: Vec<_> = found.collect();
-            if !found.is_empty() {
-                let message = format!(
-                    "reference {} of the composite is wired to nothing: calls through it fail",
-                    quoted(&reference.name)
-                );
-                let at = if reference.name.is_empty() { reference.tag() } else { reference.name.location };
-                let one = Diagnostic::new(&codes::PROMOTED_UNWIRED, at, message);
-                report.push(
-                    one.help("the composite runs by itself, and nothing around it can wire its references"),
-                );
+                .filter_map(|promote| find(promote, Side::Reference, unit, fleet, classes, report));
+            let found: Vec<Place<'f>> = found.collect();
+            match owner {
+                Some(owner) => {
+                    for inner in found {
+                        promoted.to.entry(inner).or_default().push((owner, &reference.name));
+                    }
+                }
+                None => {
+                    if !found.is_empty() {
+                        unwired(reference, report);
+                    }
+                    promoted.outermost.extend(found);
+                }
             }
-            promoted.references.extend(found);
         }
     }
     promoted
+}
+
+fn unwired(reference: &Reference, report: &mut Report<'_>) {
+    let message = format!(
+        "reference {} of the composite is wired to nothing: calls through it fail",
+        quoted(&reference.name)
+    );
+    let at = if reference.name.is_empty() { reference.tag() } else { reference.name.location };
+    let one = Diagnostic::new(&codes::PROMOTED_UNWIRED, at, message);
+    report.push(one.help("the composite runs by itself, and nothing around it can wire its references"));
 }
 
 fn repeated<'a>(
@@ -92,32 +112,38 @@ fn repeated<'a>(
 }
 
 /// What a URI promotes. Faults are reported.
-fn find(
-    text: &Text,
+fn find<'f>(
+    text: &'f Text,
     side: Side,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
+    unit: &Unit<'_>,
+    fleet: &'f Fleet<'_>,
+    classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
-) -> Option<(usize, usize)> {
+) -> Option<Place<'f>> {
     let uri = Uri::of(text, 2, report)?;
-    let member = uri.member(text, fleet, report)?;
-    let class = fleet.class_of(member, classes)?;
-    let names: Vec<&str> = match side {
-        Side::Service => class.services.iter().map(|service| service.name.as_str()).collect(),
-        Side::Reference => class.references.iter().map(|reference| reference.name.as_str()).collect(),
+    let member = uri.member(text, unit.scope, fleet, report)?;
+    let names = match side {
+        Side::Service => fleet.service_names(member, classes)?,
+        Side::Reference => fleet.reference_names(member, classes)?,
     };
     let (what, component) = (side.name(), quoted(uri.component));
-    let (at, message, wanted) = match (&uri.part, &names[..]) {
-        (Some((name, at)), _) => match names.iter().position(|known| known == name) {
-            Some(place) => return Some((member, place)),
+    let only = match side {
+        Side::Service => fleet.only_service(member, classes),
+        Side::Reference => (names.len() == 1).then(|| names[0]),
+    };
+    let (at, message, wanted) = match (&uri.part, only) {
+        (Some((name, at)), _) => match names.iter().find(|known| *known == name) {
+            Some(name) => return Some((member, name)),
             None => {
                 let at = report.part(text, at.clone());
                 (at, format!("component {component} has no {what} {}", quoted(name)), *name)
             }
         },
-        (None, [_]) => return Some((member, 0)),
-        (None, []) => (text.location, format!("component {component} has no {what}s to promote"), ""),
-        (None, _) => {
+        (None, Some(only)) => return Some((member, only)),
+        (None, None) if names.is_empty() => {
+            (text.location, format!("component {component} has no {what}s to promote"), "")
+        }
+        (None, None) => {
             (text.location, format!("component {component} has several {what}s: say which is promoted"), "")
         }
     };

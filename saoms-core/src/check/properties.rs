@@ -1,16 +1,18 @@
 //! The properties of each component: known, given once, right, and all that have to be there.
 
+use std::collections::HashMap;
+
 use saoms_api::PropertyValue;
 
 use super::classes::{ClassIndex, Slot};
-use super::fleet::{Fleet, Member};
-use super::parameters::Parameters;
-use super::raw::{Piece, Raw, raw};
+use super::fleet::{Member, Unit};
+use super::parameters::{Found, Parameters};
+use super::raw::Piece;
 use super::report::Report;
 use super::values::{Path, Use, Values};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::model::{Part, Property};
+use crate::model::{Component, Part, Property};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
 
@@ -91,7 +93,6 @@ impl Checked {
 
 /// Checks the properties of one component of the class.
 pub(super) fn check<'a>(
-    fleet: &Fleet<'a>,
     member: &Member<'a>,
     class: &ClassIndex<'_>,
     parameters: &mut Parameters<'a>,
@@ -113,24 +114,19 @@ pub(super) fn check<'a>(
         let Some(place) = class.property(&property.name) else {
             report_unknown(property, class, report);
             if let Some(source) = property.source() {
-                let _ = parameters.resolve(member.composite, source, report);
+                let _ = parameters.resolve(member.unit, source, report);
             }
             is_sound = false;
             continue;
         };
         if let Some(first) = first[place] {
-            let message = format!("the property {} is given twice", quoted(&property.name));
-            report.push(
-                Diagnostic::new(&codes::PROPERTY_REPEATED, property.name.location, message)
-                    .label(first.name.location, "first here")
-                    .help("keep one of them"),
-            );
+            report.push(given_twice(property, first));
             is_sound = false;
             continue;
         }
         first[place] = Some(property);
         let slot = &class.properties[place];
-        match value(fleet, member, property, slot, parameters, values, report) {
+        match value(member, property, slot, parameters, values, report) {
             Ok(None) => unset.push(&property.name),
             Ok(value) => given[place] = value,
             Err(()) => is_sound = false,
@@ -148,7 +144,7 @@ pub(super) fn check<'a>(
         is_sound = false;
         // What is given wrongly is reported already.
         match first[place] {
-            None => report_missing(fleet, member, declaration, class, report),
+            None => report_missing(member, declaration, class, report),
             Some(property) if unset.contains(&&property.name) => {
                 let message = format!("the property {} has no value: its source has none", quoted(name));
                 let at = property.source().map_or(property.tag(), |source| source.location);
@@ -162,7 +158,6 @@ pub(super) fn check<'a>(
 
 /// The value of a property; `None` when its `source` has none.
 fn value<'a>(
-    fleet: &Fleet<'a>,
     member: &Member<'a>,
     property: &'a Property,
     slot: &Slot<'_>,
@@ -171,24 +166,11 @@ fn value<'a>(
     report: &mut Report<'_>,
 ) -> Result<Option<Given>, ()> {
     let path = Path { outer: None, name: &property.name };
-    let document = &fleet.composite_of(member).document;
-    let mut used = Use { property: property.tag(), source: None };
-    let mut found = Raw(Vec::new());
-    if let Some(source) = property.source() {
-        found = parameters.resolve(member.composite, source, report)?;
-        used = Use { property: source.location, source: Some(source.location) };
+    let Found { raw: found, source } = parameters.values(member.unit, member.composite, property, report)?;
+    if source.is_none() && property.source().is_some() && found.0.is_empty() {
+        return Ok(None);
     }
-    if found.0.is_empty() {
-        // A source without a value leaves what stands in the property itself, as SCA says.
-        let own = raw(property, document, report)?;
-        if used.source.is_some() {
-            if own.0.is_empty() {
-                return Ok(None);
-            }
-            used = Use { property: property.tag(), source: None };
-        }
-        found = own;
-    }
+    let used = Use { property: source.unwrap_or(property.tag()), source };
     let place = found.0.first().map_or(used.property, Piece::location);
     let more = found.0.iter().skip(1).map(Piece::location).collect();
     let both: [Option<&PropertyDeclaration>; 2] = [slot.own, slot.task];
@@ -215,7 +197,6 @@ fn report_unknown(property: &Property, class: &ClassIndex<'_>, report: &mut Repo
 }
 
 fn report_missing(
-    fleet: &Fleet<'_>,
     member: &Member<'_>,
     declaration: &PropertyDeclaration,
     class: &ClassIndex<'_>,
@@ -223,7 +204,7 @@ fn report_missing(
 ) {
     let component = member.component;
     let name = declaration.name.as_str();
-    let element = component.origin.element(&fleet.composite_of(member).document);
+    let element = component.origin.element(&member.composite.document);
     let is_meant = |given: &Property| {
         given.name.is_empty()
             || class.property(&given.name).is_none() && nearest(&given.name, [name]).is_some()
@@ -245,4 +226,41 @@ fn report_missing(
         Diagnostic::new(&codes::PROPERTY_MISSING, component.name.location, message)
             .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),
     );
+}
+
+/// Checks that what a component gives the composite that implements it are properties of that, each once.
+pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'_>) {
+    let names = || {
+        let properties = inner.composites.iter().flat_map(|composite| &composite.properties);
+        properties.map(|property| property.name.as_str()).filter(|name| !name.is_empty())
+    };
+    for property in member.component.properties.iter().filter(|property| !property.name.is_empty()) {
+        if names().all(|name| name != property.name.as_str()) {
+            let (name, at) = (&property.name, property.name.location);
+            let of = quoted(&inner.main().name);
+            let message = format!("composite {of} has no property {}", quoted(name));
+            let known: Vec<&str> = names().collect();
+            let known = ("its properties are", known.iter().copied());
+            let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
+            report.push(one);
+        }
+    }
+}
+
+/// Reports properties that one component gives twice.
+pub(super) fn repeated(component: &Component, report: &mut Report<'_>) {
+    let mut first: HashMap<&str, &Property> = HashMap::new();
+    for property in component.properties.iter().filter(|property| !property.name.is_empty()) {
+        match first.get(property.name.as_str()) {
+            None => _ = first.insert(&property.name, property),
+            Some(first) => report.push(given_twice(property, first)),
+        }
+    }
+}
+
+fn given_twice(property: &Property, first: &Property) -> Diagnostic {
+    let message = format!("the property {} is given twice", quoted(&property.name));
+    Diagnostic::new(&codes::PROPERTY_REPEATED, property.name.location, message)
+        .label(first.name.location, "first here")
+        .help("keep one of them")
 }

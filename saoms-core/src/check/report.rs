@@ -1,6 +1,7 @@
 //! Where the rules put what they find.
 
 use std::collections::HashSet;
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::ops::Range;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, nearest, quoted};
@@ -17,15 +18,25 @@ pub(super) struct Report<'a> {
     diagnostics: &'a mut Diagnostics,
     candidates: usize,
     escalated: HashSet<(&'static str, FileId)>,
+    /// What was said where: a composite that implements several components has its faults once.
+    said: HashSet<(&'static str, Location, u64)>,
 }
+
+/// How many diagnostics are remembered.
+const REMEMBERED: usize = 100_000;
 
 impl<'a> Report<'a> {
     pub(super) fn new(sources: &'a Sources, diagnostics: &'a mut Diagnostics) -> Self {
-        Self { sources, diagnostics, candidates: CANDIDATES, escalated: HashSet::new() }
+        Self { sources, diagnostics, candidates: CANDIDATES, escalated: HashSet::new(), said: HashSet::new() }
     }
 
+    /// Adds a diagnostic, unless the same was said of the same place.
     pub(super) fn push(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
+        let message = BuildHasherDefault::<DefaultHasher>::default().hash_one(&diagnostic.message);
+        let said = (diagnostic.code.id, diagnostic.location, message);
+        if self.said.len() >= REMEMBERED || self.said.insert(said) {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     /// Makes errors of all warnings of one code in one file.

@@ -4,17 +4,36 @@ use std::ops::Range;
 
 use super::classes::ClassIndex;
 use super::fleet::Fleet;
+use super::offer::Offer;
 use super::report::{Report, escaped, list, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
 
-/// A service of a component.
+/// A service of a component of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Provider {
     pub(super) member: usize,
     /// The place of the service in the class.
     pub(super) service: usize,
+}
+
+/// Where a target leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// To this service.
+    Service(Provider),
+    /// To something that cannot be looked at.
+    Open,
+    /// Nowhere; reported.
+    Wrong,
+}
+
+/// The component of a URI, and the name behind it.
+pub(super) fn parts(uri: &str) -> (&str, Option<&str>) {
+    let (component, rest) =
+        uri.split_once('/').map_or((uri, None), |(component, rest)| (component, Some(rest)));
+    (component, rest.map(|rest| rest.split('/').next().unwrap_or(rest)))
 }
 
 /// The parts of `component/part/binding`, each with its bytes.
@@ -52,13 +71,19 @@ impl<'t> Uri<'t> {
         Some(uri)
     }
 
-    /// The component, which has to exist.
-    pub(super) fn member(&self, text: &Text, fleet: &Fleet<'_>, report: &mut Report<'_>) -> Option<usize> {
-        let found = fleet.find(self.component);
+    /// The component, which has to exist in the scope.
+    pub(super) fn member(
+        &self,
+        text: &Text,
+        scope: usize,
+        fleet: &Fleet<'_>,
+        report: &mut Report<'_>,
+    ) -> Option<usize> {
+        let found = fleet.find(scope, self.component);
         if found.is_none() {
             let message = format!("there is no component {}", quoted(self.component));
             let at = report.part(text, 0..self.component.len());
-            let known = ("the components are", fleet.names());
+            let known = ("the components are", fleet.names(scope));
             let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known);
             report.push(one);
         }
@@ -66,34 +91,41 @@ impl<'t> Uri<'t> {
     }
 }
 
-/// The service that a target leads to, for a reference with this interface. Faults are reported.
+/// The service that a target in a scope leads to, for a reference with this interface, or with any. Faults are reported.
 ///
 /// Without the name of a service the component has to have exactly one with the interface.
-pub(super) fn provider(
+pub(super) fn target(
     text: &Text,
-    interface: &InterfaceDeclaration,
+    scope: usize,
+    interface: Option<&InterfaceDeclaration>,
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
-) -> Option<Provider> {
-    let uri = Uri::of(text, 3, report)?;
-    let member = uri.member(text, fleet, report)?;
-    let class = fleet.class_of(member, classes)?;
+) -> Target {
+    let Some(uri) = Uri::of(text, 3, report) else { return Target::Wrong };
+    let Some(member) = uri.member(text, scope, fleet, report) else { return Target::Wrong };
     let component = fleet.members[member].component;
-    let names = || class.services.iter().map(|service| service.name.as_str());
     let Some((name, at)) = uri.part.clone() else {
-        return only_service(text, member, interface, class, report);
+        return match interface {
+            Some(interface) => only_service(text, member, interface, fleet, classes, report),
+            None => Target::Open,
+        };
     };
-    let Some(service) = class.services.iter().position(|service| service.name == name) else {
-        let at = report.part(text, at);
-        let message = format!("component {} has no service {}", quoted(&component.name), quoted(name));
-        let known = ("its services are", names());
-        let one = report.unknown(&codes::UNKNOWN_TARGET_SERVICE, at, message, name, known);
-        report.push(one);
-        return None;
+    let provider = match fleet.offer(member, name, classes) {
+        Offer::Service(provider) => provider,
+        Offer::Open => return Target::Open,
+        Offer::Missing => {
+            let at = report.part(text, at);
+            let message = format!("component {} has no service {}", quoted(&component.name), quoted(name));
+            let names = fleet.service_names(member, classes).unwrap_or_default();
+            let known = ("its services are", names.iter().copied());
+            let one = report.unknown(&codes::UNKNOWN_TARGET_SERVICE, at, message, name, known);
+            report.push(one);
+            return Target::Wrong;
+        }
     };
-    let found = &class.services[service].interface;
-    if found != interface {
+    let Some(found) = fleet.interface_of(provider, classes) else { return Target::Open };
+    if let Some(interface) = interface.filter(|interface| found != *interface) {
         let at = report.part(text, at);
         let message = format!(
             "service {} of component {} has the interface {}, and the reference needs {}",
@@ -103,12 +135,13 @@ pub(super) fn provider(
             quoted(&interface.name)
         );
         let one = Diagnostic::new(&codes::WIRE_INTERFACE, at, message);
-        let fitting = class.services.iter().find(|service| service.interface == *interface);
+        let offers = fleet.offers(member, classes);
+        let fitting = offers.iter().find(|(_, offer)| fits(*offer, interface, fleet, classes));
         report.push(match fitting {
-            Some(fitting) => one.suggest(replacing(name, &fitting.name), at, escaped(&fitting.name)),
-            None => one.help(offers(class, interface)),
+            Some((fitting, _)) => one.suggest(replacing(name, fitting), at, escaped(fitting)),
+            None => one.help(offered(member, interface, fleet, classes)),
         });
-        return None;
+        return Target::Wrong;
     }
     if let Some((binding, at)) = &uri.binding {
         let declared = component.service(name).map_or(&[][..], |service| &service.bindings);
@@ -129,24 +162,37 @@ pub(super) fn provider(
             let known = ("its bindings are", known.iter().copied());
             let one = report.unknown(&codes::UNKNOWN_BINDING, at, message, binding, known);
             report.push(one);
-            return None;
+            return Target::Wrong;
         }
     }
-    Some(Provider { member, service })
+    Target::Service(provider)
+}
+
+fn fits(
+    offer: Offer,
+    interface: &InterfaceDeclaration,
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
+) -> bool {
+    matches!(offer, Offer::Service(provider) if fleet.interface_of(provider, classes) == Some(interface))
 }
 
 fn only_service(
     text: &Text,
     member: usize,
     interface: &InterfaceDeclaration,
-    class: &ClassIndex<'_>,
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
-) -> Option<Provider> {
-    let fitting =
-        |(_, service): &(usize, &&crate::registry::ServiceDeclaration)| service.interface == *interface;
-    let mut fits = class.services.iter().enumerate().filter(fitting);
-    match (fits.next(), fits.next()) {
-        (Some((service, _)), None) => Some(Provider { member, service }),
+) -> Target {
+    if fleet.service_names(member, classes).is_none() {
+        return Target::Open;
+    }
+    let offers = fleet.offers(member, classes);
+    let mut fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet, classes));
+    match (fitting.next(), fitting.next()) {
+        (Some((_, Offer::Service(provider))), None) => Target::Service(*provider),
+        (None, _) if offers.iter().any(|(_, offer)| *offer == Offer::Open) => Target::Open,
         (None, _) => {
             let message = format!(
                 "component {} offers no service with the interface {}",
@@ -154,12 +200,12 @@ fn only_service(
                 quoted(&interface.name)
             );
             let one = Diagnostic::new(&codes::WIRE_INTERFACE, text.location, message);
-            report.push(one.help(offers(class, interface)));
-            None
+            report.push(one.help(offered(member, interface, fleet, classes)));
+            Target::Wrong
         }
-        (Some(_), Some(_)) => {
-            let names =
-                class.services.iter().enumerate().filter(fitting).map(|(_, service)| service.name.as_str());
+        (Some(_), _) => {
+            let fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet, classes));
+            let names = fitting.map(|(name, _)| *name);
             let message = format!(
                 "component {} has several services with the interface {}",
                 quoted(text),
@@ -167,22 +213,29 @@ fn only_service(
             );
             let help = format!("name one of {}: `{text}/...`", list(names));
             report.push(Diagnostic::new(&codes::TARGET_AMBIGUOUS, text.location, message).help(help));
-            None
+            Target::Wrong
         }
     }
 }
 
 /// What a component offers in place of the interface that is asked for.
-fn offers(class: &ClassIndex<'_>, interface: &InterfaceDeclaration) -> String {
-    if class.services.iter().any(|service| service.interface.name == interface.name) {
-        return "it offers the interface with other operations: build both components from one version"
-            .to_owned();
+fn offered(
+    member: usize,
+    interface: &InterfaceDeclaration,
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
+) -> String {
+    let mut all = Vec::new();
+    for (name, offer) in fleet.offers(member, classes) {
+        let Offer::Service(provider) = offer else { continue };
+        let Some(found) = fleet.interface_of(provider, classes) else { continue };
+        if found.name == interface.name {
+            return "it offers the interface with other operations: build both components from one version"
+                .to_owned();
+        }
+        all.push(format!("{} ({})", quoted(name), found.name));
     }
-    let offers = class
-        .services
-        .iter()
-        .map(|service| format!("{} ({})", quoted(&service.name), service.interface.name));
-    match offers.collect::<Vec<_>>().join(", ") {
+    match all.join(", ") {
         none if none.is_empty() => "it offers no services".to_owned(),
         all => format!("it offers {all}"),
     }

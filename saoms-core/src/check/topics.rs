@@ -33,7 +33,7 @@ impl<'a> Topics<'a> {
     /// Adds the topics of a component.
     pub(super) fn add(
         &mut self,
-        member: &Member<'a>,
+        member: &'a Member<'_>,
         index: usize,
         class: &ClassIndex<'a>,
         task: Option<&Task>,
@@ -59,7 +59,7 @@ impl<'a> Topics<'a> {
             let name = renamed.map_or(topic.name.as_str(), |place| renames[place].1.as_str());
             let place = renamed.zip(task).map(|(place, task)| task.renamed_at[place]);
             let place = place.unwrap_or(member.component.name.location);
-            let end = End { component: &member.component.name, place, declaration: topic, verb };
+            let end = End { component: member.path(), place, declaration: topic, verb };
             match self.ends.get(name) {
                 None => _ = self.ends.insert(name.to_owned(), end),
                 Some(first) => compare(name, first, &end, report),

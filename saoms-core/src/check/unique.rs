@@ -37,12 +37,12 @@ impl<'a> Unique<'a> {
     /// Adds what a component gives, or what its class presets.
     pub(super) fn add(
         &mut self,
-        member: &Member<'a>,
+        member: &'a Member<'_>,
         class: &ClassIndex<'a>,
         checked: &Checked,
         report: &mut Report<'_>,
     ) {
-        let component = member.component.name.as_str();
+        let component = member.path();
         for (slot, given) in class.properties.iter().zip(&checked.given) {
             let Some(declaration) = slot.main() else { continue };
             let word = declaration.unique.as_deref();

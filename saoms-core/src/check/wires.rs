@@ -1,30 +1,29 @@
 //! Where each reference leads.
+//!
+//! A reference of a component of a class collects its targets from the inside out: those of its own component, and those of
+//! every component around it that a composite's reference promotes it to.
 
 use std::collections::HashMap;
 
+use super::autowire::Autowire;
 use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
-use super::fleet::{Fleet, Member};
-use super::promote::Promoted;
+use super::fleet::{Fleet, Kind};
+use super::promote::{Place, Promoted};
 use super::report::{Report, list};
-use super::target::{Provider, Uri, provider};
+use super::target::{Provider, Target, Uri, target};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::Reference;
-use crate::registry::ReferenceDeclaration;
+use crate::model::{Multiplicity, Reference};
+use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
 
-/// A reference with its wires.
+/// The services that a reference leads to.
 #[derive(Default)]
 struct Ends {
-    /// By `target` and by bindings of SCA.
-    own: Vec<End>,
-    /// By `<wire>`.
-    wires: Vec<End>,
-    /// By `<wire replace="true">`: in place of all others.
-    replacing: Vec<End>,
-    /// Whether an end is wrong: reported, so nothing more is said about the reference.
-    is_wrong: bool,
+    all: Vec<End>,
+    /// Whether a target is wrong, which is reported, or cannot be looked at: nothing more is said about the reference.
+    is_unknown: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -33,41 +32,41 @@ struct End {
     place: Location,
 }
 
-/// The provider of every reference of every component, `None` for one that leads nowhere.
-pub(super) type Wiring = Vec<Vec<Option<Provider>>>;
+/// A `<wire>` that starts from a reference.
+#[derive(Clone, Copy)]
+struct Wire<'f> {
+    target: &'f Text,
+    scope: usize,
+    is_replacing: bool,
+}
+
+/// The providers of every reference of every component, in the order of the class.
+pub(super) type Wiring = Vec<Vec<Vec<Provider>>>;
 
 /// Resolves all targets and wires, and checks what they come to.
 pub(super) fn check(
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
-    promoted: &Promoted,
+    promoted: &Promoted<'_>,
     report: &mut Report<'_>,
 ) -> Wiring {
-    let mut ends: Vec<Vec<Ends>> = Vec::with_capacity(fleet.members.len());
-    for (place, member) in fleet.members.iter().enumerate() {
-        let class = fleet.class_of(place, classes);
-        let references = class.map_or(&[][..], |class| class.references);
-        ends.push(
-            references.iter().map(|declared| own_ends(member, declared, fleet, classes, report)).collect(),
-        );
-    }
-    composite_wires(fleet, classes, &mut ends, report);
+    let wires = wires(fleet, classes, report);
+    let mut all = Wires { fleet, classes, promoted, wires, autowire: Autowire::default() };
     let mut circles = Circles::new(fleet.members.len());
-    let mut autowire = Autowire::default();
-    let mut wiring = Wiring::with_capacity(ends.len());
-    for (place, ends) in ends.into_iter().enumerate() {
-        let Some(class) = fleet.class_of(place, classes) else {
+    let mut wiring = Wiring::with_capacity(fleet.members.len());
+    for member in 0..fleet.members.len() {
+        let Some(class) = fleet.class_of(member, classes) else {
+            all.given(member, report);
             wiring.push(Vec::new());
             continue;
         };
-        let mut providers = Vec::with_capacity(ends.len());
-        for ((number, declared), ends) in class.references.iter().enumerate().zip(ends) {
-            let wire = Wire { member: place, declared, number };
-            let end = wire.resolve(ends, fleet, classes, promoted, &mut autowire, report);
-            if let Some(end) = end {
-                circles.add(place, &declared.name, end.provider, end.place, fleet, classes);
+        let mut providers = Vec::with_capacity(class.references.len());
+        for declared in class.references {
+            let ends = all.of_class(member, declared, report);
+            for end in &ends {
+                circles.add(member, &declared.name, end.provider, end.place, fleet, classes);
             }
-            providers.push(end.map(|end| end.provider));
+            providers.push(ends.iter().map(|end| end.provider).collect());
         }
         wiring.push(providers);
     }
@@ -75,75 +74,51 @@ pub(super) fn check(
     wiring
 }
 
-fn own_ends(
-    member: &Member<'_>,
-    declared: &ReferenceDeclaration,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
+/// The `<wire>` elements of all composites by the reference they start from.
+fn wires<'f>(
+    fleet: &'f Fleet<'_>,
+    classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
-) -> Ends {
-    let mut ends = Ends::default();
-    let Some(reference) = member.component.reference(&declared.name) else { return ends };
-    let by_binding = reference.bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
-    for target in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref())) {
-        match provider(target, &declared.interface, fleet, classes, report) {
-            Some(provider) => ends.own.push(End { provider, place: target.location }),
-            None => ends.is_wrong = true,
+) -> HashMap<(usize, &'f str), Vec<Wire<'f>>> {
+    let mut all: HashMap<(usize, &str), Vec<Wire<'f>>> = HashMap::new();
+    for unit in &fleet.units {
+        let scope = unit.scope;
+        for wire in unit.composites.iter().flat_map(|composite| &composite.wires) {
+            let (Some(source), Some(to)) = (&wire.source, &wire.target) else { continue };
+            let Some((member, name)) = source_of(source, scope, fleet, classes, report) else { continue };
+            let is_replacing = wire.replace.as_ref().is_some_and(|replace| replace.value);
+            all.entry((member, name)).or_default().push(Wire { target: to, scope, is_replacing });
         }
     }
-    ends
+    all
 }
 
-/// Adds the `<wire>` elements of all composites.
-fn composite_wires(
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-    ends: &mut [Vec<Ends>],
+/// The component and the reference that a wire starts from; an empty name where any reference may be meant.
+fn source_of<'f>(
+    source: &'f Text,
+    scope: usize,
+    fleet: &'f Fleet<'_>,
+    classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
-) {
-    for wire in fleet.composites.iter().flat_map(|composite| &composite.wires) {
-        let (Some(source), Some(target)) = (&wire.source, &wire.target) else { continue };
-        let Some((member, number)) = source_of(source, fleet, classes, report) else { continue };
-        let Some(class) = fleet.class_of(member, classes) else { continue };
-        let ends = &mut ends[member][number];
-        let Some(provider) = provider(target, &class.references[number].interface, fleet, classes, report)
-        else {
-            ends.is_wrong = true;
-            continue;
-        };
-        let end = End { provider, place: target.location };
-        match wire.replace.as_ref().is_some_and(|replace| replace.value) {
-            true => ends.replacing.push(end),
-            false => ends.wires.push(end),
-        }
-    }
-}
-
-/// The component and the place of its reference that a wire starts from.
-fn source_of(
-    source: &Text,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-    report: &mut Report<'_>,
-) -> Option<(usize, usize)> {
+) -> Option<(usize, &'f str)> {
     let uri = Uri::of(source, 2, report)?;
-    let member = uri.member(source, fleet, report)?;
-    let class = fleet.class_of(member, classes)?;
-    let names = || class.references.iter().map(|reference| reference.name.as_str());
+    let member = uri.member(source, scope, fleet, report)?;
+    let named = uri.part.as_ref().map_or("", |(name, _)| *name);
+    let Some(names) = fleet.reference_names(member, classes) else {
+        return (fleet.members[member].kind == Kind::Given).then_some((member, named));
+    };
     let component = quoted(uri.component);
-    match (&uri.part, class.references) {
-        (Some((name, at)), references) => {
-            let found = references.iter().position(|reference| reference.name == *name);
-            if found.is_none() {
-                let at = report.part(source, at.clone());
-                let message = format!("component {component} has no reference {}", quoted(name));
-                let known = ("its references are", names());
-                let one = report.unknown(&codes::UNKNOWN_WIRE_SOURCE, at, message, name, known);
-                report.push(one);
-            }
-            Some((member, found?))
+    match (&uri.part, &names[..]) {
+        (Some((name, _)), names) if names.contains(name) => Some((member, named)),
+        (Some((name, at)), names) => {
+            let at = report.part(source, at.clone());
+            let message = format!("component {component} has no reference {}", quoted(name));
+            let known = ("its references are", names.iter().copied());
+            let one = report.unknown(&codes::UNKNOWN_WIRE_SOURCE, at, message, name, known);
+            report.push(one);
+            None
         }
-        (None, [_]) => Some((member, 0)),
+        (None, [only]) => Some((member, *only)),
         (None, []) => {
             let message = format!("component {component} has no references");
             report.push(Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message));
@@ -151,154 +126,261 @@ fn source_of(
         }
         (None, _) => {
             let message = format!("component {component} has several references");
-            let help = format!("name one of {}: `{source}/...`", list(names()));
+            let help = format!("name one of {}: `{source}/...`", list(names.iter().copied()));
             report.push(Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message).help(help));
             None
         }
     }
 }
 
-/// A reference of a component.
-#[derive(Clone, Copy)]
-struct Wire<'r> {
-    member: usize,
-    declared: &'r ReferenceDeclaration,
-    number: usize,
+struct Wires<'f, 'a> {
+    fleet: &'f Fleet<'a>,
+    classes: &'f [ClassIndex<'a>],
+    promoted: &'f Promoted<'f>,
+    wires: HashMap<(usize, &'f str), Vec<Wire<'f>>>,
+    autowire: Autowire<'f>,
 }
 
-impl Wire<'_> {
-    /// The one end that counts, if the reference leads anywhere.
-    fn resolve<'c>(
-        self,
-        ends: Ends,
-        fleet: &Fleet<'_>,
-        classes: &'c [ClassIndex<'_>],
-        promoted: &Promoted,
-        autowire: &mut Autowire<'c>,
+impl<'f, 'a> Wires<'f, 'a> {
+    /// The ends of a reference of a component of a class, each provider once. What is wrong with them is reported.
+    fn of_class(
+        &mut self,
+        member: usize,
+        declared: &'f ReferenceDeclaration,
         report: &mut Report<'_>,
-    ) -> Option<End> {
-        let Ends { mut own, wires, replacing, is_wrong } = ends;
-        let mut all = if replacing.is_empty() {
-            own.extend(wires);
-            own
-        } else {
-            replacing
-        };
+    ) -> Vec<End> {
+        let place = (member, declared.name.as_str());
+        let Ends { mut all, is_unknown } = self.ends(place, &declared.interface, report);
         let mut seen: Vec<Provider> = Vec::new();
         all.retain(|end| {
             let is_new = !seen.contains(&end.provider);
             seen.push(end.provider);
             is_new
         });
-        if is_wrong {
-            return None;
+        if is_unknown {
+            return Vec::new();
         }
-        let member = &fleet.members[self.member];
-        let reference = member.component.reference(&self.declared.name);
         match all[..] {
-            [end] => Some(end),
-            [first, second, ..] => {
-                self.too_many(member, first, second, all.len(), report);
-                None
+            [] => self.unwired(place, declared, report),
+            [first, second, ..] if !self.multiplicity(place, declared).is_many() => {
+                let multiplicity = self.multiplicity(place, declared);
+                self.too_many(place, multiplicity, (first.place, second.place), all.len(), report);
+                return Vec::new();
             }
-            [] => {
-                if self.is_autowired(member, reference, fleet) {
-                    return self.autowire(member, reference, autowire, fleet, classes, report);
+            _ => {}
+        }
+        all
+    }
+
+    /// How many targets a reference of a component of a class can have.
+    fn multiplicity(&self, (member, name): Place<'_>, declared: &ReferenceDeclaration) -> Multiplicity {
+        let reference = self.fleet.members[member].component.reference(name);
+        let given = reference.and_then(|reference| reference.multiplicity.as_ref());
+        given.map_or(of_class(declared), |given| given.value)
+    }
+
+    /// Looks at the targets of a component that has no class: whether they are there is all that can be known.
+    fn given(&mut self, member: usize, report: &mut Report<'_>) {
+        let fleet = self.fleet;
+        let Some(names) = fleet.reference_names(member, self.classes) else {
+            let component = fleet.members[member].component;
+            for reference in &component.references {
+                self.level((member, &reference.name), None, report);
+            }
+            for (&(_, name), wires) in self.wires.iter().filter(|((from, _), _)| *from == member) {
+                if component.reference(name).is_none() {
+                    for wire in wires {
+                        target(wire.target, wire.scope, None, fleet, self.classes, report);
+                    }
                 }
-                if !promoted.references.contains(&(self.member, self.number)) {
-                    self.unwired(member, reference, fleet, None, report);
-                }
-                None
+            }
+            return;
+        };
+        for name in names {
+            let ends = self.level((member, name), None, report);
+            let multiplicity = fleet.multiplicity_of((member, name));
+            if let [first, second, ..] = ends.places[..]
+                && !multiplicity.is_many()
+            {
+                self.too_many((member, name), multiplicity, (first, second), ends.places.len(), report);
             }
         }
     }
 
-    fn too_many(self, member: &Member<'_>, first: End, second: End, count: usize, report: &mut Report<'_>) {
-        let multiplicity = of_class(self.declared);
+    /// All ends of a reference, those of the components around it included.
+    fn ends(
+        &mut self,
+        place: Place<'f>,
+        interface: &'f InterfaceDeclaration,
+        report: &mut Report<'_>,
+    ) -> Ends {
+        let level = self.level(place, Some(interface), report);
+        let mut ends = level.ends;
+        let (fleet, promoted) = (self.fleet, self.promoted);
+        let outer = promoted.to.get(&place).map_or(&[][..], Vec::as_slice);
+        let mut around = Ends::default();
+        for outer in outer {
+            let more = self.ends(*outer, interface, report);
+            around.all.extend(more.all);
+            around.is_unknown |= more.is_unknown;
+        }
+        let reference = fleet.members[place.0].component.reference(place.1);
+        if !around.all.is_empty() && !ends.all.is_empty() && !keeps_own(fleet, place, reference) {
+            ends = around;
+        } else {
+            ends.all.extend(around.all);
+            ends.is_unknown |= around.is_unknown;
+        }
+        let has_none = ends.all.is_empty() && !ends.is_unknown && level.places.is_empty();
+        if has_none && self.is_autowired(place, reference) {
+            return self.autowired(place, reference, interface, report);
+        }
+        ends
+    }
+
+    /// The ends that a component gives its reference: by `target`, by bindings of SCA, and by wires in its composite.
+    fn level(
+        &self,
+        (member, name): Place<'_>,
+        interface: Option<&InterfaceDeclaration>,
+        report: &mut Report<'_>,
+    ) -> Level {
+        let (fleet, classes) = (self.fleet, self.classes);
+        let scope = fleet.members[member].scope;
+        let wires = self.wires.get(&(member, name)).map_or(&[][..], Vec::as_slice);
+        let is_replaced = wires.iter().any(|wire| wire.is_replacing);
+        let mut level = Level::default();
+        let mut add = |text: &Text, scope: usize, counts: bool| {
+            let found = target(text, scope, interface, fleet, classes, report);
+            match found {
+                Target::Service(provider) if counts => {
+                    level.ends.all.push(End { provider, place: text.location });
+                }
+                Target::Service(_) => {}
+                Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
+            }
+            if counts {
+                level.places.push(text.location);
+            }
+        };
+        if let Some(reference) = fleet.members[member].component.reference(name) {
+            let by_binding =
+                reference.bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+            for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref()))
+            {
+                add(text, scope, !is_replaced);
+            }
+        }
+        for wire in wires {
+            add(wire.target, wire.scope, wire.is_replacing || !is_replaced);
+        }
+        level
+    }
+
+    /// Whether targets are to be found by interface: said by the reference, its component, or the composite.
+    fn is_autowired(&self, (member, _): Place<'_>, reference: Option<&Reference>) -> bool {
+        let member = &self.fleet.members[member];
+        let own = reference.and_then(|reference| reference.autowire());
+        own.or(member.component.autowire).map_or(member.autowire, |said| said.value)
+    }
+
+    fn autowired(
+        &mut self,
+        place: Place<'f>,
+        reference: Option<&Reference>,
+        interface: &'f InterfaceDeclaration,
+        report: &mut Report<'_>,
+    ) -> Ends {
+        let (fleet, classes) = (self.fleet, self.classes);
+        let (member, name) = place;
+        let own = &fleet.members[member];
+        let (all, is_open) = self.autowire.offers(own.scope, interface, fleet, classes);
+        let found: Vec<Provider> =
+            all.iter().filter(|(offering, _)| *offering != member).map(|(_, provider)| *provider).collect();
+        let at = reference.map_or(own.component.name.location, |reference| reference.name.location);
+        let is_many = match fleet.class_of(member, classes) {
+            Some(class) => {
+                let declared = class.references.iter().find(|declared| declared.name == name);
+                declared.is_some_and(|declared| self.multiplicity(place, declared).is_many())
+            }
+            None => fleet.multiplicity_of(place).is_many(),
+        };
+        if found.len() > 1 && !is_many {
+            let names: Vec<String> =
+                found.iter().take(50).map(|provider| uri(*provider, fleet, classes)).collect();
+            let message = format!(
+                "autowire finds several services for reference {} of component {}",
+                quoted(name),
+                quoted(&own.component.name)
+            );
+            let help = format!("name one as its `target`: {}", list(names.iter().map(String::as_str)));
+            report.push(Diagnostic::new(&codes::AUTOWIRE_AMBIGUOUS, at, message).help(help));
+            return Ends { all: Vec::new(), is_unknown: true };
+        }
+        let all = found.into_iter().map(|provider| End { provider, place: at });
+        Ends { all: all.collect(), is_unknown: is_open }
+    }
+
+    fn too_many(
+        &self,
+        (member, name): Place<'_>,
+        multiplicity: Multiplicity,
+        (first, second): (Location, Location),
+        count: usize,
+        report: &mut Report<'_>,
+    ) {
         let message = format!(
             "reference {} of component {} takes one target, and here are {count}",
-            quoted(&self.declared.name),
-            quoted(&member.component.name)
+            quoted(name),
+            quoted(&self.fleet.members[member].component.name)
         );
         report.push(
-            Diagnostic::new(&codes::TOO_MANY_TARGETS, second.place, message)
+            Diagnostic::new(&codes::TOO_MANY_TARGETS, second, message)
                 .rule(if multiplicity.is_required() { "ASM50040" } else { "ASM50039" })
-                .label(first.place, "the first")
+                .label(first, "the first")
                 .help("keep one of them"),
         );
     }
 
-    /// Whether targets are to be found by interface: said by the reference, its component, or the composite.
-    fn is_autowired(self, member: &Member<'_>, reference: Option<&Reference>, fleet: &Fleet<'_>) -> bool {
-        let own = reference.and_then(|reference| reference.autowire());
-        let said = own.or(member.component.autowire).or(fleet.composite_of(member).autowire);
-        said.is_some_and(|autowire| autowire.value)
-    }
-
-    fn autowire<'c>(
-        self,
-        member: &Member<'_>,
-        reference: Option<&Reference>,
-        autowire: &mut Autowire<'c>,
-        fleet: &Fleet<'_>,
-        classes: &'c [ClassIndex<'_>],
-        report: &mut Report<'_>,
-    ) -> Option<End> {
-        let interface = &self.declared.interface;
-        let all = autowire.offers(&interface.name, fleet, classes);
-        let fits = |provider: &&Provider| {
-            provider.member != self.member
-                && fleet
-                    .class_of(provider.member, classes)
-                    .is_some_and(|class| class.services[provider.service].interface == *interface)
-        };
-        let place = reference.map_or(member.component.name.location, |reference| reference.name.location);
-        let mut found = all.iter().filter(fits);
-        match (found.next(), found.next()) {
-            (Some(provider), None) => Some(End { provider: *provider, place }),
-            (None, _) => {
-                self.unwired(member, reference, fleet, Some("ASM60028"), report);
-                None
+    /// A required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of the manual.
+    ///
+    /// Where composites promote it, the outermost component is the one that lacks a target.
+    fn unwired(&self, place: Place<'_>, declared: &ReferenceDeclaration, report: &mut Report<'_>) {
+        let fleet = self.fleet;
+        let mut place = place;
+        let mut is_autowired = false;
+        let mut is_promoted = false;
+        loop {
+            if self.promoted.outermost.contains(&place) {
+                return;
             }
-            (Some(_), Some(_)) => {
-                let names: Vec<String> =
-                    all.iter().filter(fits).take(50).map(|provider| uri(*provider, fleet, classes)).collect();
-                let message = format!(
-                    "autowire finds several services for reference {} of component {}",
-                    quoted(&self.declared.name),
-                    quoted(&member.component.name)
-                );
-                let help = format!("name one as its `target`: {}", list(names.iter().map(String::as_str)));
-                report.push(Diagnostic::new(&codes::AUTOWIRE_AMBIGUOUS, place, message).help(help));
-                None
+            let reference = fleet.members[place.0].component.reference(place.1);
+            let is_wired_elsewhere = reference.is_some_and(|reference| {
+                reference.wired_by_impl().is_some_and(|wired| wired.value)
+                    || reference.bindings.iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
+            });
+            if is_wired_elsewhere {
+                return;
+            }
+            is_autowired |= self.is_autowired(place, reference);
+            match self.promoted.to.get(&place).and_then(|outer| outer.first()) {
+                Some(outer) => (place, is_promoted) = (*outer, true),
+                None => break,
             }
         }
-    }
-
-    /// A required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of the manual.
-    fn unwired(
-        self,
-        member: &Member<'_>,
-        reference: Option<&Reference>,
-        fleet: &Fleet<'_>,
-        rule: Option<&'static str>,
-        report: &mut Report<'_>,
-    ) {
-        let wired_elsewhere = reference.is_some_and(|reference| {
-            reference.wired_by_impl().is_some_and(|wired| wired.value)
-                || reference.bindings.iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
-        });
+        let (member, name) = place;
+        let reference = fleet.members[member].component.reference(name);
         let multiplicity = reference.and_then(|reference| reference.multiplicity.as_ref());
-        let is_required = of_class(self.declared).is_required()
-            || multiplicity.is_some_and(|given| given.value.is_required());
-        if wired_elsewhere || !is_required {
+        let is_required =
+            of_class(declared).is_required() || multiplicity.is_some_and(|given| given.value.is_required());
+        if !is_required {
             return;
         }
-        let (name, interface) = (&self.declared.name, &self.declared.interface.name);
-        let (component, place) = (&member.component.name, reference.map(|reference| reference.name.location));
+        let (interface, component) = (&declared.interface.name, &fleet.members[member].component.name);
+        let place = reference.map(|reference| reference.name.location);
         let message =
             format!("reference {} of component {} leads to no service", quoted(name), quoted(component));
-        let is_1_1 = fleet.composite_of(member).version.is_1_1();
+        let is_1_1 = fleet.members[member].composite.version.is_1_1();
         let help = format!(
             "give it a target with the interface {}: `<reference name=\"{name}\" target=\"...\"/>`",
             quoted(interface)
@@ -306,11 +388,41 @@ impl Wire<'_> {
         let one = Diagnostic::new(&codes::UNWIRED, place.unwrap_or(component.location), message)
             .severity(if is_1_1 { Severity::Error } else { Severity::Warning })
             .help(help);
-        let one = match rule {
-            Some(rule) => one.rule(rule).help("autowire finds no service with this interface"),
-            None => one.rule("ASM50040"),
+        let one = match (is_autowired, is_promoted) {
+            (true, _) => one.rule("ASM60028").help("autowire finds no service with this interface"),
+            (false, true) => one.rule("ASM60033"),
+            (false, false) => one.rule("ASM50040"),
         };
         report.push(if is_1_1 { one } else { one.help("calls through it fail") });
+    }
+}
+
+/// What one component gives its reference.
+#[derive(Default)]
+struct Level {
+    ends: Ends,
+    /// Where the targets that count are written.
+    places: Vec<Location>,
+}
+
+/// Whether the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1): only with
+/// `nonOverridable`. In SCA 1.0 those of a reference that takes several do.
+fn keeps_own(fleet: &Fleet<'_>, (member, _): Place<'_>, reference: Option<&Reference>) -> bool {
+    let Some(reference) = reference else { return false };
+    if reference.non_overridable().is_some_and(|fixed| fixed.value) {
+        return true;
+    }
+    let is_many = reference.multiplicity.as_ref().is_some_and(|given| given.value.is_many());
+    !fleet.members[member].composite.version.is_1_1() && is_many
+}
+
+impl Fleet<'_> {
+    /// How many targets a reference of a component can have that a composite implements.
+    pub(super) fn multiplicity_of(&self, (member, name): Place<'_>) -> Multiplicity {
+        let own = self.members[member].component.reference(name);
+        let inner = self.inner(member).and_then(|inner| inner.references().find(|one| one.name == name));
+        let given = [own, inner].into_iter().flatten().find_map(|one| one.multiplicity.as_ref());
+        given.map_or(Multiplicity::One, |given| given.value)
     }
 }
 
@@ -320,26 +432,4 @@ fn uri(provider: Provider, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> Str
     let service =
         fleet.class_of(provider.member, classes).map_or("", |class| &class.services[provider.service].name);
     format!("{component}/{service}")
-}
-
-/// The services of a fleet by interface, collected when somebody asks.
-#[derive(Default)]
-struct Autowire<'c> {
-    by_interface: Option<HashMap<&'c str, Vec<Provider>>>,
-}
-
-impl<'c> Autowire<'c> {
-    fn offers(&mut self, interface: &str, fleet: &Fleet<'_>, classes: &'c [ClassIndex<'_>]) -> &[Provider] {
-        let all = self.by_interface.get_or_insert_with(|| {
-            let mut all: HashMap<&str, Vec<Provider>> = HashMap::new();
-            for member in 0..fleet.members.len() {
-                let services = fleet.class_of(member, classes).map_or(&[][..], |class| &class.services);
-                for (service, declared) in services.iter().enumerate() {
-                    all.entry(&declared.interface.name).or_default().push(Provider { member, service });
-                }
-            }
-            all
-        });
-        all.get(interface).map_or(&[], Vec::as_slice)
-    }
 }

@@ -94,6 +94,12 @@ codes! {
     SETTING_MALFORMED = "S2027" Error "setting-malformed": "An option that sets a composite property has no name or no `=`.";
     SETTING_REPEATED = "S2028" Error "setting-repeated": "One composite property is set twice.";
     UNKNOWN_SETTING = "S2029" Error "unknown-setting": "An option sets a composite property that does not exist.";
+    INCLUDE_NOT_FOUND = "S2030" Error "include-not-found" ("ASM60042"): "An include names a composite that is not found.";
+    COMPOSITE_NOT_FOUND = "S2031" Error "composite-not-found" ("ASM60030"): "A component is implemented by a composite that is not found.";
+    COMPOSITE_CIRCLE = "S2032" Error "composite-circle": "A composite includes itself or is implemented by itself, directly or through others.";
+    INCLUDED_TWICE = "S2033" Error "included-twice" ("ASM60031"): "A composite is included twice in one composite.";
+    INCLUDE_LOCAL = "S2034" Error "include-local" ("ASM60041"): "A composite that is `local` is included in one that is not.";
+    FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites come to more components than a fleet can have.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";

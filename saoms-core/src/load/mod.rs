@@ -11,9 +11,11 @@ mod composite;
 mod contract;
 mod encoding;
 mod missing;
+mod named;
 mod property;
 mod read;
 mod root;
+mod shelf;
 #[cfg(test)]
 mod tests;
 mod values;
@@ -22,6 +24,7 @@ mod vocabulary;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use named::load_named;
 pub use read::{MAX_SIZE, read, read_from};
 pub use values::read_values;
 

@@ -8,6 +8,7 @@
 mod component;
 mod composite;
 mod contract;
+mod contribution;
 mod origin;
 mod policy;
 mod property;
@@ -18,6 +19,7 @@ pub use composite::{Composite, Include, Wire};
 pub use contract::{
     Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
 };
+pub use contribution::{Contribution, Link, Missing, Naming};
 pub use origin::{Origin, Part};
 pub use policy::Policy;
 pub use property::{Property, PropertyDetails, PropertyValue};

@@ -167,9 +167,12 @@ pub struct ReferenceDeclaration {
     pub name: String,
     /// Its interface.
     pub interface: InterfaceDeclaration,
-    /// Whether a component works without a target for it: multiplicity `0..1` rather than `1..1`.
+    /// Whether a component works without a target for it: multiplicity `0..` rather than `1..`.
     #[serde(default)]
     pub optional: bool,
+    /// Whether it takes any number of targets: multiplicity `..n` rather than `..1`.
+    #[serde(default)]
+    pub many: bool,
 }
 
 /// An interface: two ends agree when these are equal.

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use saoms_api::{CallError, Failure, Invocation, ServiceCall, cdr};
+use saoms_api::{CallError, Failure, Invocation, ServiceCall, TARGET_SHIFT, cdr};
 
 use super::body::{Body, Job, Part};
 use super::engine::{Engine, Phase};
@@ -16,12 +16,13 @@ pub(super) fn call(
     reference: u32,
     call: &mut dyn ServiceCall,
 ) -> Result<(), CallError> {
-    let Some(wire) = shared.spec(caller.index).references.get(reference as usize) else {
+    let place = reference & ((1 << TARGET_SHIFT) - 1);
+    let Some(wire) = shared.spec(caller.index).references.get(place as usize) else {
         return Err(CallError::NotWired {
             reference: "(a handle that `Context::reference` did not give)".to_owned(),
         });
     };
-    let Some(target) = &wire.target else {
+    let Some(target) = wire.targets.get((reference >> TARGET_SHIFT) as usize) else {
         return Err(CallError::NotWired { reference: wire.reference.clone() });
     };
     let provider = target.component as u32;

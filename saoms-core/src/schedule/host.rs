@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use saoms_api::{
     CallError, Cause, Chance, DynLoop, Failure, Host, Level, Phase, Record, ReportValue, ServiceCall,
-    SharedMessage, Time, TopicDeclaration, Work,
+    SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Work,
 };
 
 use super::body::Part;
 use super::observe::{Event, Occurrence};
 use super::shared::Shared;
-use crate::assembly::{ComponentSpec, TaskSettings};
+use crate::assembly::{ComponentSpec, TaskSettings, Wire};
 use crate::report::Sections;
 
 /// What the scheduler gives to a component while its code runs.
@@ -19,9 +19,18 @@ pub(super) struct ComponentHost<'a> {
     pub(super) part: &'a mut Part,
 }
 
+/// How many targets of one reference a handle can tell apart.
+const MOST_TARGETS: usize = (1 << (32 - TARGET_SHIFT)) - 1;
+
 impl ComponentHost<'_> {
     fn spec(&self) -> &ComponentSpec {
         self.shared.spec(self.part.index)
+    }
+
+    /// The reference of a handle.
+    fn wire(&self, reference: u32) -> Option<&Wire> {
+        let place = reference & ((1 << TARGET_SHIFT) - 1);
+        self.spec().references.get(place as usize)
     }
 
     /// Checks that the component may take a topic now, and gives its task settings.
@@ -158,7 +167,12 @@ impl Host for ComponentHost<'_> {
     }
 
     fn is_wired(&self, reference: u32) -> bool {
-        self.spec().references.get(reference as usize).is_some_and(|wire| wire.target.is_some())
+        self.wire(reference).is_some_and(|wire| wire.targets.len() > (reference >> TARGET_SHIFT) as usize)
+    }
+
+    fn targets(&self, reference: u32) -> u32 {
+        // More than a handle can number are a fault of the fleet that nobody has.
+        self.wire(reference).map_or(0, |wire| wire.targets.len().min(MOST_TARGETS)) as u32
     }
 
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {

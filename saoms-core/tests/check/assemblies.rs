@@ -17,9 +17,10 @@ fn assembly(texts: &[&str], settings: &[&str]) -> String {
             let _ = writeln!(out, "  {name} = {value:?}");
         }
         for wire in &component.references {
-            let target = wire.target.as_ref();
-            let target = target
-                .map_or("nothing".to_owned(), |target| format!("{} {}", target.component, target.service));
+            let targets =
+                wire.targets.iter().map(|target| format!("{} {}", target.component, target.service));
+            let targets: Vec<String> = targets.collect();
+            let target = if targets.is_empty() { "nothing".to_owned() } else { targets.join(", ") };
             let _ = writeln!(out, "  {} ({}) -> {target}", wire.reference, wire.interface);
         }
         if let Some(task) = &component.task {

@@ -23,6 +23,7 @@ pub(crate) fn registry() -> Registry {
         Registration::of::<Tracker>(),
         Registration::of::<Fragile>(),
         Registration::of::<Reader>(),
+        Registration::of::<Conductor>(),
     ];
     for one in all {
         registry.add(one).unwrap();
@@ -233,6 +234,13 @@ component!(Shouter, ());
 pub(crate) struct Tracker;
 
 component!(Tracker, ());
+
+/// Tells any number of robots where to go.
+#[derive(Class)]
+#[class(name = "example.Conductor", passive, reference("wheels": Wheels, optional, many), reference("gps": Positions, many))]
+pub(crate) struct Conductor;
+
+component!(Conductor, ());
 
 /// Panics when somebody makes one.
 #[derive(Class)]

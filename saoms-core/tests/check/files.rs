@@ -6,9 +6,10 @@ use std::path::Path;
 use expect_test::expect;
 use saoms_api::PropertyValue;
 use saoms_core::assembly::Assembly;
-use saoms_core::check::check;
+use saoms_core::check::{Options, check};
 use saoms_core::diagnostic::Diagnostics;
 use saoms_core::load::{MAX_SIZE, load_file, read, read_values};
+use saoms_core::model::Contribution;
 use saoms_core::source::Sources;
 
 use crate::classes::registry;
@@ -29,7 +30,13 @@ fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> (Option<Ass
     let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
     let mut composite = load_file(file, &sources, &mut diagnostics).unwrap();
     read_values(&mut composite, max_size, &mut sources, &mut diagnostics);
-    let assembly = check(&[composite], &registry(), &[], &sources, &mut diagnostics);
+    let assembly = check(
+        &Contribution::of(vec![composite]),
+        &registry(),
+        &Options::default(),
+        &sources,
+        &mut diagnostics,
+    );
     let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
     (assembly, without(&found, folder.path()))
 }

@@ -8,6 +8,7 @@ mod files;
 mod findings;
 mod mutations;
 mod names;
+mod nested;
 mod parameters;
 mod properties;
 mod reference;

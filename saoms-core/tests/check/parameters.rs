@@ -45,7 +45,6 @@ fn sources_lead_to_composite_properties() {
         16:33-35 error S2023: `/x` names no property of the composite
           help: write `$name`, or `$name/part` for a part of a complex property
         19:33-41 error S3006: the property `period` has no value: its source has none
-        19:76-81 error S3006: the property `number` has no value: its source has none
     "#]].assert_eq(&faults(&format!(
         r#"<property name="speed">quick</property>
 <property name="where"><value><place xmlns="urn:x"><x>300</x><y/></place></value></property>

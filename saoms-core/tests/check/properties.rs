@@ -47,14 +47,14 @@ fn a_component_without_a_name_is_not_called_by_an_empty_one() {
 fn unknown_classes_are_offered_the_nearest() {
     expect![[r#"
         2:49-64 error S3001: there is no class `example.Robt001`
-          help: looked among the 15 classes linked into this program; `saoms components` lists them
+          help: looked among the 16 classes linked into this program; `saoms components` lists them
           fix: replace `example.Robt001` with `example.Robot001` [2:49-64 "example.Robot001"]
           fix: replace `example.Robt001` with `example.Robot` [2:49-64 "example.Robot"]
         3:49-70 error S3001: there is no class `org.example.navigator`
-          help: looked among the 15 classes linked into this program; `saoms components` lists them
+          help: looked among the 16 classes linked into this program; `saoms components` lists them
           fix: replace `org.example.navigator` with `example.Navigator` [3:49-70 "example.Navigator"]
         4:49-66 error S3001: there is no class `com.example.Wheel`
-          help: looked among the 15 classes linked into this program; `saoms components` lists them
+          help: looked among the 16 classes linked into this program; `saoms components` lists them
     "#]]
     .assert_eq(&faults(
         r#"<component name="A"><implementation.java class="example.Robt001"/></component>
@@ -66,15 +66,14 @@ fn unknown_classes_are_offered_the_nearest() {
 #[test]
 fn what_cannot_run_says_so() {
     expect![[r#"
-        2:22-46 error S3003: nested composites are not supported yet: `implementation.composite` cannot run
-          help: put the components of the inner composite in this one
-          help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
+        2:53-58 error S2031: there is no composite `inner` in the namespace `urn:t`
+          help: name the file of the composite beside this one
         3:22-41 error S3002: `implementation.bpel` cannot run here
           help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
         4:71-80 error S3003: classes from plugins are not supported yet: `library` names one
           help: leave `library` out where the class is linked into the program
-        5:2-9 error S3003: `include` is not supported yet
-          help: name the included file on the command line, too: several files form one fleet
+        5:16-21 error S2030: there is no composite `other` in the namespace `urn:t`
+          help: name the file of the composite beside this one
         6:22-45 error S3002: `implementation.script` cannot run here
           help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
     "#]].assert_eq(&faults(

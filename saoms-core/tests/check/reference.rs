@@ -8,9 +8,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use expect_test::expect_file;
-use saoms_core::check::{Setting, check};
+use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
 use saoms_core::load::{MAX_SIZE, load_file, read};
+use saoms_core::model::Contribution;
 use saoms_core::source::Sources;
 
 use crate::classes::registry;
@@ -80,7 +81,21 @@ fn example(code: &Code) -> Result<String, String> {
             let components =
                 "<component name=\"Gps\"><implementation.java class=\"example.Gsp\"/></component>\n";
             let text = crate::support::fleet(&components.repeat(1500));
-            checked(&[("fleet.composite".to_owned(), text)], &[])
+            checked(&[("fleet.composite".to_owned(), text)], 1, &[])
+        }
+        "S2035" => {
+            let level = |level: u32| {
+                let inner = format!("<implementation.composite name=\"hall{}\"/>", level - 1);
+                let one = |name| format!("    <component name=\"{name}\">{inner}</component>\n");
+                (
+                    format!("hall{level}.composite"),
+                    crate::support::part(&format!("hall{level}"), "", &(one("a") + &one("b"))),
+                )
+            };
+            let gps = "    <component name=\"Gps\"><implementation.java class=\"example.Gps\"/></component>";
+            let mut files: Vec<_> = (1..=20).rev().map(level).collect();
+            files.push(("hall0.composite".to_owned(), crate::support::part("hall0", "", gps)));
+            checked(&files, 1, &[])
         }
         id => from_files(id),
     };
@@ -95,26 +110,31 @@ fn example(code: &Code) -> Result<String, String> {
     Ok(human(&found[..1], &sources, false))
 }
 
-/// Checks `ID.composite`, and `ID.more.composite` with it, with the lines of `ID.set` as settings, where there are any.
+/// Checks `ID.composite`, and `ID.more.composite` with it, with the lines of `ID.set` as settings, where there are any. They can
+/// name what is in `ID.inner.composite`.
 fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
     let read = |name: String| fs::read_to_string(folder().join(&name)).ok().map(|text| (name, text));
     let names = [format!("{id}.composite"), format!("{id}.more.composite")];
-    let files: Vec<_> = names.into_iter().filter_map(read).collect();
+    let mut files: Vec<_> = names.into_iter().filter_map(read).collect();
+    let asked_for = files.len();
+    files.extend(read(format!("{id}.inner.composite")));
     assert!(!files.is_empty(), "there is no example of {id}");
     let settings = fs::read_to_string(folder().join(format!("{id}.set"))).unwrap_or_default();
-    checked(&files, &settings.lines().collect::<Vec<_>>())
+    checked(&files, asked_for, &settings.lines().collect::<Vec<_>>())
 }
 
-fn checked(files: &[(String, String)], settings: &[&str]) -> (Vec<Diagnostic>, Sources) {
+fn checked(files: &[(String, String)], asked_for: usize, settings: &[&str]) -> (Vec<Diagnostic>, Sources) {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let files: Vec<_> = files.iter().map(|(name, text)| sources.add(name.as_str(), text.as_str())).collect();
     let settings: Vec<_> = settings
         .iter()
         .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
         .collect();
-    let composites: Vec<_> =
-        files.into_iter().filter_map(|file| load_file(file, &sources, &mut diagnostics)).collect();
-    check(&composites, &registry(), &settings, &sources, &mut diagnostics);
+    let load = |file| load_file(file, &sources, &mut diagnostics);
+    let mut composites: Vec<_> = files.into_iter().filter_map(load).collect();
+    let others = composites.split_off(asked_for.min(composites.len()));
+    let fleet = Contribution::with(composites, others);
+    check(&fleet, &registry(), &Options::with_settings(settings), &sources, &mut diagnostics);
     (diagnostics.into_sorted(), sources)
 }
 

@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::{Setting, check};
+use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics};
 use saoms_core::load::load_file;
+use saoms_core::model::Contribution;
 use saoms_core::source::{Location, Sources};
 
 use crate::classes::registry;
@@ -38,8 +39,66 @@ pub(crate) fn run(texts: &[&str], settings: &[&str]) -> (Option<Assembly>, Vec<D
         .collect();
     let composites: Vec<_> =
         files.iter().filter_map(|file| load_file(*file, &sources, &mut diagnostics)).collect();
-    let assembly = check(&composites, &registry(), &settings, &sources, &mut diagnostics);
+    let assembly = check(
+        &Contribution::of(composites),
+        &registry(),
+        &Options::with_settings(settings),
+        &sources,
+        &mut diagnostics,
+    );
     (assembly, diagnostics.into_sorted(), sources)
+}
+
+/// Loads and checks the first text as a fleet that can name what is in the others; each is called as it says it is.
+pub(crate) fn nested(
+    texts: &[&str],
+    settings: &[&str],
+    assume_classes: bool,
+) -> (Option<Assembly>, Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let name = |text: &str| {
+        text.split(" name=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap().to_owned()
+    };
+    let files: Vec<_> = texts.iter().map(|text| sources.add(name(text), *text)).collect();
+    let settings =
+        settings.iter().filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics));
+    let options = Options { settings: settings.collect(), assume_classes };
+    let mut composites: Vec<_> =
+        files.iter().filter_map(|file| load_file(*file, &sources, &mut diagnostics)).collect();
+    let others = composites.split_off(1);
+    let fleet = Contribution::with(composites, others);
+    let assembly = check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+    (assembly, diagnostics.into_sorted(), sources)
+}
+
+/// A composite of SCA 1.1 of this name, for [`nested`]: attributes, then what is inside from line 2.
+pub(crate) fn part(name: &str, attributes: &str, inside: &str) -> String {
+    let inside = inside.trim_matches('\n');
+    format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" xmlns:t=\"urn:t\" name=\"{name}\" {attributes}>\n{inside}\n</composite>"
+    )
+}
+
+/// What the first of these texts comes to, after what is wrong with it: components, values as text, targets.
+pub(crate) fn outcome(texts: &[&str], settings: &[&str]) -> String {
+    let (assembly, diagnostics, sources) = nested(texts, settings, false);
+    let mut out: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+    for component in assembly.iter().flat_map(|assembly| &assembly.components) {
+        let _ = write!(out, "{} ({})", component.path, component.class.name());
+        for (name, value) in &component.values {
+            let _ = write!(out, " {name}={value:?}");
+        }
+        for wire in &component.references {
+            let assembly = assembly.as_ref().unwrap();
+            let of = |target: &saoms_core::assembly::Target| {
+                format!("{}/{}", assembly.components[target.component].path, target.service)
+            };
+            let targets: Vec<String> = wire.targets.iter().map(of).collect();
+            let _ = write!(out, " {}->{}", wire.reference, targets.join("+"));
+        }
+        out.push('\n');
+    }
+    out
 }
 
 /// What is wrong with a composite, with `inside` in one of SCA 1.1.

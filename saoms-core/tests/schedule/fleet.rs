@@ -49,7 +49,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
     let wire = |reference: &str, interface: &str| Wire {
         reference: reference.to_owned(),
         interface: interface.to_owned(),
-        target: None,
+        targets: Vec::new(),
     };
     let mut references = vec![wire("peer", "test.Echo"), wire("task", "unibg.robotics.tca.TaskInterface")];
     let mut values = Vec::new();
@@ -57,7 +57,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         let duration = || parse_duration(value).unwrap();
         let target = |service: &str| {
             let component = names.iter().position(|name| name == value).unwrap();
-            Some(Target { component, service: service.to_owned() })
+            vec![Target { component, service: service.to_owned() }]
         };
         match key {
             "period" => task.period = duration(),
@@ -84,8 +84,8 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
                 let (old, new) = value.split_once('/').unwrap();
                 task.topic_rename.push((old.to_owned(), new.to_owned()));
             }
-            "peer" => references[0].target = target("echo"),
-            "task" => references[1].target = target("TaskInterface"),
+            "peer" => references[0].targets = target("echo"),
+            "task" => references[1].targets = target("TaskInterface"),
             script => values.push((script.to_owned(), PropertyValue::from(value))),
         }
     }

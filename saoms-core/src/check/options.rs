@@ -1,0 +1,20 @@
+//! What a check can be told beside the composites.
+
+use super::Setting;
+
+/// What a check can be told beside the composites.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Values of composite properties that count in place of those in the files.
+    pub settings: Vec<Setting>,
+    /// Whether what the registry does not know is taken as given: classes, and implementations of other kinds. There is no
+    /// assembly then when a component has such a one.
+    pub assume_classes: bool,
+}
+
+impl Options {
+    /// With these settings, everything else as usual.
+    pub fn with_settings(settings: Vec<Setting>) -> Self {
+        Self { settings, ..Self::default() }
+    }
+}

@@ -1,0 +1,107 @@
+//! The composites that composites name: reading those that are in other files.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use super::shelf::Shelf;
+use super::{load_file, read, read_values};
+use crate::diagnostic::{Diagnostics, nearest_few, quoted};
+use crate::model::{Contribution, Link, Missing, Naming};
+use crate::source::Sources;
+
+/// Names that are offered in place of one that is not found.
+const OFFERED: usize = 3;
+
+/// Reads the composites that those of a contribution include or implement components with, and what those name in turn.
+///
+/// They are looked for by namespace and name in the folder of the file that names them, and then in the whole contribution:
+/// the nearest folder above that has a `sca-contribution.xml`, in itself or in its `META-INF`, or that first folder where
+/// there is none. No file is opened that is not needed, and a large folder is given up after some ten thousand entries.
+/// Texts that were not read from files are not looked at.
+///
+/// What is wrong with a file that is found is reported; that one is not found is for the checker to say.
+pub fn load_named(
+    contribution: &mut Contribution,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) {
+    let mut shelf = Shelf::default();
+    // By their paths, so that one file is one composite; `None` for one that could not be read.
+    let mut known: HashMap<PathBuf, Option<usize>> = HashMap::new();
+    for (place, composite) in contribution.composites().iter().enumerate() {
+        known.insert(identity(Path::new(sources.get(composite.file()).path())), Some(place));
+    }
+    let mut place = 0;
+    while let Some(composite) = contribution.composites().get(place) {
+        place += 1;
+        let path = PathBuf::from(sources.get(composite.file()).path());
+        let is_open =
+            |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
+        let open = composite.namings().filter(is_open);
+        let wanted: Vec<Wanted> = open
+            .map(|naming| {
+                let (namespaces, local) = composite.resolve_name(naming);
+                let prefix = naming.name.as_str().strip_suffix(local).unwrap_or_default();
+                Wanted {
+                    origin: naming.origin,
+                    prefix: prefix.to_owned(),
+                    namespaces,
+                    local: local.to_owned(),
+                }
+            })
+            .collect();
+        if wanted.is_empty() || !path.is_file() {
+            continue;
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        for wanted in wanted {
+            let link = match shelf.find(folder, wanted.namespaces.as_deref(), &wanted.local) {
+                None => Link::Missing(missing(&mut shelf, folder, &wanted)),
+                Some(found) => {
+                    shelf.adopt(folder, &found);
+                    let place = known.entry(identity(&found)).or_insert_with(|| {
+                        let file = read(&found, max_size, sources, diagnostics)?;
+                        let mut composite = load_file(file, sources, diagnostics)?;
+                        read_values(&mut composite, max_size, sources, diagnostics);
+                        Some(contribution.add(composite))
+                    });
+                    place.map_or(Link::Faulty, Link::To)
+                }
+            };
+            contribution.set_link(wanted.origin, link);
+        }
+    }
+}
+
+struct Wanted {
+    origin: crate::model::Origin,
+    prefix: String,
+    namespaces: Option<Vec<String>>,
+    local: String,
+}
+
+/// One path for one file, however it is written.
+fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+fn missing(shelf: &mut Shelf, folder: &Path, wanted: &Wanted) -> Missing {
+    let seen = shelf.seen(folder);
+    let is_meant = |namespace: &str| {
+        wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace))
+    };
+    let of_namespace = seen.iter().filter(|one| is_meant(&one.namespace)).map(|one| one.local.as_str());
+    let near = nearest_few(&wanted.local, of_namespace, OFFERED);
+    let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
+    let mut searched = vec![shelf.searched(folder)];
+    if let Some(other) = seen.iter().find(|one| one.local == wanted.local) {
+        searched.push(format!(
+            "{} has a composite {} of the namespace {}",
+            quoted(&other.path.display().to_string()),
+            quoted(&other.local),
+            quoted(&other.namespace)
+        ));
+    }
+    Missing { near, searched }
+}

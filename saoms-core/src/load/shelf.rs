@@ -1,0 +1,199 @@
+//! Finding composites in folders by their names, without reading more than is needed.
+
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+use crate::diagnostic::quoted;
+
+/// Entries of folders that are looked at in all.
+const MOST_ENTRIES: usize = 20_000;
+/// Folders above a file in which a description of the contribution is looked for.
+const MOST_ABOVE: usize = 12;
+/// The part of a file in which its first tag has to be.
+const HEAD: u64 = 64 * 1024;
+/// Folders that hold what tools made.
+const SKIPPED: &[&str] = &["target", "node_modules"];
+
+/// What is known of files in folders, looked at once each.
+pub(super) struct Shelf {
+    folders: HashMap<PathBuf, Listing>,
+    heads: HashMap<PathBuf, Option<Head>>,
+    roots: HashMap<PathBuf, PathBuf>,
+    left: usize,
+}
+
+/// The composites in a folder, and the folders in it, sorted.
+#[derive(Clone, Debug, Default)]
+struct Listing {
+    composites: Vec<PathBuf>,
+    folders: Vec<PathBuf>,
+}
+
+/// A composite that was seen.
+#[derive(Clone, Debug)]
+pub(super) struct Head {
+    pub(super) path: PathBuf,
+    pub(super) namespace: String,
+    pub(super) local: String,
+}
+
+impl Default for Shelf {
+    fn default() -> Self {
+        Self { folders: HashMap::new(), heads: HashMap::new(), roots: HashMap::new(), left: MOST_ENTRIES }
+    }
+}
+
+impl Shelf {
+    /// The file of the composite with this name in one of these namespaces, or in any, as a file in `folder` means it.
+    pub(super) fn find(
+        &mut self,
+        folder: &Path,
+        namespaces: Option<&[String]>,
+        local: &str,
+    ) -> Option<PathBuf> {
+        let fits = |head: &Head| {
+            let is_meant = |meant: &String| *meant == head.namespace;
+            head.local == local && namespaces.is_none_or(|all| all.iter().any(is_meant))
+        };
+        if let Some(found) = self.find_in(folder, local, &fits) {
+            return Some(found);
+        }
+        let mut waiting = VecDeque::from([self.root(folder)]);
+        let mut seen = HashSet::new();
+        while let Some(next) = waiting.pop_front() {
+            if !seen.insert(next.clone()) {
+                continue;
+            }
+            if next != folder
+                && let Some(found) = self.find_in(&next, local, &fits)
+            {
+                return Some(found);
+            }
+            waiting.extend(self.listing(&next).folders);
+        }
+        None
+    }
+
+    fn find_in(&mut self, folder: &Path, local: &str, fits: &impl Fn(&Head) -> bool) -> Option<PathBuf> {
+        let mut all = self.listing(folder).composites;
+        // Most files are called as what they hold.
+        all.sort_by_key(|path| path.file_stem().is_none_or(|stem| stem != local));
+        all.into_iter().find(|path| self.head(path).as_ref().is_some_and(fits))
+    }
+
+    /// The composites of the contribution of `folder`, as far as they were looked at.
+    pub(super) fn seen(&self, folder: &Path) -> Vec<Head> {
+        let root = self.roots.get(folder).map_or(folder, PathBuf::as_path);
+        let mut all: Vec<Head> =
+            self.heads.values().flatten().filter(|head| head.path.starts_with(root)).cloned().collect();
+        all.sort_by(|one, other| one.path.cmp(&other.path));
+        all
+    }
+
+    /// Where composites were looked for, as a sentence.
+    pub(super) fn searched(&mut self, folder: &Path) -> String {
+        let root = self.root(folder);
+        let shown = if root.as_os_str().is_empty() { Path::new(".") } else { &root };
+        let shown = quoted(&shown.display().to_string());
+        match self.left {
+            0 => format!(
+                "looked among the first {MOST_ENTRIES} files in {shown} and below; name the file of the composite beside this one"
+            ),
+            _ => format!("looked in the files `*.composite` in {shown} and below"),
+        }
+    }
+
+    /// The folder of the contribution that `folder` is in.
+    pub(super) fn root(&mut self, folder: &Path) -> PathBuf {
+        if let Some(known) = self.roots.get(folder) {
+            return known.clone();
+        }
+        let found = root(folder);
+        self.roots.insert(folder.to_owned(), found.clone());
+        found
+    }
+
+    /// Makes a file that was found for one in `folder` one of its contribution.
+    pub(super) fn adopt(&mut self, folder: &Path, found: &Path) {
+        let root = self.root(folder);
+        let own = found.parent().unwrap_or(Path::new("")).to_owned();
+        self.roots.entry(own).or_insert(root);
+    }
+
+    fn listing(&mut self, folder: &Path) -> Listing {
+        if let Some(known) = self.folders.get(folder) {
+            return known.clone();
+        }
+        let mut listing = Listing::default();
+        let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        for entry in fs::read_dir(here).into_iter().flatten().flatten().take(self.left) {
+            self.left -= 1;
+            let (name, path) = (entry.file_name(), folder.join(entry.file_name()));
+            let name = name.to_string_lossy();
+            // Links to folders may lead around in circles, and are not followed.
+            match entry.file_type() {
+                Ok(kind) if kind.is_dir() && (name.starts_with('.') || SKIPPED.contains(&&*name)) => {}
+                Ok(kind) if kind.is_dir() => listing.folders.push(path),
+                Ok(_) if name.ends_with(".composite") => listing.composites.push(path),
+                _ => {}
+            }
+        }
+        listing.composites.sort_unstable();
+        listing.folders.sort_unstable();
+        self.folders.insert(folder.to_owned(), listing.clone());
+        listing
+    }
+
+    fn head(&mut self, path: &Path) -> &Option<Head> {
+        self.heads.entry(path.to_owned()).or_insert_with(|| head(path))
+    }
+}
+
+/// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.
+fn root(folder: &Path) -> PathBuf {
+    let Ok(absolute) = std::path::absolute(folder) else { return folder.to_owned() };
+    let describes = |folder: &Path| {
+        ["META-INF/sca-contribution.xml", "sca-contribution.xml"]
+            .iter()
+            .any(|name| folder.join(name).is_file())
+    };
+    let found = absolute.ancestors().take(MOST_ABOVE).position(describes);
+    let Some(above) = found else { return folder.to_owned() };
+    // As the user wrote it, where that goes up far enough.
+    let written = folder.ancestors().nth(above).filter(|written| above == 0 || written.file_name().is_some());
+    written.or(absolute.ancestors().nth(above)).unwrap_or(folder).to_owned()
+}
+
+/// The name and namespace of the composite in a file; `None` when its first tag is no `composite`.
+fn head(path: &Path) -> Option<Head> {
+    let mut bytes = Vec::new();
+    // What is no file, as a pipe, might never come to an end.
+    if !fs::metadata(path).ok()?.is_file() {
+        return None;
+    }
+    File::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
+    loop {
+        match reader.read_event().ok()? {
+            Event::Start(tag) | Event::Empty(tag) => {
+                if tag.local_name().as_ref() != "composite" {
+                    return None;
+                }
+                let value = |name: &str| {
+                    let found = tag.try_get_attribute(name).ok().flatten()?;
+                    quick_xml::escape::unescape(&found.value).ok().map(|text| text.trim().to_owned())
+                };
+                let namespace = value("targetNamespace").unwrap_or_default();
+                return Some(Head { path: path.to_owned(), namespace, local: value("name")? });
+            }
+            Event::Eof => return None,
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Composites together with all that they name.
+
+use std::collections::HashMap;
+
+use super::{Component, Composite, ImplementationKind, Include, Origin, Part, Version};
+use crate::source::{FileId, Text};
+use crate::xml::ElementId;
+
+/// What forms one fleet: the composites that were asked for, and what those name in other files.
+///
+/// [`Contribution::of`] links names among the composites it is given; [`load_named`](crate::load::load_named) also looks for
+/// those in files.
+#[derive(Debug, Default)]
+pub struct Contribution {
+    composites: Vec<Composite>,
+    asked_for: usize,
+    /// How many there were at first; the others were found by their names.
+    given: usize,
+    links: HashMap<(FileId, ElementId), Link>,
+}
+
+/// Where the name of a composite leads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Link {
+    /// To this composite of the contribution.
+    To(usize),
+    /// To a file that has no composite that could be read; that is reported.
+    Faulty,
+    /// Nowhere.
+    Missing(Missing),
+}
+
+/// What is known about a composite that was not found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Missing {
+    /// Names that are spelt alike, as they would be written in place of the wrong one.
+    pub near: Vec<String>,
+    /// Where it was looked for and what was seen there, a sentence each.
+    pub searched: Vec<String>,
+}
+
+/// A place in a composite that names another one.
+#[derive(Clone, Copy, Debug)]
+pub struct Naming<'a> {
+    /// The element that has the name.
+    pub origin: Origin,
+    /// The name, a QName.
+    pub name: &'a Text,
+}
+
+impl<'a> Naming<'a> {
+    /// What an include names; `None` when it lacks a name.
+    pub fn of_include(include: &'a Include) -> Option<Self> {
+        (!include.name.is_empty()).then_some(Self { origin: include.origin, name: &include.name })
+    }
+
+    /// What `implementation.composite` names.
+    pub fn of_component(component: &'a Component) -> Option<Self> {
+        let implementation = component.implementation.as_ref()?;
+        match &implementation.kind {
+            ImplementationKind::Composite { name } => {
+                Some(Self { origin: implementation.origin(), name: name.as_ref()? })
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Composite {
+    /// All places in it that name other composites, in no order.
+    pub fn namings(&self) -> impl Iterator<Item = Naming<'_>> {
+        let includes = self.includes.iter().filter_map(Naming::of_include);
+        includes.chain(self.components.iter().filter_map(Naming::of_component))
+    }
+
+    /// Its target namespace; empty for none.
+    pub fn namespace(&self) -> &str {
+        self.target_namespace.as_ref().map_or("", |namespace| namespace.as_str())
+    }
+
+    /// The namespaces that a QName in it may mean, the likeliest first, and its local part. `None` in place of the
+    /// namespaces when its prefix is bound to none: then any will do.
+    ///
+    /// A name without a prefix is of the default namespace. Where that is one of SCA, in which nobody's composites are, the
+    /// composite's own is meant.
+    pub fn resolve_name<'n>(&self, naming: Naming<'n>) -> (Option<Vec<String>>, &'n str) {
+        let element = naming.origin.element(&self.document);
+        match naming.name.as_str().split_once(':') {
+            Some((prefix, local)) => {
+                (element.resolve_prefix(prefix).map(|namespace| vec![namespace.into_owned()]), local)
+            }
+            None => {
+                let default = element.resolve_prefix("").unwrap_or_default().into_owned();
+                let mut all = Vec::with_capacity(2);
+                if !default.is_empty() && Version::from_namespace(&default).is_none() {
+                    all.push(default);
+                }
+                for namespace in [self.namespace(), ""] {
+                    if !all.iter().any(|known| known == namespace) {
+                        all.push(namespace.to_owned());
+                    }
+                }
+                (Some(all), naming.name.as_str())
+            }
+        }
+    }
+}
+
+impl Contribution {
+    /// These composites as one fleet. Names of composites are linked among them.
+    pub fn of(composites: Vec<Composite>) -> Self {
+        Self::with(composites, Vec::new())
+    }
+
+    /// These composites as one fleet, and others that they can name.
+    pub fn with(composites: Vec<Composite>, others: Vec<Composite>) -> Self {
+        let asked_for = composites.len();
+        let mut composites = composites;
+        composites.extend(others);
+        let mut all = Self { asked_for, given: composites.len(), composites, links: HashMap::new() };
+        for place in 0..all.composites.len() {
+            all.link_known(place);
+        }
+        all
+    }
+
+    /// Every composite: those asked for, then those that they name.
+    pub fn composites(&self) -> &[Composite] {
+        &self.composites
+    }
+
+    /// The composites that were asked for.
+    pub fn asked_for(&self) -> &[Composite] {
+        &self.composites[..self.asked_for]
+    }
+
+    /// Where the name at an element leads; `None` where nobody looked.
+    pub fn link(&self, origin: Origin) -> Option<&Link> {
+        self.links.get(&(origin.file(), origin.element))
+    }
+
+    /// Adds a composite that is named by another one, and links what it names among those that are known; its place.
+    pub(crate) fn add(&mut self, composite: Composite) -> usize {
+        self.composites.push(composite);
+        self.link_known(self.composites.len() - 1);
+        self.composites.len() - 1
+    }
+
+    pub(crate) fn set_link(&mut self, origin: Origin, link: Link) {
+        self.links.insert((origin.file(), origin.element), link);
+    }
+
+    /// The place of a composite that was there at first.
+    fn find(&self, namespaces: Option<&[String]>, local: &str) -> Option<usize> {
+        let known = &self.composites[..self.given];
+        let mut found = known.iter().enumerate().filter(|(_, one)| one.name == local);
+        match namespaces {
+            Some(namespaces) => {
+                let found: Vec<_> = found.collect();
+                let of = |namespace: &String| found.iter().find(|(_, one)| one.namespace() == namespace);
+                namespaces.iter().find_map(of).map(|(place, _)| *place)
+            }
+            None => found.next().map(|(place, _)| place),
+        }
+    }
+
+    fn link_known(&mut self, place: usize) {
+        let composite = &self.composites[place];
+        let mut links = Vec::new();
+        for naming in composite.namings() {
+            let (namespaces, local) = composite.resolve_name(naming);
+            let link = match self.find(namespaces.as_deref(), local) {
+                Some(found) => Link::To(found),
+                None => Link::Missing(self.missing(naming.name, local)),
+            };
+            links.push((naming.origin, link));
+        }
+        links.into_iter().for_each(|(origin, link)| self.set_link(origin, link));
+    }
+
+    fn missing(&self, name: &Text, local: &str) -> Missing {
+        let known = self.composites[..self.given].iter().map(|composite| composite.name.as_str());
+        let near = crate::diagnostic::nearest(local, known.filter(|known| *known != local));
+        let prefix = name.as_str().strip_suffix(local).unwrap_or_default();
+        Missing {
+            near: near.map(|near| format!("{prefix}{near}")).into_iter().collect(),
+            searched: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! Composites that include others, and components that composites implement.
+
+use expect_test::expect;
+
+use crate::support::{nested, outcome, part, shown};
+
+const ROBOT: &str = r#"<property name="period">1s</property><property name="id" mustSupply="true"/>
+<service name="drive" promote="Robot/move"/>
+<reference name="where" promote="Robot/gps" multiplicity="0..1"/>
+<component name="Robot"><implementation.java class="example.Robot001"/>
+<property name="ID" source="$id"/><property name="period" source="$period"/></component>"#;
+
+#[test]
+fn what_is_included_stands_where_it_is_included() {
+    let fleet = part(
+        "fleet",
+        "",
+        r#"<component name="A"><implementation.java class="example.Gps"/></component>
+<include name="t:more"/>
+<component name="C"><implementation.java class="example.Gps"/><reference name="other" target="B"/></component>"#,
+    );
+    let more = part(
+        "more",
+        "",
+        r#"<property name="unused">1</property><component name="B"><implementation.java class="example.Gps"/><reference name="other" target="A"/></component>
+<wire source="C/other" target="A/position" replace="true"/><property name="unused">2</property>"#,
+    );
+    expect![[r#"
+        more:2:17-23 warning S2026: the property `unused` of the composite is used by no component
+          help: a component takes its value with `source="$unused"`
+        more:3:76-82 error S2003: the composite has two properties `unused`
+          more:2:17-23 the first
+          help: give each its own name
+    "#]]
+    .assert_eq(&outcome(&[&fleet, &more], &[]));
+    let more = more
+        .replace("<property name=\"unused\">2</property>", "")
+        .replace("unused\">1", "unused\">")
+        .replace("<property name=\"unused\"></property>", "");
+    expect![[r#"
+        A (example.Gps) other->
+        B (example.Gps) other->A/position
+        C (example.Gps) other->A/position
+    "#]]
+    .assert_eq(&outcome(&[&fleet, &more], &[]));
+}
+
+#[test]
+fn autowire_of_an_included_composite_is_its_own_or_else_that_around_it() {
+    let inside = r#"<component name="N"><implementation.java class="example.Navigator"/></component>"#;
+    let robots = r#"<component name="T"><implementation.java class="example.Twins"/></component>"#;
+    for (around, own, is_wired) in [("true", "", true), ("true", "false", false), ("", "true", true)] {
+        let attribute = |value: &str| match value {
+            "" => String::new(),
+            value => format!("autowire=\"{value}\""),
+        };
+        let fleet = part("fleet", &attribute(around), &format!("<include name=\"t:more\"/>{robots}"));
+        let found = outcome(&[&fleet, &part("more", &attribute(own), inside)], &[]);
+        assert_eq!(found.contains("S2019"), is_wired, "{around} {own}: {found}");
+        assert_eq!(found.contains("S2018"), !is_wired, "{around} {own}: {found}");
+    }
+}
+
+#[test]
+fn includes_that_cannot_be_say_so() {
+    let fleet = part(
+        "fleet",
+        "",
+        "<include name=\"t:more\"/>\n<include name=\"t:mor\"/>\n<include name=\"t:more\"/>\n<include name=\"u:x\"/>\n<include name=\"t:fleet\"/>\n<component name=\"A\"><implementation.java class=\"example.Gps\"/></component>",
+    );
+    let more = part(
+        "more",
+        "local=\"true\"",
+        "<component name=\"A\"><implementation.java class=\"example.Gps\"/></component><include name=\"fleet\"/>",
+    );
+    expect![[r#"
+        2:16-22 error S2034: the composite `more` is `local`, and the one that includes it is not
+          more:1:128-132 said here
+          help: give both composites the same `local`
+        3:16-21 error S2030: there is no composite `mor` in the namespace `urn:t`
+          help: name the file of the composite beside this one
+          fix: replace `t:mor` with `t:more` [3:16-21 "t:more"]
+        4:16-22 error S2033: the composite `more` is included twice
+          help: remove one of the includes: all of its components are there already
+        5:16-19 error S2030: there is no composite `x`
+          help: the prefix `u` is bound to no namespace
+          help: name the file of the composite beside this one
+        6:16-23 error S2032: composites hold each other in a circle: `fleet` -> `fleet`
+          help: a composite cannot be a part of itself: remove one of these
+        7:18-19 error S2002: there are two components `A`
+          more:2:18-19 the first
+          help: give each its own name
+        more:2:90-95 error S2032: composites hold each other in a circle: `fleet` -> `more` -> `fleet`
+          2:16-22 through this
+          help: a composite cannot be a part of itself: remove one of these
+    "#]]
+    .assert_eq(&outcome(&[&fleet, &more], &[]));
+}
+
+#[test]
+fn a_composite_implements_components_each_with_its_own_values() {
+    let fleet = part(
+        "fleet",
+        "",
+        r#"<property name="pace">2s</property>
+<component name="one"><implementation.composite name="t:robot"/><property name="id">R1</property></component>
+<component name="two"><implementation.composite name="t:robot"/><property name="id" value="R2"/><property name="period" source="$pace"/><reference name="where" target="gps"/></component>
+<component name="gps"><implementation.java class="example.Gps"/></component>
+<component name="N"><implementation.java class="example.Navigator"/><reference name="wheels" target="one/drive"/></component>
+<component name="M"><implementation.java class="example.Navigator"/></component><wire source="M/wheels" target="two"/>"#,
+    );
+    let robot = part("robot", "", ROBOT);
+    expect![[r#"
+        one/Robot (example.Robot001) ID=Text("R1") number=Text("1") gps->
+        two/Robot (example.Robot001) ID=Text("R2") number=Text("1") gps->gps/position
+        gps (example.Gps) other->
+        N (example.Navigator) wheels->one/Robot/move task->
+        M (example.Navigator) wheels->two/Robot/move task->
+    "#]]
+    .assert_eq(&outcome(&[&fleet, &robot], &[]));
+    let (assembly, ..) = nested(&[&fleet, &robot], &["pace=5s"], false);
+    let periods: Vec<u64> = assembly
+        .unwrap()
+        .components
+        .iter()
+        .filter_map(|one| Some(one.task.as_ref()?.period.as_secs()))
+        .collect();
+    assert_eq!(periods, [1, 5]);
+}
+
+#[test]
+fn faults_of_an_inner_composite_are_told_once_and_those_of_its_users_where_they_are() {
+    let user = r#"<component name="NAME"><implementation.composite name="t:robot"/><property name="nr">7</property>
+<service name="driv"/><reference name="when" target="x"/><reference name="where" target="two/drive" multiplicity="1..n"/></component>"#;
+    let fleet =
+        part("fleet", "", &format!("{}\n{}", user.replace("NAME", "one"), user.replace("NAME", "two")));
+    let robot = part("robot", "", &ROBOT.replace("$period", "$perod").replace("Robot/move", "Robot/mov"));
+    expect![[r#"
+        2:18-21 error S2025: component `one` has to give the property `id` of its composite a value
+          robot:2:54-56 declared here, without a value
+          help: add `<property name="id">...</property>`
+        2:81-83 error S3004: composite `robot` has no property `nr`
+          help: its properties are `period` and `id`
+        3:16-20 error S2005: composite `robot` has no service `driv`
+          fix: replace `driv` with `drive` [3:16-20 "drive"]
+        3:40-44 error S2006: composite `robot` has no reference `when`
+          help: its references are `where`
+        3:115-119 error S2008: the multiplicity of `where` is `0..1` in composite `robot`: `1..n` does not narrow it
+          help: it can be `0..1` or `1..1`
+        4:18-21 error S2025: component `two` has to give the property `id` of its composite a value
+          robot:2:54-56 declared here, without a value
+          help: add `<property name="id">...</property>`
+        4:81-83 error S3004: composite `robot` has no property `nr`
+          help: its properties are `period` and `id`
+        5:16-20 error S2005: composite `robot` has no service `driv`
+          fix: replace `driv` with `drive` [5:16-20 "drive"]
+        5:40-44 error S2006: composite `robot` has no reference `when`
+          help: its references are `where`
+        5:115-119 error S2008: the multiplicity of `where` is `0..1` in composite `robot`: `1..n` does not narrow it
+          help: it can be `0..1` or `1..1`
+        robot:3:38-41 error S2021: component `Robot` has no service `mov`
+          fix: replace `mov` with `move` [robot:3:38-41 "move"]
+        robot:6:68-73 error S2024: the composite has no property `perod`
+          fix: replace `perod` with `period` [robot:6:68-73 "period"]
+    "#]]
+    .assert_eq(&outcome(&[&fleet, &robot], &[]));
+}
+
+/// Promotion through two composites; several components behind one reference; several targets of one reference.
+#[test]
+fn references_are_wired_from_outside_through_every_level() {
+    let fleet = part(
+        "fleet",
+        "",
+        r#"<component name="hall"><implementation.composite name="t:hall"/><reference name="where" target="gps"/></component>
+<component name="gps"><implementation.java class="example.Gps"/></component>
+<component name="band"><implementation.composite name="t:band"/><reference name="all" target="hall/a hall/b" multiplicity="1..n"/><reference name="gps" target="gps"/></component>"#,
+    );
+    let hall = part(
+        "hall",
+        "",
+        r#"<service name="a" promote="a/drive"/><service name="b" promote="b/drive"/>
+<reference name="where" promote="a/where b" multiplicity="1..1"/>
+<component name="a"><implementation.composite name="t:robot"/><property name="id">A</property></component>
+<component name="b"><implementation.composite name="t:robot"/><property name="id">B</property></component>"#,
+    );
+    let band = part(
+        "band",
+        "",
+        r#"<reference name="all" promote="C/wheels" multiplicity="0..n"/><reference name="gps" promote="C/gps" multiplicity="1..n"/>
+<component name="C"><implementation.java class="example.Conductor"/></component>"#,
+    );
+    let robot = part("robot", "", ROBOT);
+    let others = [hall.as_str(), &band, &robot];
+    let with = |fleet: &str| outcome(&[fleet, others[0], others[1], others[2]], &[]);
+    expect![[r#"
+        hall/a/Robot (example.Robot001) ID=Text("A") number=Text("1") gps->gps/position
+        hall/b/Robot (example.Robot001) ID=Text("B") number=Text("1") gps->gps/position
+        gps (example.Gps) other->
+        band/C (example.Conductor) wheels->hall/a/Robot/move+hall/b/Robot/move gps->gps/position
+    "#]]
+    .assert_eq(&with(&fleet));
+    // Without a target, the outermost component is to blame, and not the innermost.
+    let bare = fleet
+        .replace("<reference name=\"where\" target=\"gps\"/>", "")
+        .replace(" target=\"hall/a hall/b\"", " target=\"hall\"")
+        .replace("<reference name=\"gps\" target=\"gps\"/>", "");
+    expect![[r#"
+        4:18-22 error S2018: reference `gps` of component `band` leads to no service
+          help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
+        4:95-99 error S2014: component `hall` has several services with the interface `example.Wheels`
+          help: name one of `a` and `b`: `hall/...`
+    "#]]
+    .assert_eq(&with(&bare));
+}
+
+#[test]
+fn targets_from_outside_take_the_place_of_those_inside_unless_they_must_not() {
+    let fleet = part(
+        "fleet",
+        "",
+        r#"<component name="x"><implementation.composite name="t:inner"/><reference name="all" target="T/left"/></component>
+<component name="T"><implementation.java class="example.Twins"/></component>"#,
+    );
+    let inner = |reference: &str| {
+        part(
+            "inner",
+            "",
+            &format!(
+                r#"<reference name="all" promote="C/wheels" multiplicity="0..n"/>
+<component name="C"><implementation.java class="example.Conductor"/>{reference}<reference name="gps" target="G"/></component>
+<component name="T"><implementation.java class="example.Twins"/></component><component name="G"><implementation.java class="example.Gps"/></component>"#
+            ),
+        )
+    };
+    let wheels = |reference: &str| {
+        let found = outcome(&[&fleet, &inner(reference)], &[]);
+        let start = found.find("wheels->").unwrap_or_else(|| panic!("{found}"));
+        found[start..].split(' ').next().unwrap().to_owned()
+    };
+    assert_eq!(wheels(""), "wheels->T/left");
+    assert_eq!(wheels(r#"<reference name="wheels" target="T/right"/>"#), "wheels->T/left");
+    let fixed = r#"<reference name="wheels" target="T/right" nonOverridable="true" multiplicity="0..n"/>"#;
+    assert_eq!(wheels(fixed), "wheels->x/T/right+T/left");
+    assert_eq!(wheels(r#"<reference name="wheels" autowire="true"/>"#), "wheels->T/left");
+}
+
+#[test]
+fn autowire_finds_all_that_a_reference_takes() {
+    let fleet = part(
+        "fleet",
+        "autowire=\"true\"",
+        r#"<component name="C"><implementation.java class="example.Conductor"/></component>
+<component name="T"><implementation.java class="example.Twins"/></component>
+<component name="G"><implementation.java class="example.Gps"/></component>"#,
+    );
+    expect![[r#"
+        C (example.Conductor) wheels->T/left+T/right gps->G/position
+        T (example.Twins)
+        G (example.Gps) other->
+    "#]]
+    .assert_eq(&outcome(&[&fleet], &[]));
+}
+
+#[test]
+fn composites_that_multiply_end() {
+    let mut texts = vec![part(
+        "c0",
+        "",
+        "<component name=\"a\"><implementation.java class=\"example.Gps\"/></component>",
+    )];
+    for level in 1..30 {
+        let inner = level - 1;
+        let one = |name: &str| {
+            format!("<component name=\"{name}\"><implementation.composite name=\"t:c{inner}\"/></component>")
+        };
+        texts.insert(0, part(&format!("c{level}"), "", &(one("a") + &one("b"))));
+    }
+    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let (assembly, diagnostics, sources) = nested(&texts, &[], false);
+    assert!(assembly.is_none());
+    let codes: Vec<&str> = diagnostics.iter().map(|one| one.code.id).collect();
+    assert_eq!(codes, ["S2035"], "{}", shown(&diagnostics[0], &sources));
+}
+
+#[test]
+fn what_is_taken_as_given_has_no_fault_of_its_own() {
+    let fleet = part(
+        "fleet",
+        "",
+        r#"<component name="A"><implementation.java class="some.Class"/><property name="p" source="$x"/><reference name="r" target="B/any C"/></component>
+<component name="B"><implementation.composite name="t:else"/></component>
+<component name="C"><implementation.spring location="x"/></component>
+<component name="N"><implementation.java class="example.Navigator"/><reference name="wheels" target="A"/></component>
+<wire source="B/out" target="D"/>"#,
+    );
+    let (assembly, diagnostics, sources) = nested(&[&fleet], &[], true);
+    assert!(assembly.is_none());
+    let found: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+    expect![[r#"
+        2:90-91 error S2024: the composite has no property `x`
+          help: declare it: `<property name="...">...</property>` in the composite
+        3:53-59 warning S2031: there is no composite `else` in the namespace `urn:t`
+          help: name the file of the composite beside this one
+        6:30-31 error S2011: there is no component `D`
+          help: the components are `A`, `B`, `C` and `N`
+    "#]]
+    .assert_eq(&found);
+}

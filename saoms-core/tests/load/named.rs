@@ -1,0 +1,149 @@
+//! Finding the composites that others name.
+
+use std::fs;
+use std::path::Path;
+
+use saoms_core::diagnostic::Diagnostics;
+use saoms_core::load::{MAX_SIZE, load, load_named};
+use saoms_core::model::{Contribution, Link, Naming};
+use saoms_core::source::Sources;
+
+fn composite(namespace: &str, name: &str, inside: &str) -> String {
+    format!(
+        "<!-- {} --><composite xmlns='http://www.osoa.org/xmlns/sca/1.0' targetNamespace='{namespace}' xmlns:a='urn:a' xmlns:b='urn:b' name='{name}'>{inside}</composite>",
+        "long ".repeat(900)
+    )
+}
+
+/// Writes files into a folder and says where each include of all composites that are read for `asked_for` leads.
+fn links(files: &[(&str, String)], asked_for: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    let shown = |path: &str| {
+        path.replace(&format!("{}/", folder.path().display()), "")
+            .replace(&folder.path().display().to_string(), "FOLDER")
+    };
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let first = load(&folder.path().join(asked_for), &mut sources, &mut diagnostics).unwrap();
+    let mut all = Contribution::of(vec![first]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let mut out = String::new();
+    let path = |place: usize| shown(sources.get(all.composites()[place].file()).path());
+    for (place, composite) in all.composites().iter().enumerate() {
+        for include in &composite.includes {
+            let naming = Naming::of_include(include).unwrap();
+            out += &match all.link(naming.origin).unwrap() {
+                Link::To(to) => format!("{}: {} -> {}\n", path(place), naming.name, path(*to)),
+                Link::Faulty => format!("{}: {} is faulty\n", path(place), naming.name),
+                Link::Missing(missing) => {
+                    let searched: Vec<String> = missing.searched.iter().map(|text| shown(text)).collect();
+                    format!(
+                        "{}: {} is missing, near {:?}; {}\n",
+                        path(place),
+                        naming.name,
+                        missing.near,
+                        searched.join("; ")
+                    )
+                }
+            };
+        }
+    }
+    for one in &diagnostics {
+        out += &format!("{} {}\n", shown(sources.get(one.location.file).path()), one.code.id);
+    }
+    out
+}
+
+#[test]
+fn composites_are_found_by_namespace_and_name_near_the_one_that_names_them() {
+    let files = [
+        (
+            "fleet.composite",
+            composite(
+                "urn:a",
+                "fleet",
+                "<include name='a:hall'/><include name='b:hall'/><include name='a:far'/><include name='hall'/>",
+            ),
+        ),
+        // Another one stands where the name leads one to look first.
+        ("hall.composite", composite("urn:b", "hall", "")),
+        ("x.composite", composite("urn:a", "hall", "<include name='a:fleet'/>")),
+        ("deep/er/y.composite", composite("urn:a", "far", "<include name='b:hall'/><include name='a:own'/>")),
+        ("deep/er/own.composite", composite("urn:a", "own", "")),
+        ("own.composite", composite("urn:a", "own", "")),
+        ("deep/er/not.xml", "<".to_owned()),
+        ("bad.composite", "<composite".to_owned()),
+    ];
+    assert_eq!(
+        links(&files, "fleet.composite"),
+        "\
+fleet.composite: a:hall -> x.composite
+fleet.composite: b:hall -> hall.composite
+fleet.composite: a:far -> deep/er/y.composite
+fleet.composite: hall -> x.composite
+x.composite: a:fleet -> fleet.composite
+deep/er/y.composite: b:hall -> hall.composite
+deep/er/y.composite: a:own -> deep/er/own.composite
+"
+    );
+}
+
+#[test]
+fn a_description_above_makes_its_folder_the_contribution() {
+    for description in ["META-INF/sca-contribution.xml", "sca-contribution.xml"] {
+        let files = [
+            (description, "<contribution xmlns='http://www.osoa.org/xmlns/sca/1.0'/>".to_owned()),
+            ("a/b/fleet.composite", composite("urn:a", "fleet", "<include name='b:hall'/>")),
+            ("c/hall.composite", composite("urn:b", "hall", "<include name='a:fleet'/>")),
+        ];
+        let expected = "a/b/fleet.composite: b:hall -> c/hall.composite\nc/hall.composite: a:fleet -> a/b/fleet.composite\n";
+        assert_eq!(links(&files, "a/b/fleet.composite"), expected);
+    }
+}
+
+#[test]
+fn what_is_not_found_says_where_and_what_is_near() {
+    let files = [
+        (
+            "fleet.composite",
+            composite(
+                "urn:a",
+                "fleet",
+                "<include name='a:hal'/><include name='b:hall'/><include name='c:hall'/><include name='a:torn'/>",
+            ),
+        ),
+        ("hall.composite", composite("urn:a", "hall", "")),
+        ("torn.composite", composite("urn:a", "torn", "").replace("</composite>", "")),
+        (".hidden/hall.composite", composite("urn:b", "hall", "")),
+        ("target/hall.composite", composite("urn:b", "hall", "")),
+    ];
+    assert_eq!(
+        links(&files, "fleet.composite"),
+        "\
+fleet.composite: a:hal is missing, near [\"a:hall\"]; looked in the files `*.composite` in `FOLDER` and below
+fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` has a composite `hall` of the namespace `urn:a`
+fleet.composite: c:hall -> hall.composite
+fleet.composite: a:torn is faulty
+torn.composite S0103
+"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn circles_of_links_and_large_folders_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fleet.composite");
+    fs::write(&path, composite("urn:a", "fleet", "<include name='a:hall'/>")).unwrap();
+    std::os::unix::fs::symlink(folder.path(), folder.path().join("around")).unwrap();
+    std::os::unix::fs::symlink(Path::new("/"), folder.path().join("root")).unwrap();
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let first = load(&path, &mut sources, &mut diagnostics).unwrap();
+    let mut all = Contribution::of(vec![first]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    assert_eq!(all.composites().len(), 1);
+}
