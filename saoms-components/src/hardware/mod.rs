@@ -1,7 +1,7 @@
 //! What a robot asks of its hardware: to move, to collect, to deposit.
 //!
 //! A robot whose reference `world` is wired drives what is behind it: the simulated hardware of a [`World`](crate::world::World), or a component
-//! that drives a real one. The calls never wait: `begin` starts an action, `poll` asks how it goes, `cancel` stops it.
+//! that drives a real one. The calls never wait: `begin` starts an action, `poll` asks how it goes, `cancel` stops it. `retire` ends the work of a robot that is broken.
 
 mod action;
 mod area;
@@ -36,4 +36,7 @@ pub trait Hardware {
 
     /// Stops the robot's action where it is; nothing happens when there is none.
     fn cancel(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure>;
+
+    /// Says that the robot is out of order: it stays where it is, and robots beside it collect and deposit on its block in its place.
+    fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure>;
 }

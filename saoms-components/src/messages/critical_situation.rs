@@ -28,6 +28,8 @@ pub enum CriticalStage {
     Release,
     /// The healer helps.
     Taken,
+    /// The healer was awaked in place of the robot.
+    StandsIn,
 }
 
 /// A robot that cannot go on asks for a healer, or a healer responds.

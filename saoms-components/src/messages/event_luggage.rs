@@ -18,6 +18,8 @@ pub enum LuggageStage {
     Taken,
     /// The robot brought it to its destination.
     Delivered,
+    /// The robot can never bring it.
+    Refused,
 }
 
 /// Luggage to bring from one block to another, or a robot's response.

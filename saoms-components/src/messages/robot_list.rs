@@ -16,6 +16,8 @@ pub struct RobotList {
     pub battery: f64,
     /// Whether it is at its charger and in charge.
     pub in_charge: bool,
+    /// Whether it takes no jobs until somebody awakes it.
+    pub asleep: bool,
     /// Where its charger is: a block that others keep off.
     pub charger: Block,
     /// How often it acts: the time from one execution to the next, in microseconds.

@@ -111,6 +111,7 @@ impl RobotKnowledge {
             active,
             battery: self.battery.percent(),
             in_charge: self.variables.in_charge,
+            asleep: self.variables.asleep,
             charger: self.charge_block,
             period: self.period,
         }
@@ -148,4 +149,10 @@ pub struct Variables {
     pub reaching_charge: bool,
     /// It is at its charger, in charge.
     pub in_charge: bool,
+    /// It helps another robot, or would.
+    pub healer: bool,
+    /// It takes no jobs until somebody awakes it.
+    pub asleep: bool,
+    /// It is broken, and shuts down.
+    pub critical: bool,
 }

@@ -67,7 +67,9 @@ impl Component for Robot {
         let charge_block = properties.charge_block(number)?;
         let battery = Battery::new(properties.battery, properties.discharge);
         let name = properties.id.trim().to_owned();
-        let knowledge = RobotKnowledge::new(name, number, charge_block, battery);
+        let mut knowledge = RobotKnowledge::new(name, number, charge_block, battery);
+        knowledge.variables.asleep = properties.asleep;
+        knowledge.variables.in_charge = properties.asleep;
         Ok(Robot { knowledge, policy: properties.policy, loops: Loops::default() })
     }
 

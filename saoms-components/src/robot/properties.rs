@@ -32,6 +32,9 @@ pub struct RobotProperties {
     /// What an execution takes from the battery; in charge it gains five times as much.
     #[property(default = 2.0, range = 0.0..=100.0, unit = "% per execution")]
     pub(crate) discharge: f64,
+    /// Whether the robot starts asleep, in charge, and takes no jobs until somebody awakes it.
+    #[property(default = false)]
+    pub(crate) asleep: bool,
     /// By which rules the robot acts: `safe`, which neither collides nor runs out of battery, or `classic`, the manual's.
     #[property(default = "safe")]
     pub(crate) policy: Policy,

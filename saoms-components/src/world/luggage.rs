@@ -57,11 +57,22 @@ impl Stock {
         self.delivered == self.pieces.len()
     }
 
-    pub(super) fn collect(&mut self, luggage: u32, robot: u32, block: Block) -> Result<Luggage, String> {
+    /// A robot collects a piece from a block. It may also be on another robot, if that lies on the block like luggage.
+    pub(super) fn collect(
+        &mut self,
+        luggage: u32,
+        robot: u32,
+        block: Block,
+        lies_here: impl Fn(u32) -> bool,
+    ) -> Result<Luggage, String> {
         let Some(piece) = self.pieces.get_mut(&luggage) else { return self.unknown(luggage) };
         self.awaited.retain(|(awaited, _)| *awaited != luggage);
         match piece.place {
             Place::At(place) if place == block => {
+                piece.place = Place::On(robot);
+                Ok(Luggage::Handled)
+            }
+            Place::On(other) if lies_here(other) => {
                 piece.place = Place::On(robot);
                 Ok(Luggage::Handled)
             }

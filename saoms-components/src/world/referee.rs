@@ -30,6 +30,8 @@ struct Body {
     moving: Option<(Block, Time)>,
     /// What it does with luggage, and when it will be done.
     handling: Option<(Action, Time)>,
+    /// Whether it is out of order.
+    retired: bool,
 }
 
 /// A robot entered a block where another one was.
@@ -61,6 +63,9 @@ impl Referee {
                 )));
             }
             self.cancel(robot)?;
+            if let Some(body) = self.bodies.get_mut(&robot) {
+                body.retired = false;
+            }
             return self.block(robot);
         }
         let (x, y) = (self.map.width() - 1, self.map.height() - 1);
@@ -80,7 +85,7 @@ impl Referee {
             )));
         }
         self.hold(block);
-        self.bodies.insert(robot, Body { name, block, moving: None, handling: None });
+        self.bodies.insert(robot, Body { name, block, moving: None, handling: None, retired: false });
         Ok(block)
     }
 
@@ -173,6 +178,23 @@ impl Referee {
             self.leave(robot, to);
         }
         Ok(())
+    }
+
+    /// Stops a robot for good, until it starts again.
+    pub(super) fn retire(&mut self, robot: u32) -> Result<(), Failure> {
+        self.cancel(robot)?;
+        let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
+        body.retired = true;
+        Ok(())
+    }
+
+    pub(super) fn is_retired(&self, robot: u32) -> bool {
+        self.bodies.get(&robot).is_some_and(|body| body.retired)
+    }
+
+    /// Whether a robot that is out of order stands on the block.
+    pub(super) fn is_retired_at(&self, block: Block) -> bool {
+        self.bodies.values().any(|body| body.retired && body.block == block)
     }
 
     fn collide(&mut self, robot: u32, from: Block, to: Block) -> Option<Collision> {

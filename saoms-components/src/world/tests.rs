@@ -119,28 +119,53 @@ fn luggage_is_delivered_once_and_only_by_who_carries_it() {
     stock.add(7, from, to);
     stock.add(7, to, from);
     assert!(!stock.is_delivered());
-    assert_eq!(stock.collect(7, 1, to), Err("luggage 7 is not here but at (1,0)".into()));
-    assert_eq!(stock.collect(7, 1, from), Ok(Luggage::Handled));
-    assert_eq!(stock.collect(7, 2, from), Err("luggage 7 is on robot 1".into()));
+    assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is not here but at (1,0)".into()));
+    assert_eq!(stock.collect(7, 1, from, |_| false), Ok(Luggage::Handled));
+    assert_eq!(stock.collect(7, 2, from, |_| false), Err("luggage 7 is on robot 1".into()));
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
     assert_eq!(stock.deposit(7, 1, block(0, 0)), Ok(Luggage::Handled), "it lies on the way");
-    assert_eq!(stock.collect(7, 2, block(0, 0)), Ok(Luggage::Handled));
+    assert_eq!(stock.collect(7, 2, block(0, 0), |_| false), Ok(Luggage::Handled));
     assert_eq!(stock.deposit(7, 2, to), Ok(Luggage::Delivered));
     assert!(stock.is_delivered());
-    assert_eq!(stock.collect(7, 1, to), Err("luggage 7 is delivered already".into()));
+    assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is delivered already".into()));
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
+}
+
+#[test]
+fn luggage_on_a_robot_that_is_out_of_order_is_collected_where_that_stands() {
+    let (mut stock, here) = (Stock::default(), block(1, 0));
+    stock.add(7, here, block(2, 0));
+    stock.collect(7, 1, here, |_| false).unwrap();
+    assert_eq!(stock.collect(7, 2, here, |other| other == 3), Err("luggage 7 is on robot 1".into()));
+    assert_eq!(stock.collect(7, 2, here, |other| other == 1), Ok(Luggage::Handled));
+    assert_eq!(stock.deposit(7, 1, block(2, 0)), Err("it does not carry luggage 7".into()));
+    assert_eq!(stock.deposit(7, 2, block(2, 0)), Ok(Luggage::Delivered));
+}
+
+#[test]
+fn a_robot_that_is_out_of_order_stays_until_it_starts_again() {
+    let mut referee = referee(&[block(0, 0)]);
+    let later = Time::START + Duration::from_secs(1);
+    referee.begin_move(1, block(1, 0), later).unwrap().unwrap();
+    referee.retire(1).unwrap();
+    referee.settle(later);
+    assert!(
+        referee.is_retired(1) && referee.is_retired_at(block(0, 0)) && !referee.is_retired_at(block(1, 0))
+    );
+    assert_eq!(referee.enter(1, name(1), block(0, 0)), Ok(block(0, 0)));
+    assert!(!referee.is_retired(1));
 }
 
 #[test]
 fn luggage_that_the_world_has_yet_to_hear_of_is_waited_for() {
     let mut stock = Stock::default();
-    assert_eq!(stock.collect(7, 1, block(1, 0)), Ok(Luggage::Unknown));
+    assert_eq!(stock.collect(7, 1, block(1, 0), |_| false), Ok(Luggage::Unknown));
     stock.add(7, block(1, 0), block(2, 0));
     stock.settle();
-    assert_eq!(stock.collect(7, 1, block(1, 0)), Ok(Luggage::Handled));
-    assert_eq!(stock.collect(8, 1, block(1, 0)), Ok(Luggage::Unknown));
+    assert_eq!(stock.collect(7, 1, block(1, 0), |_| false), Ok(Luggage::Handled));
+    assert_eq!(stock.collect(8, 1, block(1, 0), |_| false), Ok(Luggage::Unknown));
     stock.settle();
-    assert_eq!(stock.collect(8, 1, block(1, 0)), Err("there is no luggage 8".into()));
+    assert_eq!(stock.collect(8, 1, block(1, 0), |_| false), Err("there is no luggage 8".into()));
 }
 
 #[test]

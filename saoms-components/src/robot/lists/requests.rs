@@ -45,7 +45,8 @@ impl Request {
                 self.rivals.push(Rival { robot: event.robot, block: event.block });
             }
             LuggageStage::Release => self.rivals.retain(|rival| rival.robot != event.robot),
-            LuggageStage::Request | LuggageStage::Taken | LuggageStage::Delivered => {}
+            LuggageStage::Request | LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::Refused => {
+            }
         }
     }
 }
