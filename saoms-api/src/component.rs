@@ -1,4 +1,4 @@
-use crate::{CallError, Context, Failure, Invocation, Properties};
+use crate::{CallError, Context, Failure, Invocation, LoopRegistration, Properties};
 
 /// What an author writes: a component of a fleet.
 ///
@@ -104,12 +104,17 @@ pub trait Component: Send + Sized + 'static {
 /// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
 /// | `service("move": Robot)` | a service with this [interface](crate::Interface), which the component implements |
 /// | `reference("gps": Gps)`, `reference("gps": Gps, optional)`, `reference("gps": Gps, many)` | a service of another component that this one calls |
+/// | `knowledge = RobotKnowledge` | the [knowledge](crate::KnowledgeClass) that its loops work on |
+/// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite says otherwise, in their order |
+/// | `loops(property = "policy", safe(A, B), classic(A, C))` | the same, one list for each value of a property |
 /// | `also("robot.Robot001", number = 1)` | a further name, with properties preset to literals |
 ///
 /// Linked classes register themselves: [`Registration::linked`](crate::Registration::linked) lists them.
 pub trait Class: Component {
     /// Name, properties, topics, services and references as one JSON text; its shape is described in [`crate::declaration`].
     const DECLARATION: &'static str;
+    /// The loops that the declaration names.
+    const LOOPS: &'static [LoopRegistration] = &[];
 
     /// Serves a call to one of the declared services.
     ///

@@ -236,6 +236,10 @@ impl<'a> Context<'a> {
         self.host.journal(phase, record);
     }
 
+    pub(crate) fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
+        self.host.changed(entry, before, after);
+    }
+
     pub(crate) fn enter_loop(&mut self, place: u32) {
         self.host.enter_loop(Some(place));
     }

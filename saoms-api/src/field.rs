@@ -1,8 +1,11 @@
+use crate::Value;
 use crate::cdr::{DecodeError, Reader, Writer};
 use crate::declaration::Text;
 
-/// What a message, a service argument or a reply can hold: `bool`, `i8` to `i64`, `u8` to `u64`, `f32`, `f64`, `String`, `Vec`s,
-/// other messages, and enumerations (`#[derive(Field)]` on an enum without data).
+/// What a message, a service argument, a reply or an entry of a knowledge can hold: `bool`, `i8` to `i64`, `u8` to `u64`, `f32`, `f64`,
+/// `String`, `Vec`s, `Option`s, other messages, and enumerations (`#[derive(Field)]` on an enum without data).
+///
+/// `#[field(pair)]` on a struct of two `i32` makes it a single value ([`Value::Pair`]), as which it stands in a knowledge and in the journal.
 ///
 /// Authors derive it; generated code and hosts call it.
 pub trait Field: Sized + 'static {
@@ -11,6 +14,8 @@ pub trait Field: Sized + 'static {
     /// The least number of bytes that a value takes, at least 1. A sequence that claims more elements than the bytes left can hold is
     /// refused before anything is allocated.
     const LEAST_SIZE: usize;
+    /// The name of the [`Value`] that stands for one, as declarations of entries say it; empty for a type without.
+    const VALUE: &'static str = "";
 
     /// Appends the value.
     fn write(&self, writer: &mut Writer);
@@ -20,6 +25,18 @@ pub trait Field: Sized + 'static {
     /// # Errors
     /// The bytes hold no such value.
     fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError>;
+
+    /// As a single value; `None` where it is none.
+    #[inline]
+    fn as_value(&self) -> Option<Value> {
+        None
+    }
+
+    /// Of a single value; `None` where it does not stand for one of this type.
+    fn of_value(value: Value) -> Option<Self> {
+        let _ = value;
+        None
+    }
 
     /// Appends the elements of a sequence, after its length.
     fn write_all(values: &[Self], writer: &mut Writer) {
@@ -42,10 +59,25 @@ pub trait Field: Sized + 'static {
 }
 
 macro_rules! numbers {
-    ($($type:ty => $name:literal),* $(,)?) => {
+    ($($type:ty => $name:literal, $value:literal, $as_value:expr, $of_value:pat => $found:expr);* $(;)?) => {
         $(impl Field for $type {
             const TYPE: Text = Text::Plain(concat!("\"", $name, "\""));
             const LEAST_SIZE: usize = size_of::<$type>();
+            const VALUE: &'static str = $value;
+
+            #[inline]
+            fn as_value(&self) -> Option<Value> {
+                let as_value: fn($type) -> Option<Value> = $as_value;
+                as_value(*self)
+            }
+
+            #[inline]
+            fn of_value(value: Value) -> Option<Self> {
+                match value {
+                    $of_value => $found,
+                    _ => None,
+                }
+            }
 
             #[inline]
             fn write(&self, writer: &mut Writer) {
@@ -68,15 +100,39 @@ macro_rules! numbers {
     };
 }
 
-numbers! {
+macro_rules! integers {
+    ($($type:ty => $name:literal),* $(,)?) => {
+        numbers! { $(
+            // One that is too large for a single value is none.
+            $type => $name, "integer", |number| i64::try_from(number).ok().map(Value::Integer),
+                Value::Integer(number) => number.try_into().ok();
+        )* }
+    };
+}
+
+integers! {
     i8 => "int8", i16 => "int16", i32 => "int32", i64 => "int64",
     u8 => "uint8", u16 => "uint16", u32 => "uint32", u64 => "uint64",
-    f32 => "float32", f64 => "float64",
+}
+
+numbers! {
+    f32 => "float32", "number", |number| Some(Value::Number(number.into())), Value::Number(number) => Some(number as f32);
+    f64 => "float64", "number", |number| Some(Value::Number(number)), Value::Number(number) => Some(number);
 }
 
 impl Field for bool {
     const TYPE: Text = Text::Plain("\"bool\"");
     const LEAST_SIZE: usize = 1;
+    const VALUE: &'static str = "bool";
+
+    #[inline]
+    fn as_value(&self) -> Option<Value> {
+        Some(Value::Bool(*self))
+    }
+
+    fn of_value(value: Value) -> Option<Self> {
+        if let Value::Bool(value) = value { Some(value) } else { None }
+    }
 
     #[inline]
     fn write(&self, writer: &mut Writer) {
@@ -119,6 +175,43 @@ impl<T: Field> Field for Vec<T> {
     fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
         let count = reader.length(T::LEAST_SIZE)?;
         T::read_all(count, reader)
+    }
+}
+
+/// Encoded as a sequence of at most one element, which is how ROS 2 interfaces say it: `T[<=1]`.
+impl<T: Field> Field for Option<T> {
+    const TYPE: Text = Text::Joined(&[Text::Plain("{\"optional\":"), T::TYPE, Text::Plain("}")]);
+    const LEAST_SIZE: usize = 4;
+    const VALUE: &'static str = T::VALUE;
+
+    #[inline]
+    fn as_value(&self) -> Option<Value> {
+        self.as_ref().map_or(Some(Value::Nothing), T::as_value)
+    }
+
+    fn of_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Nothing => Some(None),
+            value => T::of_value(value).map(Some),
+        }
+    }
+
+    fn write(&self, writer: &mut Writer) {
+        writer.length(usize::from(self.is_some()));
+        if let Some(value) = self {
+            value.write(writer);
+        }
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let at = reader.offset();
+        match reader.length(T::LEAST_SIZE)? {
+            0 => Ok(None),
+            1 => T::read(reader).map(Some),
+            more => {
+                Err(DecodeError::new(format!("found {more} values, expected at most one of an option"), at))
+            }
+        }
     }
 }
 

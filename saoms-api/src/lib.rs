@@ -83,7 +83,11 @@ mod task;
 mod time;
 mod topic;
 
-pub use adaptation::{Cause, DynLoop, Knowledge, Loop, Loops, Phase, Record, Recordable, Subject, Value};
+pub use adaptation::{
+    Cause, DynEntries, DynLoop, Effector, Entries, Entry, EntryDeclaration, Extras, Knowledge,
+    KnowledgeClass, Loop, LoopClass, LoopRegistration, Loops, Phase, Record, Recordable, Snapshot, Subject,
+    Value,
+};
 pub use chance::Chance;
 pub use component::{Class, Component, DynComponent};
 pub use context::{Context, Host, Level, TARGET_SHIFT};
@@ -101,14 +105,17 @@ pub use task::{TaskInterface, TaskInterfaceReference};
 pub use time::{Time, format_duration, parse_duration};
 pub use topic::{Publisher, Subscription, Topic, TopicDeclaration, TopicKind};
 
-pub use saoms_derive::{Class, Field, Message, Properties, PropertyField, interface};
+pub use saoms_derive::{
+    Class, Entries, Field, Knowledge, LoopClass, Message, Properties, PropertyField, interface,
+};
 
 /// For the code that the macros generate.
 #[doc(hidden)]
 pub mod generated {
+    pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::message::Key;
     pub use crate::property::{
-        PropertyShape, bounds_fit, chosen, complex, contains, default_fits, only_known, property,
+        PropertyShape, bounds_fit, chosen, complex, contains, default_fits, equal, only_known, property,
     };
     pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};

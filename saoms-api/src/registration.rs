@@ -1,4 +1,4 @@
-use crate::{Class, DynComponent, Failure, Properties, PropertyValue};
+use crate::{Class, DynComponent, Failure, LoopRegistration, Properties, PropertyValue};
 
 /// Makes a component from the values of its properties.
 type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
@@ -9,6 +9,7 @@ type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>,
 pub struct Registration {
     declaration: &'static str,
     construct: Construct,
+    loops: &'static [LoopRegistration],
 }
 
 impl Registration {
@@ -17,6 +18,7 @@ impl Registration {
         Registration {
             declaration: C::DECLARATION,
             construct: |values| Ok(Box::new(C::new(C::Properties::from_values(values)?)?)),
+            loops: C::LOOPS,
         }
     }
 
@@ -31,6 +33,11 @@ impl Registration {
     /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit together.
     pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         (self.construct)(values)
+    }
+
+    /// The loops that the declaration names.
+    pub const fn loops(&self) -> &'static [LoopRegistration] {
+        self.loops
     }
 
     /// The classes that are linked into this program, in no particular order.

@@ -3,7 +3,6 @@ use quote::{quote, quote_spanned};
 use syn::ext::IdentExt;
 use syn::meta::ParseNestedMeta;
 use syn::parse::ParseStream;
-use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
 use syn::{DeriveInput, Error, Expr, Ident, LitStr, Path, Result, Token, parenthesized};
 
@@ -11,6 +10,8 @@ use crate::docs::docs;
 use crate::field::no_generics;
 use crate::json::{self, Json};
 use crate::literal::Literal;
+use crate::loops::DefaultLoops;
+use crate::parts::{self, Reference, end, paths};
 
 /// Everything that `#[class(...)]` says.
 #[derive(Default)]
@@ -20,7 +21,9 @@ struct Declared {
     publishes: Vec<Path>,
     subscribes: Vec<Path>,
     services: Vec<(LitStr, Path)>,
-    references: Vec<(LitStr, Path, Multiplicity)>,
+    references: Vec<Reference>,
+    knowledge: Option<Path>,
+    loops: Option<DefaultLoops>,
     also: Vec<Also>,
 }
 
@@ -51,6 +54,14 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
             const _: () = ::core::assert!(::saoms_api::generated::contains(<#properties>::NAMES, #name), #message);
         }
     });
+    let loops = match (&declared.loops, &declared.knowledge) {
+        (None, _) => TokenStream::new(),
+        (Some(loops), Some(knowledge)) => loops.registrations(&properties, knowledge),
+        (Some(_), None) => {
+            let message = "a class with loops says what they work on: `knowledge = RobotKnowledge`";
+            return Err(Error::new_spanned(&declared.name, message));
+        }
+    };
     Ok(quote! {
         const _: () = {
             const DECLARATION: &str = #declaration;
@@ -58,6 +69,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
             #[automatically_derived]
             impl ::saoms_api::Class for #ident {
                 const DECLARATION: &'static str = DECLARATION;
+                #loops
 
                 fn serve(
                     &mut self,
@@ -133,24 +145,17 @@ impl Declared {
             "service" => {
                 let list;
                 parenthesized!(list in meta.input);
-                let (name, interface) = named(&list)?;
+                let (name, interface) = parts::named(&list)?;
                 end(&list)?;
                 if self.services.iter().any(|(other, _)| other.value() == name.value()) {
                     return Err(Error::new(name.span(), "another service has this name, too"));
                 }
                 self.services.push((name, interface));
             }
-            "reference" => {
-                let list;
-                parenthesized!(list in meta.input);
-                let (name, interface) = named(&list)?;
-                let multiplicity = Multiplicity::of(&list)?;
-                end(&list)?;
-                if self.references.iter().any(|(other, ..)| other.value() == name.value()) {
-                    return Err(Error::new(name.span(), "another reference has this name, too"));
-                }
-                self.references.push((name, interface, multiplicity));
-            }
+            "reference" => self.references.push(parts::parse_reference(meta.input, &self.references)?),
+            "knowledge" if self.knowledge.is_none() => self.knowledge = Some(meta.value()?.parse()?),
+            "loops" if self.loops.is_none() => self.loops = Some(DefaultLoops::of(meta.input)?),
+            "knowledge" | "loops" => return Err(meta.error("this is said already")),
             "also" => {
                 let list;
                 parenthesized!(list in meta.input);
@@ -158,7 +163,7 @@ impl Declared {
             }
             _ => {
                 return Err(meta.error(
-                    "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, `reference`, `also`",
+                    "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, `reference`, `knowledge`, `loops`, `also`",
                 ));
             }
         }
@@ -177,23 +182,27 @@ impl Declared {
         text.member("kind", if matches!(self.periodic, Some((true, _))) { "periodic" } else { "passive" });
         text.plain(",\"also\":");
         text.list(&self.also, |text, also| also.declare(text));
-        text.plain(",\"properties\":");
-        text.json(quote!(<#properties>::DECLARATION));
+        parts::properties(&mut text, properties);
         for (member, topics) in [("publishes", &self.publishes), ("subscribes", &self.subscribes)] {
             text.plain(&format!(",\"{member}\":"));
-            text.list(topics, topic);
+            text.list(topics, parts::topic);
         }
         text.plain(",\"services\":");
         text.list(&self.services, |text, (name, of)| {
-            interface(text, name, of);
+            parts::interface(text, name, of);
             text.plain("}");
         });
         text.plain(",\"references\":");
-        text.list(&self.references, |text, (name, of, multiplicity)| {
-            interface(text, name, of);
-            text.plain(&format!(",\"optional\":{}", multiplicity.optional));
-            text.plain(if multiplicity.many { ",\"many\":true}" } else { "}" });
-        });
+        text.list(&self.references, parts::reference);
+        if let Some(knowledge) = &self.knowledge {
+            text.plain(",\"knowledge\":");
+            text.json(
+                quote_spanned!(knowledge.span()=> <#knowledge as ::saoms_api::KnowledgeClass>::DECLARATION),
+            );
+        }
+        if let Some(loops) = &self.loops {
+            loops.declare(&mut text);
+        }
         text.plain("}");
         Ok(text)
     }
@@ -229,65 +238,4 @@ impl Also {
         }
         text.plain("}}");
     }
-}
-
-fn topic(text: &mut Json, topic: &Path) {
-    text.plain("{\"topic\":");
-    text.quoted(quote_spanned!(topic.span()=> #topic.name()));
-    text.plain(",\"kind\":");
-    text.quoted(quote!(#topic.kind().name()));
-    text.plain(",\"message\":");
-    text.quoted(quote!(#topic.declaration().message));
-    text.plain(",\"schema\":");
-    text.json(quote!(#topic.schema()));
-    text.plain("}");
-}
-
-fn interface(text: &mut Json, name: &LitStr, interface: &Path) {
-    text.plain("{\"name\":");
-    text.string(&name.value());
-    text.plain(",\"interface\":");
-    text.json(quote_spanned!(interface.span()=> <dyn #interface as ::saoms_api::Interface>::DECLARATION));
-}
-
-fn paths(input: ParseStream<'_>) -> Result<Vec<Path>> {
-    let list;
-    parenthesized!(list in input);
-    Ok(Punctuated::<Path, Token![,]>::parse_terminated(&list)?.into_iter().collect())
-}
-
-/// `"name": Interface`.
-fn named(list: ParseStream<'_>) -> Result<(LitStr, Path)> {
-    let name = list.parse()?;
-    list.parse::<Token![:]>()?;
-    Ok((name, list.parse()?))
-}
-
-/// How many targets a reference takes: one unless its words say otherwise.
-#[derive(Clone, Copy, Default)]
-struct Multiplicity {
-    optional: bool,
-    many: bool,
-}
-
-impl Multiplicity {
-    /// `, optional` and `, many`.
-    fn of(list: ParseStream<'_>) -> Result<Multiplicity> {
-        let mut multiplicity = Multiplicity::default();
-        while list.peek(Token![,]) && list.peek2(Ident) {
-            list.parse::<Token![,]>()?;
-            let word: Ident = list.parse()?;
-            match word.to_string().as_str() {
-                "optional" if !multiplicity.optional => multiplicity.optional = true,
-                "many" if !multiplicity.many => multiplicity.many = true,
-                _ => return Err(Error::new(word.span(), "expected `optional` or `many`, each once")),
-            }
-        }
-        Ok(multiplicity)
-    }
-}
-
-fn end(list: ParseStream<'_>) -> Result<()> {
-    list.parse::<Option<Token![,]>>()?;
-    if list.is_empty() { Ok(()) } else { Err(list.error("expected the end")) }
 }

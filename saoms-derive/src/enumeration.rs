@@ -28,12 +28,28 @@ pub(crate) fn field(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream>
     let text = text.into_text();
     let literals =
         numbers.iter().map(|number| LitInt::new(&number.to_string(), ident.span())).collect::<Vec<_>>();
+    let words: Vec<_> = variants.iter().map(|variant| screaming_snake(variant)).collect();
     let expected = format!("a constant of {ident}");
     Ok(quote! {
         #[automatically_derived]
         impl ::saoms_api::Field for #ident {
             const TYPE: ::saoms_api::declaration::Text = #text;
             const LEAST_SIZE: usize = <#representation as ::saoms_api::Field>::LEAST_SIZE;
+            const VALUE: &'static str = "word";
+
+            fn as_value(&self) -> ::core::option::Option<::saoms_api::Value> {
+                ::core::option::Option::Some(::saoms_api::Value::Word(match self {
+                    #(#ident::#variants => #words,)*
+                }))
+            }
+
+            fn of_value(value: ::saoms_api::Value) -> ::core::option::Option<Self> {
+                let ::saoms_api::Value::Word(word) = value else { return ::core::option::Option::None };
+                match word {
+                    #(#words => ::core::option::Option::Some(#ident::#variants),)*
+                    _ => ::core::option::Option::None,
+                }
+            }
 
             fn write(&self, writer: &mut ::saoms_api::cdr::Writer) {
                 let number: #representation = match self {

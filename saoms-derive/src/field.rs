@@ -33,7 +33,7 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
         }
     });
     let ident = &input.ident;
-    let field = structure(ident, &name, &key_name, &fields);
+    let field = structure(ident, &name, &key_name, &fields, &TokenStream::new());
     let schema = json::flat(&quote!(<#ident as ::saoms_api::Field>::TYPE));
     Ok(quote! {
         #field
@@ -55,16 +55,20 @@ pub(crate) fn field(input: &DeriveInput) -> Result<TokenStream> {
     }
     let fields = struct_fields(input, "a field")?;
     let mut name = input.ident.unraw().to_string();
+    let mut value = TokenStream::new();
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("field")) {
         attribute.parse_nested_meta(|meta| {
-            if !meta.path.is_ident("name") {
-                return Err(meta.error("expected `name = \"...\"`"));
+            if meta.path.is_ident("pair") {
+                value = pair(&fields).map_err(|message| meta.error(message))?;
+            } else if meta.path.is_ident("name") {
+                name = meta.value()?.parse::<LitStr>()?.value();
+            } else {
+                return Err(meta.error("expected `name = \"...\"` or `pair`"));
             }
-            name = meta.value()?.parse::<LitStr>()?.value();
             Ok(())
         })?;
     }
-    Ok(structure(&input.ident, &name, "", &fields))
+    Ok(structure(&input.ident, &name, "", &fields, &value))
 }
 
 fn key_field<'a>(key: &LitStr, fields: &[(&'a Ident, &Type)]) -> Result<&'a Ident> {
@@ -107,7 +111,36 @@ pub(crate) fn no_generics(generics: &Generics, what: &str) -> Result<()> {
     ))
 }
 
-fn structure(ident: &Ident, name: &str, key: &str, fields: &[(&Ident, &Type)]) -> TokenStream {
+/// What makes a single value of two numbers.
+fn pair(fields: &[(&Ident, &Type)]) -> std::result::Result<TokenStream, &'static str> {
+    let is_number = |of: &Type| matches!(of, Type::Path(path) if path.path.is_ident("i32"));
+    match fields {
+        [(x, one), (y, other)] if is_number(one) && is_number(other) => Ok(quote! {
+            const VALUE: &'static str = "pair";
+
+            #[inline]
+            fn as_value(&self) -> ::core::option::Option<::saoms_api::Value> {
+                ::core::option::Option::Some(::saoms_api::Value::Pair(self.#x, self.#y))
+            }
+
+            fn of_value(value: ::saoms_api::Value) -> ::core::option::Option<Self> {
+                match value {
+                    ::saoms_api::Value::Pair(#x, #y) => ::core::option::Option::Some(Self { #x, #y }),
+                    _ => ::core::option::Option::None,
+                }
+            }
+        }),
+        _ => Err("a pair has two fields of type `i32`"),
+    }
+}
+
+fn structure(
+    ident: &Ident,
+    name: &str,
+    key: &str,
+    fields: &[(&Ident, &Type)],
+    value: &TokenStream,
+) -> TokenStream {
     let mut text = Json::default();
     text.plain("{\"name\":");
     text.string(name);
@@ -144,6 +177,7 @@ fn structure(ident: &Ident, name: &str, key: &str, fields: &[(&Ident, &Type)]) -
         impl ::saoms_api::Field for #ident {
             const TYPE: ::saoms_api::declaration::Text = #text;
             const LEAST_SIZE: usize = #least;
+            #value
 
             fn write(&self, writer: &mut ::saoms_api::cdr::Writer) {
                 #write

@@ -3,11 +3,15 @@
 mod case;
 mod class;
 mod docs;
+mod entries;
 mod enumeration;
 mod field;
 mod interface;
 mod json;
 mod literal;
+mod looping;
+mod loops;
+mod parts;
 mod properties;
 mod range;
 
@@ -46,6 +50,24 @@ pub fn property_field(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(Class, attributes(class))]
 pub fn class(input: TokenStream) -> TokenStream {
     finish(class::class(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::Entries`.
+#[proc_macro_derive(Entries, attributes(entry))]
+pub fn entries(input: TokenStream) -> TokenStream {
+    finish(entries::entries(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::Knowledge`.
+#[proc_macro_derive(Knowledge, attributes(knowledge, entry, extras))]
+pub fn knowledge(input: TokenStream) -> TokenStream {
+    finish(entries::knowledge(&parse_macro_input!(input as DeriveInput)))
+}
+
+/// See `saoms_api::LoopClass`.
+#[proc_macro_derive(LoopClass, attributes(looping))]
+pub fn loop_class(input: TokenStream) -> TokenStream {
+    finish(looping::loop_class(&parse_macro_input!(input as DeriveInput)))
 }
 
 /// See `saoms_api::Interface`.

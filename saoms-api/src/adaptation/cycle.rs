@@ -1,4 +1,6 @@
-use crate::{Context, Failure, Knowledge, Phase, Properties, Recordable, Subject};
+use crate::{
+    Context, DynEntries, Failure, Knowledge, LoopClass, Phase, Properties, Recordable, Snapshot, Subject,
+};
 
 /// A MAPE-K loop: one concern of a component that adapts itself.
 ///
@@ -94,6 +96,10 @@ pub trait Loop: Send + Sized + 'static {
 
 /// A loop of any type, as components hold it.
 pub trait DynLoop: Send {
+    /// See [`LoopClass::EFFECTS`].
+    fn effects(&self) -> &'static [&'static str];
+    /// See [`LoopClass::entries`].
+    fn entries(&self) -> Option<Box<dyn DynEntries>>;
     /// See [`Loop::initialize`].
     ///
     /// # Errors
@@ -105,11 +111,17 @@ pub trait DynLoop: Send {
     /// # Errors
     /// As there.
     fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
-    /// [Analyzes](Loop::analyze), [plans](Loop::plan) and [executes](Loop::execute) as far as there is reason to.
+    /// [Analyzes](Loop::analyze), [plans](Loop::plan) and [executes](Loop::execute) as far as there is reason to. The snapshot serves to
+    /// tell what plan and execution changed.
     ///
     /// # Errors
-    /// As there.
-    fn adapt(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// As there, and where the loop changes an effector that it does not declare.
+    fn adapt(
+        &mut self,
+        knowledge: &mut dyn Knowledge,
+        snapshot: &mut Snapshot,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure>;
     /// See [`Loop::shutdown`].
     ///
     /// # Errors
@@ -117,7 +129,15 @@ pub trait DynLoop: Send {
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
 }
 
-impl<L: Loop> DynLoop for L {
+impl<L: LoopClass> DynLoop for L {
+    fn effects(&self) -> &'static [&'static str] {
+        L::EFFECTS
+    }
+
+    fn entries(&self) -> Option<Box<dyn DynEntries>> {
+        <L as LoopClass>::entries()
+    }
+
     fn initialize(
         &mut self,
         knowledge: &mut dyn Knowledge,
@@ -130,13 +150,19 @@ impl<L: Loop> DynLoop for L {
         Loop::monitor(self, subject::<L>(knowledge)?, context)
     }
 
-    fn adapt(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        let knowledge = subject::<L>(knowledge)?;
-        let Some(symptom) = self.analyze(knowledge, context)? else { return Ok(()) };
+    fn adapt(
+        &mut self,
+        knowledge: &mut dyn Knowledge,
+        snapshot: &mut Snapshot,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let Some(symptom) = self.analyze(subject::<L>(knowledge)?, context)? else { return Ok(()) };
         context.journal(Phase::Symptom, &symptom.record());
-        let Some(decision) = self.plan(symptom, knowledge, context)? else { return Ok(()) };
+        snapshot.take(knowledge);
+        let Some(decision) = self.plan(symptom, subject::<L>(knowledge)?, context)? else { return Ok(()) };
         context.journal(Phase::Decision, &decision.record());
-        self.execute(decision, knowledge, context)
+        let result = self.execute(decision, subject::<L>(knowledge)?, context);
+        result.and(snapshot.tell(knowledge, context))
     }
 
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {

@@ -1,22 +1,33 @@
 use std::fmt;
 
-use crate::{Context, DynLoop, Failure, Knowledge};
+use super::extras::Writable;
+use crate::{Context, DynLoop, EntryDeclaration, Failure, Knowledge, Snapshot};
 
 /// The loops of a component in their order.
 #[derive(Default)]
 pub struct Loops {
     loops: Vec<Named>,
+    snapshot: Snapshot,
 }
 
 struct Named {
     name: String,
     instance: Box<dyn DynLoop>,
+    writable: Writable,
+}
+
+impl Named {
+    /// Says whose failure it is.
+    fn of_loop(&self, result: Result<(), Failure>) -> Result<(), Failure> {
+        result.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", self.name)))
+    }
 }
 
 impl Loops {
     /// These loops, by the names that composites use.
     pub fn of(loops: impl IntoIterator<Item = (String, Box<dyn DynLoop>)>) -> Loops {
-        Loops { loops: loops.into_iter().map(|(name, instance)| Named { name, instance }).collect() }
+        let named = |(name, instance)| Named { name, instance, writable: Writable::default() };
+        Loops { loops: loops.into_iter().map(named).collect(), snapshot: Snapshot::default() }
     }
 
     /// The names in order.
@@ -24,19 +35,31 @@ impl Loops {
         self.loops.iter().map(|named| named.name.as_str())
     }
 
-    /// Initializes all.
+    /// Adds the entries of all loops to the knowledge, then initializes all.
     ///
     /// # Errors
-    /// The first failure of a loop.
+    /// The first failure of a loop; or two of them, or one and the component, have an entry of the same name.
     pub fn initialize(
         &mut self,
         knowledge: &mut dyn Knowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        let built_in: &'static [EntryDeclaration] = knowledge.declared();
+        for named in &mut self.loops {
+            named.writable.effects = named.instance.effects();
+            if let Some(entries) = named.instance.entries() {
+                named.writable.own = entries.declared();
+                let added = knowledge.extras_mut().add(entries, built_in);
+                named.of_loop(added)?;
+            }
+        }
         for (place, named) in self.placed() {
             context.name_loop(place, &named.name);
             context.enter_loop(place);
-            named.instance.initialize(knowledge, context)?;
+            knowledge.extras_mut().permit(named.writable);
+            let result = named.instance.initialize(knowledge, context);
+            knowledge.extras_mut().permit(Writable::default());
+            named.of_loop(result)?;
         }
         context.leave_loops();
         Ok(())
@@ -53,20 +76,23 @@ impl Loops {
     ) -> Result<(), Failure> {
         for (place, named) in self.placed() {
             context.enter_loop(place);
-            named.instance.monitor(knowledge, context)?;
+            let result = named.instance.monitor(knowledge, context);
+            named.of_loop(result)?;
         }
         context.leave_loops();
         Ok(())
     }
 
-    /// Lets each analyze, plan and execute.
+    /// Lets each analyze, plan and execute. What plan and execution changed is compared and told to the journal.
     ///
     /// # Errors
-    /// The first failure of a loop.
+    /// The first failure of a loop; one that changes an effector which it does not declare has failed.
     pub fn adapt(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        for (place, named) in self.placed() {
+        for (place, named) in (0..).zip(&mut self.loops) {
             context.enter_loop(place);
-            named.instance.adapt(knowledge, context)?;
+            self.snapshot.permit(named.writable);
+            let result = named.instance.adapt(knowledge, &mut self.snapshot, context);
+            named.of_loop(result)?;
         }
         context.leave_loops();
         Ok(())
@@ -88,7 +114,10 @@ impl Loops {
     ) -> Result<(), Failure> {
         self.loops
             .iter_mut()
-            .map(|named| named.instance.shutdown(knowledge, context))
+            .map(|named| {
+                let result = named.instance.shutdown(knowledge, context);
+                named.of_loop(result)
+            })
             .fold(Ok(()), Result::and)
     }
 }

@@ -4,12 +4,23 @@
 //! can extend, reorder, replace and parametrise. In each execution all loops *monitor* first, in their order; then each of them
 //! *analyzes* and, where it finds a symptom, *plans* and *executes*. Symptom, decision and effect go to the journal as [`Record`]s.
 
+mod class;
 mod cycle;
+mod entries;
+mod entry;
+mod extras;
 mod knowledge;
 mod loops;
 mod record;
+mod snapshot;
 
+pub use class::{LoopClass, LoopRegistration, fits, member};
 pub use cycle::{DynLoop, Loop};
-pub use knowledge::{Knowledge, Subject};
+pub use entries::{DynEntries, Entries, EntryDeclaration};
+pub use entries::{are_unique, decode_field, joined, no_entry, set_field};
+pub use entry::{Effector, Entry};
+pub use extras::Extras;
+pub use knowledge::{Knowledge, KnowledgeClass, Subject};
 pub use loops::Loops;
 pub use record::{Cause, Phase, Record, Recordable, Value};
+pub use snapshot::Snapshot;

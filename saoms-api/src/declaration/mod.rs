@@ -15,14 +15,50 @@
 //!   "publishes": [{"topic": "POSTOPIC", "kind": "state", "message": "Position", "schema": {"name": "Position", "fields": []}}],
 //!   "subscribes": [],
 //!   "services": [{"name": "move", "interface": {"name": "resources.robotEnvironment.Robot", "operations": []}}],
-//!   "references": [{"name": "world", "interface": {"name": "saoms.World", "operations": []}, "optional": true, "many": true}]
+//!   "references": [{"name": "world", "interface": {"name": "saoms.World", "operations": []}, "optional": true, "many": true}],
+//!   "knowledge": {"name": "saoms.Robot", "entries": []},
+//!   "loops": {"property": "policy", "lists": {"safe": ["saoms.CollisionMS"], "classic": []}}
 //! }
 //! ```
 //! - `contract` is the version of this shape.
 //! - `kind` is `periodic` or `passive`. A periodic class has the properties of a task beside its own, which are not listed.
 //! - `also` are further names of the class; the properties in `preset` have these texts, as if the composite had set them.
 //! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`.
+//! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in their order: either
+//!   `{"default": [...]}`, or one list for each value of a property. A class without loops has neither.
 //! - `doc`, here and below, is absent where the author wrote none.
+//!
+//! # A loop
+//! ```json
+//! {
+//!   "contract": 1,
+//!   "loop": "saoms.CollisionMS",
+//!   "doc": "Gives way.",
+//!   "knowledge": "saoms.Robot",
+//!   "properties": [],
+//!   "senses": ["block", "next"],
+//!   "effects": ["stopAPeriod"],
+//!   "entries": [{"name": "waits", "type": "uint32", "value": "integer", "doc": "For how long it has waited.", "unit": "executions"}],
+//!   "publishes": [],
+//!   "subscribes": [],
+//!   "references": []
+//! }
+//! ```
+//! - What follows the last dot of the name is the name of the loop within a component, unless the composite gives another.
+//! - `knowledge` is absent for a loop that works on any knowledge that has the entries which it senses and effects.
+//! - `entries` are those that it adds to the knowledge; it may change them without saying so under `effects`.
+//! - Its topics and references are those of the component that has the loop.
+//!
+//! # An entry
+//! | member | meaning |
+//! | --- | --- |
+//! | `name` | unique in the knowledge |
+//! | `type` | a type of schemas, see below |
+//! | `value` | `bool`, `integer`, `number`, `pair` or `word`: it is a single value; absent where it crosses a boundary as CDR alone |
+//! | `doc`, `unit` | for people |
+//! | `effector` | `true`: of the loops of a component only one may change it |
+//!
+//! An entry is known by its place: those of the knowledge in order, then those that loops add, loop by loop.
 //!
 //! # A property
 //! | member | meaning |
@@ -49,6 +85,7 @@
 //! | --- | --- |
 //! | `"bool"`, `"int8"` to `"int64"`, `"uint8"` to `"uint64"`, `"float32"`, `"float64"`, `"string"` | the types of ROS 2 interfaces |
 //! | `{"sequence": type}` | any number of these |
+//! | `{"optional": type}` | one of these or none; encoded as a sequence of at most one |
 //! | `{"enumeration": "uint8", "values": {"LANDING": 0}}` | an integer with named constants |
 //! | `{"name", "fields"}` | a nested message |
 //!

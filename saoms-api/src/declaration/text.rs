@@ -1,3 +1,5 @@
+use std::fmt::{self, Write};
+
 /// A text that is put together while the program is compiled, as a tree: parts can come from constants of other types.
 #[derive(Clone, Copy, Debug)]
 pub enum Text {
@@ -65,6 +67,29 @@ impl Text {
                 }
                 end
             }
+        }
+    }
+}
+
+impl fmt::Display for Text {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Text::Plain(text) => formatter.write_str(text),
+            Text::Quoted(text) => {
+                formatter.write_str("\"")?;
+                for letter in text.chars() {
+                    match u8::try_from(letter).map(escape) {
+                        Ok((escaped, length)) if letter.is_ascii() => {
+                            escaped[..length]
+                                .iter()
+                                .try_for_each(|byte| formatter.write_char(char::from(*byte)))?;
+                        }
+                        _ => formatter.write_char(letter)?,
+                    }
+                }
+                formatter.write_str("\"")
+            }
+            Text::Joined(parts) => parts.iter().try_for_each(|part| part.fmt(formatter)),
         }
     }
 }

@@ -5,7 +5,7 @@ mod tests;
 mod types;
 
 pub use read::{chosen, complex, only_known, property};
-pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits};
+pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits, equal};
 
 use crate::Failure;
 

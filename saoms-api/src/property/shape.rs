@@ -134,7 +134,8 @@ pub const fn contains(names: &[&str], name: &str) -> bool {
     false
 }
 
-const fn equal(one: &[u8], other: &[u8]) -> bool {
+/// Whether two names are equal, while compiling.
+pub const fn equal(one: &[u8], other: &[u8]) -> bool {
     if one.len() != other.len() {
         return false;
     }

@@ -5,8 +5,9 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Cause, Chance, Context, DynComponent, DynLoop, Failure, Host, Invocation, Level, Operation,
-    Phase, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, Work,
+    CallError, Cause, Chance, Context, DynComponent, DynLoop, Failure, Host, Invocation, Level,
+    LoopRegistration, Operation, Phase, Record, ReportValue, ServiceCall, SharedMessage, Time,
+    TopicDeclaration, Value, Work,
 };
 
 /// How calls reach the provider.
@@ -31,6 +32,8 @@ pub(crate) struct FakeHost {
     /// Behind the only reference, with the name of its service.
     pub(crate) provider: Option<(Box<dyn DynComponent>, &'static str)>,
     pub(crate) boundary: Boundary,
+    pub(crate) loops: &'static [(&'static str, LoopRegistration)],
+    pub(crate) journal: Vec<String>,
 }
 
 impl FakeHost {
@@ -46,6 +49,8 @@ impl FakeHost {
             votes: Vec::new(),
             provider: None,
             boundary: Boundary::None,
+            loops: &[],
+            journal: Vec::new(),
         }
     }
 
@@ -132,7 +137,10 @@ impl Host for FakeHost {
     }
 
     fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
-        Ok(Vec::new())
+        let construct = |(name, registration): &(&str, LoopRegistration)| {
+            Ok(((*name).to_owned(), registration.construct(&[])?))
+        };
+        self.loops.iter().map(construct).collect()
     }
 
     fn enter_loop(&mut self, _place: Option<u32>) {}
@@ -143,7 +151,13 @@ impl Host for FakeHost {
         Cause::default()
     }
 
-    fn journal(&mut self, _phase: Phase, _record: &Record) {}
+    fn journal(&mut self, phase: Phase, record: &Record) {
+        self.journal.push(format!("{phase:?}: {record}"));
+    }
+
+    fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
+        self.journal.push(format!("{entry}: {before} -> {after}"));
+    }
 
     fn listens(&self, _level: Option<Level>) -> bool {
         true

@@ -13,6 +13,7 @@ use saoms_api::{Field, Value};
 /// assert_eq!(block.to_string(), "(3,10)");
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Field)]
+#[field(pair)]
 pub struct Block {
     /// The column, from 0.
     pub x: i32,

@@ -1,0 +1,172 @@
+use proc_macro2::TokenStream;
+use quote::{quote, quote_spanned};
+use syn::ext::IdentExt;
+use syn::meta::ParseNestedMeta;
+use syn::punctuated::Punctuated;
+use syn::spanned::Spanned;
+use syn::{DeriveInput, Error, LitStr, Path, Result, Token, parenthesized};
+
+use crate::docs::docs;
+use crate::field::no_generics;
+use crate::json::{self, Json};
+use crate::parts::{self, Reference};
+
+/// Everything that `#[looping(...)]` says.
+#[derive(Default)]
+struct Declared {
+    name: Option<LitStr>,
+    /// An expression of type `&'static str`.
+    knowledge: Option<TokenStream>,
+    senses: Vec<LitStr>,
+    effects: Vec<LitStr>,
+    entries: Option<Path>,
+    publishes: Vec<Path>,
+    subscribes: Vec<Path>,
+    references: Vec<Reference>,
+}
+
+/// `#[derive(LoopClass)]`.
+pub(crate) fn loop_class(input: &DeriveInput) -> Result<TokenStream> {
+    no_generics(&input.generics, "a loop")?;
+    let declared = Declared::of(input)?;
+    let ident = &input.ident;
+    let name = declared.name(input)?;
+    let properties = quote!(<#ident as ::saoms_api::Loop>::Properties as ::saoms_api::Properties);
+    let declaration = declared.declaration(name, ident, &docs(&input.attrs), &properties);
+    let declaration = json::flat(&declaration.into_text());
+    let knowledge = match &declared.knowledge {
+        Some(name) => quote!(::core::option::Option::Some(#name)),
+        None => quote!(<<#ident as ::saoms_api::Loop>::Knowledge as ::saoms_api::Subject>::NAME),
+    };
+    let effects = &declared.effects;
+    let entries = declared.entries.iter().map(|entries| {
+        quote_spanned! {entries.span()=>
+            fn entries() -> ::core::option::Option<::std::boxed::Box<dyn ::saoms_api::DynEntries>> {
+                ::core::option::Option::Some(::std::boxed::Box::new(
+                    <#entries as ::core::default::Default>::default(),
+                ))
+            }
+        }
+    });
+    Ok(quote! {
+        const _: () = {
+            const DECLARATION: &str = #declaration;
+
+            #[automatically_derived]
+            impl ::saoms_api::LoopClass for #ident {
+                const NAME: &'static str = #name;
+                const DECLARATION: &'static str = DECLARATION;
+                const KNOWLEDGE: ::core::option::Option<&'static str> = #knowledge;
+                const EFFECTS: &'static [&'static str] = &[#(#effects),*];
+
+                #(#entries)*
+            }
+
+            ::saoms_api::generated::inventory::submit! { ::saoms_api::LoopRegistration::of::<#ident>() }
+        };
+    })
+}
+
+impl Declared {
+    fn of(input: &DeriveInput) -> Result<Declared> {
+        let mut declared = Declared::default();
+        for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("looping")) {
+            attribute.parse_nested_meta(|meta| declared.take(&meta))?;
+        }
+        Ok(declared)
+    }
+
+    fn take(&mut self, meta: &ParseNestedMeta<'_>) -> Result<()> {
+        let word = meta.path.get_ident().map(|ident| ident.unraw().to_string()).unwrap_or_default();
+        match word.as_str() {
+            "name" if self.name.is_none() => self.name = Some(meta.value()?.parse()?),
+            "name" => return Err(meta.error("the loop has a name already")),
+            "knowledge" => {
+                let value = meta.value()?;
+                self.knowledge = Some(if value.peek(LitStr) {
+                    let name: LitStr = value.parse()?;
+                    quote!(#name)
+                } else {
+                    let path: Path = value.parse()?;
+                    quote_spanned!(path.span()=> <#path as ::saoms_api::KnowledgeClass>::NAME)
+                });
+            }
+            "senses" => names(meta, &mut self.senses)?,
+            "effects" => names(meta, &mut self.effects)?,
+            "entries" if self.entries.is_none() => {
+                let list;
+                parenthesized!(list in meta.input);
+                self.entries = Some(list.parse()?);
+                parts::end(&list)?;
+            }
+            "entries" => return Err(meta.error("the loop has entries already: put all into one struct")),
+            "publishes" => self.publishes.extend(parts::paths(meta.input)?),
+            "subscribes" => self.subscribes.extend(parts::paths(meta.input)?),
+            "reference" => self.references.push(parts::parse_reference(meta.input, &self.references)?),
+            _ => {
+                return Err(meta.error(
+                    "expected one of `name`, `knowledge`, `senses`, `effects`, `entries`, `publishes`, `subscribes`, `reference`",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn name<'a>(&'a self, input: &'a DeriveInput) -> Result<&'a LitStr> {
+        match &self.name {
+            Some(name) if name.value().rsplit('.').next().is_some_and(|last| !last.trim().is_empty()) => {
+                Ok(name)
+            }
+            Some(name) => Err(Error::new(name.span(), "expected a name, as in `example.BatterySaver`")),
+            None => Err(Error::new_spanned(
+                &input.ident,
+                "expected `#[looping(name = \"...\")]`: the name that composite files use",
+            )),
+        }
+    }
+
+    fn declaration(&self, name: &LitStr, ident: &syn::Ident, doc: &str, properties: &TokenStream) -> Json {
+        let mut text = Json::default();
+        text.plain("{\"contract\":1,\"loop\":");
+        text.string(&name.value());
+        text.member("doc", doc);
+        text.text(quote! {{
+            const PARTS: &[::saoms_api::declaration::Text] = &::saoms_api::generated::member(
+                ",\"knowledge\":",
+                <#ident as ::saoms_api::LoopClass>::KNOWLEDGE,
+            );
+            ::saoms_api::declaration::Text::Joined(PARTS)
+        }});
+        parts::properties(&mut text, properties);
+        for (member, names) in [("senses", &self.senses), ("effects", &self.effects)] {
+            text.plain(&format!(",\"{member}\":"));
+            text.list(names, |text, name| text.string(&name.value()));
+        }
+        text.plain(",\"entries\":[");
+        if let Some(entries) = &self.entries {
+            text.text(quote_spanned!(entries.span()=> <#entries as ::saoms_api::Entries>::TEXT));
+        }
+        text.plain("]");
+        for (member, topics) in [("publishes", &self.publishes), ("subscribes", &self.subscribes)] {
+            text.plain(&format!(",\"{member}\":"));
+            text.list(topics, parts::topic);
+        }
+        text.plain(",\"references\":");
+        text.list(&self.references, parts::reference);
+        text.plain("}");
+        text
+    }
+}
+
+/// `("battery", "block")`.
+fn names(meta: &ParseNestedMeta<'_>, names: &mut Vec<LitStr>) -> Result<()> {
+    let list;
+    parenthesized!(list in meta.input);
+    for name in Punctuated::<LitStr, Token![,]>::parse_terminated(&list)? {
+        if names.iter().any(|other| other.value() == name.value()) {
+            return Err(Error::new(name.span(), "this entry is named already"));
+        }
+        names.push(name);
+    }
+    Ok(())
+}
