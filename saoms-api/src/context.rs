@@ -2,9 +2,9 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::{
-    CallError, Cause, Chance, DynLoop, Failure, Header, Loops, Message, Messages, Phase, Publisher, Record,
-    Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, TopicDeclaration, Value,
-    Work,
+    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, NamedLoops, Phase, Publisher,
+    Record, Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, TopicDeclaration,
+    Value, Work,
 };
 
 /// How much a log line matters.
@@ -349,7 +349,7 @@ pub trait Host {
     ///
     /// # Errors
     /// As there.
-    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure>;
+    fn loops(&mut self) -> Result<NamedLoops, Failure>;
     /// The journal calls the loop at this place by this name.
     fn name_loop(&mut self, place: u32, name: &str) {
         let _ = (place, name);

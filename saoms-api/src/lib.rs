@@ -85,8 +85,8 @@ mod topic;
 
 pub use adaptation::{
     Cause, DynEntries, DynLoop, Effector, Entries, Entry, EntryDeclaration, Extras, Knowledge,
-    KnowledgeClass, Loop, LoopClass, LoopRegistration, Loops, Phase, Record, Recordable, Snapshot, Subject,
-    Value,
+    KnowledgeClass, Loop, LoopClass, LoopRegistration, Loops, NamedLoops, Phase, Record, Recordable,
+    Snapshot, Subject, Value,
 };
 pub use chance::Chance;
 pub use component::{Class, Component, DynComponent};

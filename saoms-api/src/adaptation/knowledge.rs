@@ -35,8 +35,8 @@ use crate::{DynEntries, Effector, Entries, Entry, EntryDeclaration, Extras, Fail
 /// assert!(brightness.changed(&lamp));
 /// assert!(!brightness.changed(&lamp), "not since the last look");
 ///
-/// let failure = Entry::<bool>::of(&lamp, "isOff").unwrap_err();
-/// assert_eq!(failure.message(), "there is no entry `isOff`; did you mean `isOn`?");
+/// let failure = Entry::<bool>::of(&lamp, "isNo").unwrap_err();
+/// assert_eq!(failure.message(), "there is no entry `isNo`; did you mean `isOn`?");
 /// # Ok::<(), saoms_api::Failure>(())
 /// ```
 pub trait Knowledge: DynEntries {

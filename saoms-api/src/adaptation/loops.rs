@@ -3,6 +3,9 @@ use std::fmt;
 use super::extras::Writable;
 use crate::{Context, DynLoop, EntryDeclaration, Failure, Knowledge, Snapshot};
 
+/// Loops with the names that composites use, in their order.
+pub type NamedLoops = Vec<(String, Box<dyn DynLoop>)>;
+
 /// The loops of a component in their order.
 #[derive(Default)]
 pub struct Loops {

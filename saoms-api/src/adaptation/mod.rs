@@ -21,6 +21,6 @@ pub use entries::{are_unique, decode_field, joined, no_entry, set_field};
 pub use entry::{Effector, Entry};
 pub use extras::Extras;
 pub use knowledge::{Knowledge, KnowledgeClass, Subject};
-pub use loops::Loops;
+pub use loops::{Loops, NamedLoops};
 pub use record::{Cause, Phase, Record, Recordable, Value};
 pub use snapshot::Snapshot;

@@ -5,9 +5,9 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Cause, Chance, Context, DynComponent, DynLoop, Failure, Host, Invocation, Level,
-    LoopRegistration, Operation, Phase, Record, ReportValue, ServiceCall, SharedMessage, Time,
-    TopicDeclaration, Value, Work,
+    CallError, Cause, Chance, Context, DynComponent, Failure, Host, Invocation, Level, LoopRegistration,
+    NamedLoops, Operation, Phase, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration,
+    Value, Work,
 };
 
 /// How calls reach the provider.
@@ -136,7 +136,7 @@ impl Host for FakeHost {
         result
     }
 
-    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+    fn loops(&mut self) -> Result<NamedLoops, Failure> {
         let construct = |(name, registration): &(&str, LoopRegistration)| {
             Ok(((*name).to_owned(), registration.construct(&[])?))
         };

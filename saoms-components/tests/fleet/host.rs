@@ -6,9 +6,9 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Cause, Chance, Class, Context, DynComponent, DynLoop, Failure, Host, Invocation, Level, Phase,
-    PropertyValue, Record, Registration, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration,
-    TopicKind, Work,
+    CallError, Cause, Chance, Class, Context, DynComponent, Failure, Host, Invocation, Level, NamedLoops,
+    Phase, PropertyValue, Record, Registration, ReportValue, ServiceCall, SharedMessage, Time,
+    TopicDeclaration, TopicKind, Work,
 };
 
 /// A fleet in virtual time.
@@ -333,7 +333,7 @@ impl Host for View<'_> {
         result
     }
 
-    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+    fn loops(&mut self) -> Result<NamedLoops, Failure> {
         Ok(Vec::new())
     }
 

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Cause, Chance, DynLoop, Failure, Host, Level, Phase, Record, ReportValue, ServiceCall,
+    CallError, Cause, Chance, Failure, Host, Level, NamedLoops, Phase, Record, ReportValue, ServiceCall,
     SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Work,
 };
 
@@ -179,7 +179,7 @@ impl Host for ComponentHost<'_> {
         super::call::call(self.shared, self.part, reference, call)
     }
 
-    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+    fn loops(&mut self) -> Result<NamedLoops, Failure> {
         Ok(Vec::new())
     }
 
