@@ -2,7 +2,7 @@ use std::fmt::{self, Write as _};
 use std::time::Duration;
 
 use crate::{
-    CallError, Cause, Chance, DynLoop, Failure, Host, Level, Phase, Record, ReportValue, ServiceCall,
+    CallError, Cause, Chance, Failure, Host, Level, NamedLoops, Phase, Record, ReportValue, ServiceCall,
     SharedMessage, Time, TopicDeclaration, TopicKind, Work,
 };
 
@@ -162,7 +162,7 @@ impl Host for Link<'_> {
         call.reply(&reply)
     }
 
-    fn loops(&mut self) -> Result<Vec<(String, Box<dyn DynLoop>)>, Failure> {
+    fn loops(&mut self) -> Result<NamedLoops, Failure> {
         Ok(Vec::new())
     }
 

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Knowledge, Publisher, Subscription, Value};
+use saoms_api::{Context, Entries, Extras, Knowledge, Publisher, Subscription};
 
 use crate::grid::Block;
 use crate::hardware::Action;
@@ -10,25 +10,33 @@ use super::safe::{Energy, Leg, Traffic};
 use super::{Battery, Job, Lists, Routes};
 
 /// What a robot knows: about itself, its job, the others, and the area. Its loops share it.
-#[derive(Debug)]
+#[derive(Debug, Knowledge)]
+#[knowledge(name = "saoms.Robot")]
 pub struct RobotKnowledge {
     /// Its name.
+    #[entry]
     pub name: String,
     /// Its number.
+    #[entry]
     pub number: u32,
     /// The time from one of its executions to the next, in microseconds.
+    #[entry(unit = "us")]
     pub period: u64,
     /// Where it is.
+    #[entry]
     pub block: Block,
     /// Where it moves next; the same as `block` while it does not.
+    #[entry]
     pub next: Block,
     /// Where its charger is.
+    #[entry]
     pub charge_block: Block,
     /// Its battery.
     pub battery: Battery,
     /// What it brings, or would.
     pub job: Option<Job>,
     /// Its state.
+    #[entry(flatten)]
     pub variables: Variables,
     /// What it heard from others.
     pub lists: Lists,
@@ -48,6 +56,8 @@ pub struct RobotKnowledge {
     pub(super) traffic: Traffic,
     /// Where it goes.
     pub(super) leg: Leg,
+    #[extras]
+    extras: Extras,
 }
 
 impl RobotKnowledge {
@@ -72,6 +82,7 @@ impl RobotKnowledge {
             energy: Energy::default(),
             traffic: Traffic::default(),
             leg: Leg::default(),
+            extras: Extras::default(),
         }
     }
 
@@ -118,36 +129,29 @@ impl RobotKnowledge {
     }
 }
 
-impl Knowledge for RobotKnowledge {
-    fn declaration(&self) -> &'static str {
-        "[]"
-    }
-
-    fn get(&self, _entry: u32) -> Option<Value> {
-        None
-    }
-
-    fn set(&mut self, entry: u32, _value: Value) -> Result<(), Failure> {
-        Err(Failure::new(format!("a robot's knowledge has no entry {entry}")))
-    }
-}
-
 /// The state of a robot, in the terms of the manual's table 6.27.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Entries)]
 pub struct Variables {
     /// It has a job, or may not take one.
+    #[entry]
     pub busy: bool,
     /// It took an interest in luggage.
+    #[entry]
     pub transporter: bool,
     /// It carries luggage.
+    #[entry]
     pub has_luggage: bool,
     /// It stops for this period.
+    #[entry]
     pub stop_a_period: bool,
     /// It goes to its charger after its present job.
+    #[entry]
     pub ready_to_go_under_charge: bool,
     /// It is on the way to its charger.
+    #[entry]
     pub reaching_charge: bool,
     /// It is at its charger, in charge.
+    #[entry]
     pub in_charge: bool,
     /// It helps another robot, or would.
     pub healer: bool,

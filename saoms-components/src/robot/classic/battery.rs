@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, Record, Recordable, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
 
 use crate::robot::RobotKnowledge;
 
@@ -6,7 +6,8 @@ use crate::robot::RobotKnowledge;
 const LOW: u32 = 35;
 
 /// Uses the battery, and goes under charge when it is low.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.classic.BatteryMS")]
 pub struct BatteryMS;
 
 /// How the battery stands.

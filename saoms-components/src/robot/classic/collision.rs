@@ -1,11 +1,12 @@
-use saoms_api::{Context, Failure, Loop, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
 
 use crate::grid::Block;
 use crate::messages::{POSITION, Position};
 use crate::robot::RobotKnowledge;
 
 /// Stops for a period when another robot announced the same next block and has the lower number (listing 6.11).
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.classic.CollisionMS")]
 pub struct CollisionMS {
     positions: Subscription<Position>,
 }

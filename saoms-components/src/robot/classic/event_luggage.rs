@@ -1,6 +1,6 @@
 use std::cmp::Reverse;
 
-use saoms_api::{Context, Failure, Loop, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
 
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
@@ -8,7 +8,8 @@ use crate::robot::{Job, Request, RobotKnowledge};
 /// Decides which robot brings which luggage (listings 6.5 and 6.9).
 ///
 /// A robot takes an interest in the oldest request; in its next execution, when the others' responses are known, the closest robot goes.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.classic.EventLuggageMS")]
 pub struct EventLuggageMS {
     luggage: Publisher<EventLuggage>,
     luggage_heard: Subscription<EventLuggage>,

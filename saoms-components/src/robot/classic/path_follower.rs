@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, Publisher, Record, Recordable, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
@@ -9,7 +9,8 @@ use crate::robot::actions::Outcome;
 /// Follows the path to a destination step by step, and collects and deposits there (listing 6.6).
 ///
 /// What was announced in the last execution is driven now, and the next block is announced.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.classic.PathFollowerMS")]
 pub struct PathFollowerMS {
     luggage: Publisher<EventLuggage>,
     positions: Publisher<Position>,

@@ -1,10 +1,11 @@
-use saoms_api::{Context, Failure, Loop, Publisher, Record, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Subscription, record};
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
 
 /// Knows which robots are active, and says in each execution that this one is.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.classic.RobotListMS")]
 pub struct RobotListMS {
     robots: Publisher<RobotList>,
     robots_heard: Subscription<RobotList>,

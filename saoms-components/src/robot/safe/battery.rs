@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Level, Loop, Record, Recordable, record};
+use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
 
 use crate::robot::RobotKnowledge;
 
@@ -6,7 +6,8 @@ use crate::robot::RobotKnowledge;
 ///
 /// It knows how many executions the battery lasts, and how many the way to the charger takes with what is kept back for waiting and making
 /// way. What a robot finishes before its battery is that low, it finishes.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.BatteryMS")]
 pub struct BatteryMS;
 
 /// What the battery allows now.

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
 
 use crate::grid::Block;
 use crate::messages::{IMMOVABLE, POSITION, Position};
@@ -7,7 +7,8 @@ use crate::robot::RobotKnowledge;
 /// Lets the robot enter the block that it wants only once nobody else holds or wants it.
 ///
 /// The right of way is that of [`Traffic`](super::Traffic).
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.CollisionMS")]
 pub struct CollisionMS {
     positions: Subscription<Position>,
     /// For which block and robot the robot waits.

@@ -1,4 +1,6 @@
-use saoms_api::{Cause, Context, Failure, Level, Loop, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{
+    Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
+};
 
 use crate::grid::Block;
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
@@ -14,7 +16,8 @@ const PATIENCE: u64 = 4;
 /// A free robot takes an interest in one request and says so, from where it is. It takes the job in an execution in which no interest of
 /// another robot is known; where there are several, all but the closest take theirs back and the closest waits for that. Of two robots
 /// at least one hears of the other's interest before it decides, so no luggage is taken twice, however late messages are.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.EventLuggageMS")]
 pub struct EventLuggageMS {
     /// From where the robot said that it is interested.
     said_at: Block,

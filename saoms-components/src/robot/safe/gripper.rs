@@ -1,11 +1,12 @@
-use saoms_api::{Context, Failure, Loop, Publisher, Record, Recordable, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
 use crate::hardware::Action;
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, RobotKnowledge};
 
 /// Works the gripper: collects luggage where it is and deposits it where it has to go.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.GripperMS")]
 pub struct GripperMS {
     luggage: Publisher<EventLuggage>,
 }

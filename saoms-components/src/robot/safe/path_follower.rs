@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, Publisher, Record, Recordable, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
 use crate::grid::Block;
 use crate::hardware::Action;
@@ -13,7 +13,8 @@ use super::traffic::Claim;
 const TELLING_WAIT: u32 = 3;
 
 /// Drives the wheels along the way to where the robot has to be, and says which block it wants next.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.PathFollowerMS")]
 pub struct PathFollowerMS {
     said: Option<Position>,
     positions: Publisher<Position>,

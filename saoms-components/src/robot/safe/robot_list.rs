@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
@@ -6,7 +6,8 @@ use crate::robot::RobotKnowledge;
 /// Knows which robots are active, and says that this one is.
 ///
 /// It repeats that only where others learn something from it: when its battery changed, and when it starts or ends charging.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.RobotListMS")]
 pub struct RobotListMS {
     said: Option<RobotList>,
     robots: Publisher<RobotList>,
