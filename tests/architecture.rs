@@ -18,8 +18,9 @@ const CORE: &[&str] = &[
     "assembly",
     "check",
     "assemble",
-    "report",
     "bus",
+    "journal",
+    "report",
     "schedule",
 ];
 

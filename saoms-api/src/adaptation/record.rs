@@ -106,9 +106,17 @@ impl Record {
         self.text
     }
 
-    /// The names of the values, with a comma behind each.
-    pub(crate) const fn names(&self) -> &'static str {
+    /// For hosts: the names of the values, with a comma behind each.
+    #[doc(hidden)]
+    pub const fn names(&self) -> &'static str {
         self.names
+    }
+
+    /// For hosts: the values in the order of their names.
+    #[doc(hidden)]
+    pub fn used(&self) -> &[Value] {
+        let count = self.names.bytes().filter(|byte| *byte == b',').count();
+        &self.values[..count.min(VALUES)]
     }
 
     /// The values by name.

@@ -2,6 +2,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::LatenessSummary;
+use crate::journal::Journal;
 
 /// What happened in a run, as `saoms run --report` writes it.
 ///
@@ -19,6 +20,9 @@ pub struct RunReport {
     pub sections: Map<String, Value>,
     /// Every component, in document order.
     pub components: Vec<ComponentReport>,
+    /// What the loops saw, decided and did.
+    #[serde(default)]
+    pub journal: Journal,
     /// Who said whether the work is done.
     pub votes: Votes,
     /// How the run ended.
@@ -33,6 +37,9 @@ pub struct RunReport {
 pub struct ComponentReport {
     /// Its path in the composite.
     pub name: String,
+    /// Its `ID`; a passive component has none.
+    #[serde(default)]
+    pub id: Option<String>,
     /// Its class.
     pub class: String,
     /// How many executions it began.

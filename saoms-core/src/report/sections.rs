@@ -20,7 +20,8 @@ const STANDARD: [&str; 5] =
     ["luggage.requested", "luggage.delivered", "collisions.vertex", "collisions.swap", "stranded"];
 
 /// The fields of a report that are not for components to write.
-const RESERVED: [&str; 7] = ["seed", "time_s", "periods", "components", "votes", "outcome", "trace_hash"];
+const RESERVED: [&str; 8] =
+    ["seed", "time_s", "periods", "components", "journal", "votes", "outcome", "trace_hash"];
 
 impl Sections {
     /// Whether a path would write over what the program itself reports.

@@ -1,11 +1,12 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use saoms_api::{CallError, Chance, Context, DynComponent, Failure, Invocation, SharedMessage, Work};
+use saoms_api::{CallError, Cause, Chance, Context, DynComponent, Failure, Invocation, SharedMessage, Work};
 
 use super::host::ComponentHost;
 use super::shared::Shared;
 use crate::bus::{Subscription, TopicId};
+use crate::journal::Recorder;
 use saoms_api::contain::contained;
 
 /// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for others.
@@ -34,6 +35,8 @@ pub(super) struct Part {
     pub(super) execution: u64,
     pub(super) period: u64,
     pub(super) initializing: bool,
+    /// What goes to the journal.
+    pub(super) recorder: Recorder,
 }
 
 /// What can be asked of a component.
@@ -64,6 +67,7 @@ impl Body {
             execution: 0,
             period,
             initializing: false,
+            recorder: Recorder::default(),
         };
         Body { instance: None, inboxes: Vec::new(), part }
     }
@@ -71,6 +75,7 @@ impl Body {
     /// Does what is asked, whatever the component's code does. After a failure and after the shutdown there is no instance any more.
     #[inline]
     pub(super) fn perform(&mut self, shared: &Arc<Shared>, job: Job) -> Result<(), Failure> {
+        self.part.recorder.begin(Cause::default());
         let result = match job {
             Job::Execute => {
                 self.call(shared, |instance, context| instance.execute(context)).unwrap_or_else(Err)
@@ -93,17 +98,20 @@ impl Body {
         let spec = shared.spec(self.part.index);
         self.instance = Some(contained(|| spec.class.construct(&spec.values))??);
         self.part.initializing = true;
+        self.part.recorder.reset();
         let result = self.call(shared, |instance, context| instance.initialize(context));
         self.part.initializing = false;
         result?
     }
 
-    /// Serves a call to one of the component's services. The outer error is a panic: then there is no instance any more.
+    /// Serves a call to one of the component's services, for a caller with this cause. The outer error is a panic: then there is no instance any more.
     pub(super) fn serve(
         &mut self,
         shared: &Arc<Shared>,
         invocation: &mut Invocation<'_>,
+        cause: Cause,
     ) -> Result<Result<(), CallError>, Failure> {
+        self.part.recorder.begin(cause);
         let result = self.call(shared, |instance, context| instance.serve(invocation, context));
         if result.is_err() {
             self.discard();

@@ -34,7 +34,8 @@ pub(super) fn call(
     shared.release(engine);
     let own = (body.part.now, body.part.due);
     (body.part.now, body.part.due) = (caller.now, caller.due);
-    let result = body.serve(shared, &mut Invocation { service: &target.service, call });
+    let cause = caller.recorder.cause();
+    let result = body.serve(shared, &mut Invocation { service: &target.service, call }, cause);
     (body.part.now, body.part.due) = own;
     let (result, panic) = match result {
         Ok(result) => (result, None),

@@ -6,6 +6,7 @@ use super::slot::State;
 use super::sys;
 use crate::assemble::Plan;
 use crate::assembly::Assembly;
+use crate::journal::Journal;
 use crate::report::{
     ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, Sections, Status, Votes,
 };
@@ -90,10 +91,18 @@ impl Engine {
             periods: self.slots.iter().map(|slot| slot.statistics.executions).sum(),
             sections: sections.to_json(),
             components: self.components(assembly),
+            journal: self.journal(),
             votes: self.votes_report(),
             outcome: self.outcome(),
             trace_hash: self.trace.as_ref().map(super::trace::Trace::digits),
         }
+    }
+
+    fn journal(&self) -> Journal {
+        let rings = self.slots.iter().map(|slot| (&slot.name, &slot.journal));
+        let mut journal = Journal::of_rings(rings);
+        journal.lost = self.lost_records;
+        journal
     }
 
     fn components(&self, assembly: &Assembly) -> Vec<ComponentReport> {
@@ -103,6 +112,7 @@ impl Engine {
                 let statistics = &slot.statistics;
                 ComponentReport {
                     name: spec.path.clone(),
+                    id: spec.task.as_ref().map(|task| task.id.clone()),
                     class: spec.class.name().to_owned(),
                     executions: statistics.executions,
                     missed: statistics.missed,

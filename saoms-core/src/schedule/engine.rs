@@ -13,6 +13,7 @@ use super::slot::{NEVER, Policy, Slot, State, Wish};
 use super::trace::{Step, Trace};
 use crate::assembly::{Assembly, Loss, Overrun};
 use crate::bus::{Bus, fold};
+use crate::journal::Stream;
 
 /// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives
 /// it takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the body back with
@@ -28,6 +29,12 @@ pub(super) struct Engine {
     /// Somebody gave the sleeping timer something to do.
     pub(super) wake: bool,
     pub(super) trace: Option<Trace>,
+    /// On the way to the file of the journal.
+    pub(super) stream: Option<Arc<Stream>>,
+    /// How many records of each component are kept.
+    journal_capacity: usize,
+    /// Records that are not in that file.
+    pub(super) lost_records: u64,
     /// Executions of all components.
     pub(super) executions: Arc<AtomicU64>,
     /// Bodies that are with code that runs.
@@ -112,6 +119,9 @@ impl Engine {
             news: Vec::new(),
             wake: false,
             trace: (settings.clock == ClockKind::Virtual).then(Trace::default),
+            stream: None,
+            journal_capacity: settings.journal / assembly.components.len().max(1),
+            lost_records: 0,
             executions: Arc::default(),
             out: 0,
             ending: VecDeque::new(),
@@ -346,9 +356,28 @@ impl Engine {
         self.slots[index as usize].state == State::Abandoned
     }
 
-    /// Lets the messages of an outbox go to their topics. At the end of a run nobody reads them any more, so that no queue can overflow either.
+    /// Takes over what a component has written to the journal.
+    #[inline]
+    pub(super) fn record(&mut self, part: &mut Part) {
+        let recorder = &mut part.recorder;
+        if recorder.is_empty() {
+            return;
+        }
+        if let Some(trace) = &mut self.trace {
+            for head in recorder.batch.heads() {
+                trace.record(head);
+            }
+        }
+        if let Some(stream) = &self.stream {
+            stream.put(part.index, recorder);
+        }
+        self.slots[part.index as usize].journal.take(recorder, self.journal_capacity);
+    }
+
+    /// Lets the messages of an outbox go to their topics, and its records to the journal. At the end of a run nobody reads them any more, so that no queue can overflow either.
     #[inline]
     pub(super) fn deliver(&mut self, part: &mut Part, now: u64) {
+        self.record(part);
         self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
         for (topic, message) in part.outbox.drain(..) {
             if let Some(trace) = &mut self.trace {

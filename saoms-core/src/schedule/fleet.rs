@@ -1,5 +1,7 @@
 use std::fmt;
 use std::fs::File;
+use std::io;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
@@ -18,6 +20,7 @@ use super::shared::Shared;
 use super::slot::NEVER;
 use super::start::{self, StartError};
 use crate::assembly::Assembly;
+use crate::journal::{JournalFile, Named, Stream, Written};
 use crate::report::RunReport;
 use saoms_api::contain;
 
@@ -47,6 +50,8 @@ pub struct Fleet {
     /// Under `realtime`, what keeps the processors awake.
     _awake: Option<File>,
     teller: Option<JoinHandle<()>>,
+    /// Writes the file of the journal.
+    writer: Option<JoinHandle<Written>>,
 }
 
 /// A remote control of a fleet. It may be cloned and used from any thread; after the end of the run it does nothing.
@@ -99,6 +104,7 @@ impl Fleet {
         }
         let awake = realtime.then(realtime::keep_awake).transpose();
         let clock = if simulated { Clock::simulated() } else { Clock::real() };
+        let file = journal_file(&assembly, &settings).map_err(StartError::Journal)?;
         let shared = Arc::new(Shared::new(assembly, settings, clock, events));
         let teller = Arc::clone(&shared);
         let teller = thread::Builder::new()
@@ -113,7 +119,11 @@ impl Fleet {
             );
             handle.shared.note(Level::Warning, text);
         }
-        let fleet = Fleet { handle, _awake: awake.unwrap_or_default(), teller: Some(teller) };
+        let mut fleet =
+            Fleet { handle, _awake: awake.unwrap_or_default(), teller: Some(teller), writer: None };
+        if let Some(file) = file {
+            fleet.writer = Some(write_journal(&fleet.handle.shared, file).map_err(StartError::Thread)?);
+        }
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
         start::start(shared)?;
@@ -149,6 +159,8 @@ impl Fleet {
             self.resume(NEVER);
         }
         drive::wait_until(shared, |_| false);
+        self.finish_journal();
+        let shared = &self.handle.shared;
         let report = shared.lock().report(&shared.assembly, &shared.sections());
         self.finish();
         report
@@ -164,14 +176,58 @@ impl Fleet {
         shared.timer.wake();
     }
 
+    /// Lets the last records be written.
+    fn finish_journal(&mut self) {
+        let Some(writer) = self.writer.take() else { return };
+        let shared = &self.handle.shared;
+        let (stream, end) = {
+            let engine = shared.lock();
+            (engine.stream.clone(), Time::from_nanos(engine.ended.0))
+        };
+        if let Some(stream) = stream {
+            stream.close(end);
+        }
+        // Only a fault of the program itself lets it panic, which has been told on standard error.
+        let Ok(written) = writer.join() else { return };
+        let mut engine = shared.lock();
+        engine.lost_records = written.lost;
+        engine.reasons.extend(written.error.map(|error| unwritten(shared, &error)));
+    }
+
     /// Lets the last events be told.
     fn finish(&mut self) {
+        self.finish_journal();
         self.handle.shared.line.close();
         if let Some(teller) = self.teller.take() {
             // A program that panics over an event has been told so on standard error.
             let _ = teller.join();
         }
     }
+}
+
+/// Opens the file of the journal, if there is to be one.
+fn journal_file(assembly: &Assembly, settings: &Settings) -> io::Result<Option<JournalFile>> {
+    let Some(path) = &settings.journal_file else { return Ok(None) };
+    let named = assembly
+        .components
+        .iter()
+        .map(|spec| Named { name: spec.path.clone(), id: spec.task.as_ref().map(|task| task.id.clone()) });
+    let simulated = settings.clock == ClockKind::Virtual;
+    JournalFile::create(path, settings.seed, simulated, &named.collect::<Vec<_>>()).map(Some)
+}
+
+/// Starts the thread that writes the journal to its file.
+fn write_journal(shared: &Arc<Shared>, file: JournalFile) -> io::Result<JoinHandle<Written>> {
+    let stream = Arc::new(Stream::new(shared.clock.is_virtual()));
+    shared.lock().stream = Some(Arc::clone(&stream));
+    let shared = Arc::clone(shared);
+    let write = move || stream.write_to(file, |error| shared.note(Level::Error, unwritten(&shared, error)));
+    thread::Builder::new().name("saoms-journal".to_owned()).spawn(write)
+}
+
+fn unwritten(shared: &Shared, error: &io::Error) -> String {
+    let path = shared.settings.journal_file.as_deref().unwrap_or(Path::new(""));
+    format!("the journal could not be written to `{}`: {error}", path.display())
 }
 
 impl Drop for Fleet {

@@ -4,13 +4,14 @@ use std::time::Duration;
 
 use saoms_api::{
     CallError, Cause, Chance, Failure, Host, Level, NamedLoops, Phase, Record, ReportValue, ServiceCall,
-    SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Work,
+    SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Value, Work,
 };
 
 use super::body::Part;
 use super::observe::{Event, Occurrence};
 use super::shared::Shared;
 use crate::assembly::{ComponentSpec, TaskSettings, Wire};
+use crate::journal::Stamp;
 use crate::report::Sections;
 
 /// What the scheduler gives to a component while its code runs.
@@ -49,6 +50,11 @@ impl ComponentHost<'_> {
         }
         Ok(task)
     }
+}
+
+/// Records carry the time at which the execution began: it costs no look at the clock, and an execution is one moment.
+fn stamp<'a>(shared: &'a Shared, part: &Part) -> Stamp<'a> {
+    Stamp { ids: &shared.records, component: part.index, time: part.now }
 }
 
 /// The name of a topic on the bus.
@@ -143,6 +149,7 @@ impl Host for ComponentHost<'_> {
         match self.part.publishers.get(publisher as usize) {
             Some(topic) => {
                 self.part.outbox.push((*topic, message));
+                self.part.recorder.acted();
                 Ok(())
             }
             None => Err(Failure::new(
@@ -176,6 +183,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+        self.part.recorder.acted();
         super::call::call(self.shared, self.part, reference, call)
     }
 
@@ -183,15 +191,32 @@ impl Host for ComponentHost<'_> {
         Ok(Vec::new())
     }
 
-    fn enter_loop(&mut self, _place: Option<u32>) {}
-
-    fn because(&mut self, _cause: Cause) {}
-
-    fn cause(&self) -> Cause {
-        Cause::default()
+    fn name_loop(&mut self, place: u32, name: &str) {
+        self.part.recorder.name(place, name);
     }
 
-    fn journal(&mut self, _phase: Phase, _record: &Record) {}
+    fn enter_loop(&mut self, place: Option<u32>) {
+        self.part.recorder.enter(place, self.part.execution);
+    }
+
+    fn because(&mut self, cause: Cause) {
+        self.part.recorder.because(cause);
+    }
+
+    #[inline]
+    fn cause(&self) -> Cause {
+        self.part.recorder.cause()
+    }
+
+    fn journal(&mut self, phase: Phase, record: &Record) {
+        let stamp = stamp(self.shared, self.part);
+        self.part.recorder.write(stamp, phase, record);
+    }
+
+    fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
+        let stamp = stamp(self.shared, self.part);
+        self.part.recorder.changed(stamp, entry, before, after);
+    }
 
     fn listens(&self, level: Option<Level>) -> bool {
         level.map_or_else(|| self.shared.line.wants_console(), |level| self.shared.line.wants(level))

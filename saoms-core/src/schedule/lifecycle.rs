@@ -157,6 +157,8 @@ impl Engine {
 
     /// A component has failed, whatever it was doing: its policy decides.
     pub(super) fn fail(&mut self, index: u32, body: &mut Body, job: Job, failure: Failure, now: u64) {
+        // What it decided before it failed is worth knowing.
+        self.record(&mut body.part);
         let unsent = body.part.outbox.len();
         body.part.outbox.clear();
         body.part.vote = None;

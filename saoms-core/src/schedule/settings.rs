@@ -1,3 +1,4 @@
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// How a fleet runs.
@@ -22,6 +23,11 @@ pub struct Settings {
     pub grace: Duration,
     /// How long, on the machine's clock, an execution in virtual time may take before the run ends as failed. At least 10 ms.
     pub virtual_watchdog: Duration,
+    /// How many records of the journal stay in memory, shared out evenly among the components; each keeps its newest 128 at least. What is
+    /// older is overwritten, and counted.
+    pub journal: usize,
+    /// Where the whole journal goes, as lines of JSON.
+    pub journal_file: Option<PathBuf>,
 }
 
 /// Which time a fleet runs in.
@@ -45,6 +51,8 @@ impl Default for Settings {
             realtime: false,
             grace: Duration::from_secs(2),
             virtual_watchdog: Duration::from_secs(10),
+            journal: 65_536,
+            journal_file: None,
         }
     }
 }

@@ -36,6 +36,8 @@ pub(super) struct Shared {
     pub(super) stop: AtomicBool,
     /// The run has ended.
     pub(super) ended: AtomicBool,
+    /// Records of the journal.
+    pub(super) records: AtomicU64,
     executions: Arc<AtomicU64>,
 }
 
@@ -64,6 +66,7 @@ impl Shared {
             work: Condvar::new(),
             stop: AtomicBool::new(false),
             ended: AtomicBool::new(false),
+            records: AtomicU64::new(0),
         }
     }
 

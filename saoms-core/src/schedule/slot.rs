@@ -6,6 +6,7 @@ use saoms_api::Work;
 use super::body::Body;
 use super::settings::nanos;
 use crate::assembly::{ComponentSpec, Loss, Overrun, Restart};
+use crate::journal::Ring;
 use crate::report::Lateness;
 
 /// A time that never comes.
@@ -38,6 +39,7 @@ pub(super) struct Slot {
     pub(super) policy: Policy,
     pub(super) vote: Option<Work>,
     pub(super) statistics: Statistics,
+    pub(super) journal: Ring,
     /// Why it has to stop, when its own `overrun` says so.
     pub(super) condemned: Option<String>,
     pub(super) name: Arc<str>,
@@ -184,6 +186,7 @@ impl Slot {
             policy,
             vote: None,
             statistics: Statistics::default(),
+            journal: Ring::default(),
             condemned: None,
             name,
             cancelled,

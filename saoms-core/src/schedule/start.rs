@@ -29,6 +29,8 @@ pub enum StartError {
     },
     /// Real-time scheduling was asked for and is not permitted.
     Realtime(RealtimeError),
+    /// The file of the journal cannot be written.
+    Journal(io::Error),
     /// The system gives no thread.
     Thread(io::Error),
 }
@@ -40,6 +42,7 @@ impl fmt::Display for StartError {
                 write!(formatter, "component `{component}` of class `{class}` could not start: {failure}")
             }
             StartError::Realtime(error) => error.fmt(formatter),
+            StartError::Journal(error) => write!(formatter, "the journal cannot be written: {error}"),
             StartError::Thread(error) => {
                 write!(formatter, "the system gives no thread to run the fleet on: {error}")
             }
@@ -52,7 +55,7 @@ impl std::error::Error for StartError {
         match self {
             StartError::Component { .. } => None,
             StartError::Realtime(error) => Some(error),
-            StartError::Thread(error) => Some(error),
+            StartError::Journal(error) | StartError::Thread(error) => Some(error),
         }
     }
 }

@@ -1,10 +1,12 @@
 use saoms_api::SharedMessage;
 
 use crate::bus::fold;
+use crate::journal::Head;
 
 /// The digest of everything that happens in a run: who did what when, in integers.
 ///
-/// Each effect is folded in as its time, its component and what it is; a message as its topic's name and its bytes in CDR. Two runs with the
+/// Each effect is folded in as its time, its component and what it is; a message as its topic's name and its bytes in CDR, a record of the
+/// journal as its digest, its loop and its cause. Two runs with the
 /// same digest did the same, on whatever machines they ran.
 #[derive(Debug, Default)]
 pub(super) struct Trace {
@@ -37,6 +39,11 @@ impl Trace {
         last[..rest.len()].copy_from_slice(rest);
         self.hash = fold(self.hash, u64::from_le_bytes(last));
         self.hash = fold(self.hash, self.bytes.len() as u64);
+    }
+
+    pub(super) fn record(&mut self, head: &Head) {
+        self.effect(head.time, head.component, head.fingerprint);
+        self.hash = fold(fold(self.hash, u64::from(head.place)), head.cause.0);
     }
 
     fn effect(&mut self, time: u64, component: u32, what: u64) {

@@ -18,10 +18,15 @@ pub(crate) fn assembly(text: &str) -> Assembly {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Actor>()).unwrap();
     registry.add(Registration::of::<Callee>()).unwrap();
+    assembly_of(text, &registry)
+}
+
+/// The assembly of a text whose classes are in this registry.
+pub(crate) fn assembly_of(text: &str, registry: &Registry) -> Assembly {
     let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
     let name = |line: &&str| line.split(' ').next().unwrap().to_owned();
     let names: Vec<String> = lines.iter().map(name).collect();
-    let components = lines.iter().map(|line| component(line, &registry, &names)).collect();
+    let components = lines.iter().map(|line| component(line, registry, &names)).collect();
     Assembly { components }
 }
 

@@ -8,6 +8,7 @@ mod chaos;
 mod endings;
 mod failures;
 mod fleet;
+mod journal;
 mod observer;
 mod order;
 mod real_time;

@@ -17,6 +17,10 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             return shared.release(engine);
         }
         heed_stop(shared, &mut engine, now);
+        if engine.stream.as_ref().is_some_and(|stream| stream.is_full()) {
+            engine = wait_for_journal(shared, engine);
+            continue;
+        }
         if engine.phase == Phase::Running && now >= engine.pause {
             engine = sleep(shared, engine);
             continue;
@@ -53,6 +57,19 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     }
     shared.release(engine);
     announce_end(shared);
+}
+
+/// Waits until the file of the journal has taken some records.
+fn wait_for_journal<'a>(
+    shared: &'a Shared,
+    engine: std::sync::MutexGuard<'a, Engine>,
+) -> std::sync::MutexGuard<'a, Engine> {
+    let stream = engine.stream.clone();
+    shared.release(engine);
+    if let Some(stream) = stream {
+        stream.wait_for_room();
+    }
+    shared.lock()
 }
 
 /// Waits until somebody has something new.

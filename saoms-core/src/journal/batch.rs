@@ -1,0 +1,128 @@
+use saoms_api::{Cause, Phase, Record, Time, Value};
+
+/// The place of what a component wrote outside its loops.
+pub(crate) const OUTSIDE: u16 = u16::MAX;
+
+/// A record of the journal without its values, as the engine keeps it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Head {
+    pub(crate) id: Cause,
+    pub(crate) time: u64,
+    pub(crate) cause: Cause,
+    /// A digest of phase, text and values.
+    pub(crate) fingerprint: u64,
+    text: &'static str,
+    names: &'static str,
+    /// Where its values begin among those of the batch.
+    values: u32,
+    pub(crate) component: u32,
+    /// The loop, or [`OUTSIDE`].
+    pub(crate) place: u16,
+    count: u8,
+    pub(crate) phase: Phase,
+    /// It says that an entry of the knowledge changed.
+    pub(crate) change: bool,
+    /// For a decision: something followed from it in the same execution.
+    pub(crate) acted: bool,
+}
+
+/// Records, one after the other, in memory that is used again and again.
+#[derive(Debug, Default)]
+pub(crate) struct Batch {
+    heads: Vec<Head>,
+    values: Vec<Value>,
+}
+
+/// What a component notes down: a record, and where it belongs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Note<'a> {
+    pub(super) id: Cause,
+    pub(super) time: u64,
+    pub(super) cause: Cause,
+    pub(super) fingerprint: u64,
+    pub(super) component: u32,
+    pub(super) place: u16,
+    pub(super) phase: Phase,
+    pub(super) change: bool,
+    pub(super) record: &'a Record,
+}
+
+impl Batch {
+    #[inline]
+    pub(super) fn push(&mut self, note: &Note<'_>) {
+        let Note { id, time, cause, fingerprint, component, place, phase, change, record } = *note;
+        let values = self.values.len() as u32;
+        self.values.extend_from_slice(record.used());
+        let count = (self.values.len() as u32 - values) as u8;
+        let (text, names) = (record.text(), record.names());
+        self.heads.push(Head {
+            id,
+            time,
+            cause,
+            fingerprint,
+            text,
+            names,
+            values,
+            component,
+            place,
+            count,
+            phase,
+            change,
+            acted: false,
+        });
+    }
+
+    /// Puts in a record of another batch.
+    #[inline]
+    pub(super) fn copy(&mut self, head: &Head, other: &Batch) {
+        let values = self.values.len() as u32;
+        self.values.extend_from_slice(other.values_of(head));
+        self.heads.push(Head { values, ..*head });
+    }
+
+    pub(super) fn append(&mut self, other: &Batch) {
+        for head in &other.heads {
+            self.copy(head, other);
+        }
+    }
+
+    pub(crate) fn heads(&self) -> &[Head] {
+        &self.heads
+    }
+
+    pub(super) fn head_mut(&mut self, place: u32) -> Option<&mut Head> {
+        self.heads.get_mut(place as usize)
+    }
+
+    fn values_of(&self, head: &Head) -> &[Value] {
+        &self.values[head.values as usize..head.values as usize + usize::from(head.count)]
+    }
+
+    /// The record of a head of this batch.
+    pub(super) fn record(&self, head: &Head) -> Record {
+        let mut values = [Value::Nothing; 6];
+        for (place, value) in values.iter_mut().zip(self.values_of(head)) {
+            *place = *value;
+        }
+        Record::new(head.text, head.names, values)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.heads.len()
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.heads.is_empty()
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.heads.clear();
+        self.values.clear();
+    }
+}
+
+impl Head {
+    pub(super) fn time(&self) -> Time {
+        Time::from_nanos(self.time)
+    }
+}

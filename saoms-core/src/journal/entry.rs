@@ -1,0 +1,154 @@
+use std::fmt;
+use std::sync::Arc;
+
+use saoms_api::{Cause, Phase, Record, Time};
+use serde_json::{Map, Value};
+
+/// A record of the journal: what a component saw, decided or did.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    pub(super) id: Cause,
+    pub(super) time: Time,
+    pub(super) component: Arc<str>,
+    pub(super) loop_name: Option<Arc<str>>,
+    pub(super) phase: Phase,
+    pub(super) cause: Cause,
+    /// It says that an entry of the knowledge changed.
+    pub(super) change: bool,
+    pub(super) what: What,
+}
+
+/// Text and values.
+#[derive(Clone, Debug)]
+pub(super) enum What {
+    /// As the component gave them.
+    Noted(Record),
+    /// As a file gave them.
+    Read { text: String, values: Map<String, Value> },
+}
+
+/// A change of what a component knows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The name of the entry of its knowledge.
+    pub entry: String,
+    /// Its value before.
+    pub before: Value,
+    /// Its value from then on.
+    pub after: Value,
+}
+
+impl Entry {
+    /// Its number in the run, from 1: what came later has a larger one.
+    pub fn id(&self) -> Cause {
+        self.id
+    }
+
+    /// When the execution began that wrote it.
+    pub fn time(&self) -> Time {
+        self.time
+    }
+
+    /// The path of the component that wrote it.
+    pub fn component(&self) -> &str {
+        &self.component
+    }
+
+    /// The loop that wrote it; `None` for a component without loops, or outside all of them.
+    pub fn loop_name(&self) -> Option<&str> {
+        self.loop_name.as_deref()
+    }
+
+    /// Whether it tells what was seen, decided or done.
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The record that it follows from, of this component or of another that sent a message; the default one stands for none.
+    pub fn cause(&self) -> Cause {
+        self.cause
+    }
+
+    /// The text, with the values in.
+    pub fn text(&self) -> String {
+        match &self.what {
+            What::Noted(record) => record.to_string(),
+            What::Read { text, .. } => text.clone(),
+        }
+    }
+
+    /// A value of the record by its name.
+    pub fn value(&self, name: &str) -> Option<Value> {
+        match &self.what {
+            What::Noted(record) => {
+                record.values().find(|(known, _)| *known == name).map(|(_, value)| json(value))
+            }
+            What::Read { values, .. } => values.get(name).cloned(),
+        }
+    }
+
+    /// All values by name.
+    pub fn values(&self) -> Map<String, Value> {
+        match &self.what {
+            What::Noted(record) => {
+                record.values().map(|(name, value)| (name.to_owned(), json(value))).collect()
+            }
+            What::Read { values, .. } => values.clone(),
+        }
+    }
+
+    /// Which entry of the component's knowledge changed, if that is what the record tells.
+    pub fn change(&self) -> Option<Change> {
+        let value = |name| self.value(name).unwrap_or_default();
+        self.change.then(|| Change {
+            entry: value("entry").as_str().unwrap_or_default().to_owned(),
+            before: value("before"),
+            after: value("after"),
+        })
+    }
+}
+
+/// Two records are equal when they tell the same.
+impl PartialEq for Entry {
+    fn eq(&self, other: &Entry) -> bool {
+        (self.id, self.time, self.phase, self.cause, self.change)
+            == (other.id, other.time, other.phase, other.cause, other.change)
+            && (&self.component, &self.loop_name) == (&other.component, &other.loop_name)
+            && self.text() == other.text()
+            && self.values() == other.values()
+    }
+}
+
+/// Time, component, loop, phase and text, in one line.
+impl fmt::Display for Entry {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Entry { time, component, .. } = self;
+        let (by, phase) = (self.loop_name().unwrap_or("-"), phase_name(self.phase));
+        write!(formatter, "{time} {component} {by} {phase}: ")?;
+        match &self.what {
+            What::Noted(record) => record.fmt(formatter),
+            What::Read { text, .. } => formatter.write_str(text),
+        }
+    }
+}
+
+/// What files call a phase.
+pub(super) fn phase_name(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Symptom => "symptom",
+        Phase::Decision => "decision",
+        Phase::Effect => "effect",
+    }
+}
+
+/// A value as files hold it.
+pub(super) fn json(value: saoms_api::Value) -> Value {
+    match value {
+        saoms_api::Value::Nothing => Value::Null,
+        saoms_api::Value::Bool(value) => Value::from(value),
+        saoms_api::Value::Integer(value) => Value::from(value),
+        saoms_api::Value::Number(value) => Value::from(value),
+        saoms_api::Value::Pair(x, y) => Value::from([x, y].as_slice()),
+        saoms_api::Value::Word(word) => Value::from(word),
+    }
+}

@@ -1,0 +1,30 @@
+use saoms_api::{Phase, Record, Value};
+
+use crate::bus::fold;
+
+/// A digest of a record: its phase, its text and its values, the same on every machine.
+pub(super) fn fingerprint(phase: Phase, record: &Record) -> u64 {
+    let mut hash = text(phase as u64, record.text());
+    for value in record.used() {
+        hash = match *value {
+            Value::Nothing => fold(hash, 0),
+            Value::Bool(value) => fold(fold(hash, 1), u64::from(value)),
+            Value::Integer(value) => fold(fold(hash, 2), value as u64),
+            // So that both zeros are one.
+            Value::Number(value) => fold(fold(hash, 3), (value + 0.0).to_bits()),
+            Value::Pair(x, y) => fold(fold(hash, 4), u64::from(x as u32) << 32 | u64::from(y as u32)),
+            Value::Word(word) => text(fold(hash, 5), word),
+        };
+    }
+    hash
+}
+
+fn text(mut hash: u64, text: &str) -> u64 {
+    let (words, rest) = text.as_bytes().as_chunks::<8>();
+    for word in words {
+        hash = fold(hash, u64::from_le_bytes(*word));
+    }
+    let mut last = [0; 8];
+    last[..rest.len()].copy_from_slice(rest);
+    fold(fold(hash, u64::from_le_bytes(last)), text.len() as u64)
+}

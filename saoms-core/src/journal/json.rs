@@ -1,0 +1,179 @@
+//! The journal as JSON: a section of a report, and the lines of a file. Both hold a record in the same form.
+
+use std::fmt;
+use std::sync::Arc;
+
+use saoms_api::{Cause, Phase, Time};
+use serde::de::Error as _;
+use serde::ser::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::value::{RawValue, to_raw_value};
+use serde_json::{Map, Value};
+
+use super::entry::{What, phase_name};
+use super::{Entry, Journal, LoopCounts};
+
+/// A record as it is written. What is not there says nothing.
+#[derive(Serialize)]
+struct Line<'a> {
+    id: u64,
+    time_s: f64,
+    component: &'a str,
+    #[serde(rename = "loop", skip_serializing_if = "Option::is_none")]
+    loop_name: Option<&'a str>,
+    phase: &'static str,
+    /// The entry of the knowledge that changed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    entry: Option<Value>,
+    text: Text<'a>,
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    values: Map<String, Value>,
+    #[serde(skip_serializing_if = "is_none")]
+    cause: u64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_none(cause: &u64) -> bool {
+    *cause == 0
+}
+
+struct Text<'a>(&'a What);
+
+impl Serialize for Text<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            What::Noted(record) => serializer.collect_str(record),
+            What::Read { text, .. } => serializer.serialize_str(text),
+        }
+    }
+}
+
+impl Serialize for Entry {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut values = self.values();
+        let entry = if self.change { values.remove("entry") } else { None };
+        let line = Line {
+            id: self.id.0,
+            time_s: self.time.as_secs_f64(),
+            component: &self.component,
+            loop_name: self.loop_name(),
+            phase: phase_name(self.phase),
+            entry,
+            text: Text(&self.what),
+            values,
+            cause: self.cause.0,
+        };
+        line.serialize(serializer)
+    }
+}
+
+/// A record as it is read.
+#[derive(Deserialize)]
+struct ReadLine {
+    id: u64,
+    time_s: f64,
+    component: String,
+    #[serde(rename = "loop", default)]
+    loop_name: Option<String>,
+    phase: PhaseName,
+    #[serde(default)]
+    entry: Option<String>,
+    text: String,
+    #[serde(default)]
+    values: Map<String, Value>,
+    #[serde(default)]
+    cause: u64,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum PhaseName {
+    Symptom,
+    Decision,
+    Effect,
+}
+
+impl<'de> Deserialize<'de> for Entry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Entry, D::Error> {
+        let mut line = ReadLine::deserialize(deserializer)?;
+        let ReadLine { id, cause, .. } = line;
+        if cause >= id {
+            let wrong = Wrong(format!("record {id} cannot follow from record {cause}: causes are older"));
+            return Err(D::Error::custom(wrong));
+        }
+        let change = line.entry.is_some();
+        line.values.extend(line.entry.map(|entry| ("entry".to_owned(), Value::from(entry))));
+        Ok(Entry {
+            id: Cause(id),
+            time: time(line.time_s).map_err(D::Error::custom)?,
+            component: Arc::from(line.component),
+            loop_name: line.loop_name.map(Arc::from),
+            phase: match line.phase {
+                PhaseName::Symptom => Phase::Symptom,
+                PhaseName::Decision => Phase::Decision,
+                PhaseName::Effect => Phase::Effect,
+            },
+            cause: Cause(cause),
+            change,
+            what: What::Read { text: line.text, values: line.values },
+        })
+    }
+}
+
+/// What is wrong in a journal that is JSON.
+#[derive(Debug)]
+pub(super) struct Wrong(String);
+
+impl fmt::Display for Wrong {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+/// A time of the run, as files hold it.
+pub(super) fn time(seconds: f64) -> Result<Time, Wrong> {
+    let nanos = (seconds * 1e9).round();
+    if !(0.0..u64::MAX as f64).contains(&nanos) {
+        return Err(Wrong(format!("`{seconds}` is no time of a run in seconds")));
+    }
+    Ok(Time::from_nanos(nanos as u64))
+}
+
+/// Brings records into their order.
+pub(super) fn in_order(mut entries: Vec<Entry>) -> Result<Vec<Entry>, Wrong> {
+    entries.sort_by_key(Entry::id);
+    match entries.windows(2).find(|pair| pair[0].id == pair[1].id) {
+        Some(pair) => Err(Wrong(format!("there are two records with the number {}", pair[0].id.0))),
+        None => Ok(entries),
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct Section<T> {
+    records: u64,
+    #[serde(default)]
+    overwritten: u64,
+    #[serde(default)]
+    lost: u64,
+    #[serde(default)]
+    loops: Vec<LoopCounts>,
+    entries: Vec<T>,
+}
+
+impl Serialize for Journal {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Journal { records, overwritten, lost, .. } = *self;
+        // A line for each, also where the rest is indented.
+        let entries: Result<Vec<Box<RawValue>>, _> = self.entries.iter().map(to_raw_value).collect();
+        let entries = entries.map_err(S::Error::custom)?;
+        Section { records, overwritten, lost, loops: self.loops.clone(), entries }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Journal {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Journal, D::Error> {
+        let Section { records, overwritten, lost, loops, entries } = Section::deserialize(deserializer)?;
+        let entries = in_order(entries).map_err(D::Error::custom)?;
+        Ok(Journal { records, overwritten, lost, loops, entries })
+    }
+}

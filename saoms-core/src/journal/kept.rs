@@ -1,0 +1,130 @@
+use std::sync::Arc;
+
+use saoms_api::Cause;
+use serde::{Deserialize, Serialize};
+
+use super::entry::What;
+use super::{Entry, Ring, Selection};
+
+/// What is left of the records of a run, and counts of all that were written.
+///
+/// ```
+/// use saoms_core::journal::Journal;
+///
+/// let json = r#"{"records": 2, "overwritten": 0, "lost": 0, "loops": [], "entries": [
+///     {"id": 1, "time_s": 1.0, "component": "Gate", "phase": "symptom", "text": "a piece waits"},
+///     {"id": 2, "time_s": 1.1, "component": "Robot", "loop": "Path", "phase": "decision", "text": "drives to it", "cause": 1}]}"#;
+/// let journal: Journal = serde_json::from_str(json)?;
+/// let decision = journal.of("Robot").of_loop("Path").decisions().last().unwrap();
+/// let (reasons, missing) = journal.reasons(decision);
+/// assert_eq!(reasons[0].text(), "a piece waits");
+/// assert_eq!(missing, None);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Journal {
+    /// How many records were written.
+    pub records: u64,
+    /// How many of them were overwritten by newer ones of the same component.
+    pub overwritten: u64,
+    /// How many came faster than the file of the journal could take them, or could not be written to it. 0 where there was no file.
+    pub lost: u64,
+    /// Counts of the records of each loop that wrote any.
+    pub loops: Vec<LoopCounts>,
+    /// Ordered by number.
+    pub(super) entries: Vec<Entry>,
+}
+
+/// How many records a loop wrote.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LoopCounts {
+    /// The path of the component.
+    pub component: String,
+    /// The loop; `null` is the component itself, outside all loops.
+    #[serde(rename = "loop")]
+    pub loop_name: Option<String>,
+    /// What it found, without repetitions.
+    pub symptoms: u64,
+    /// What it decided, without repetitions.
+    pub decisions: u64,
+    /// What it did, changes of the knowledge included.
+    pub effects: u64,
+    /// Decisions from which nothing followed: no effect, no message, no call.
+    pub without_effect: u64,
+}
+
+impl LoopCounts {
+    /// All records together.
+    pub fn records(&self) -> u64 {
+        self.symptoms + self.decisions + self.effects
+    }
+}
+
+impl Journal {
+    /// What the components of a run have written.
+    pub(crate) fn of_rings<'a>(rings: impl Iterator<Item = (&'a Arc<str>, &'a Ring)>) -> Journal {
+        let mut journal = Journal::default();
+        for (component, ring) in rings {
+            journal.overwritten += ring.overwritten;
+            for (index, tally) in ring.tallies.iter().enumerate().filter(|(_, tally)| tally.total() > 0) {
+                journal.records += tally.total();
+                journal.loops.push(LoopCounts {
+                    component: component.to_string(),
+                    loop_name: ring.name((index as u16).wrapping_sub(1)).map(|name| name.to_string()),
+                    symptoms: tally.symptoms,
+                    decisions: tally.decisions,
+                    effects: tally.effects,
+                    without_effect: tally.without_effect(),
+                });
+            }
+            for batch in ring.batches() {
+                journal.entries.extend(batch.heads().iter().map(|head| Entry {
+                    id: head.id,
+                    time: head.time(),
+                    component: Arc::clone(component),
+                    loop_name: ring.name(head.place),
+                    phase: head.phase,
+                    cause: head.cause,
+                    change: head.change,
+                    what: What::Noted(batch.record(head)),
+                }));
+            }
+        }
+        journal.entries.sort_unstable_by_key(|entry| entry.id);
+        journal
+    }
+
+    /// All records that are left, oldest first.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// All records that are left, to choose from.
+    pub fn all(&self) -> Selection<'_> {
+        Selection::new(self.entries.iter())
+    }
+
+    /// The records of one component that are left, by its path.
+    pub fn of(&self, component: &str) -> Selection<'_> {
+        Selection::new(self.entries.iter().filter(|entry| entry.component() == component))
+    }
+
+    /// The record with this number, if it is left.
+    pub fn entry(&self, id: Cause) -> Option<&Entry> {
+        self.entries.binary_search_by_key(&id, Entry::id).ok().map(|place| &self.entries[place])
+    }
+
+    /// What led to a record: the record that it follows from, the one that this follows from, and so on back to the root. The number is that
+    /// of the record at which the way back is lost, because it was overwritten.
+    pub fn reasons(&self, entry: &Entry) -> (Vec<&Entry>, Option<Cause>) {
+        let mut reasons = Vec::new();
+        let mut next = entry.cause();
+        while next != Cause::default() {
+            let Some(entry) = self.entry(next) else { return (reasons, Some(next)) };
+            reasons.push(entry);
+            // A cause is always older, so that this ends; a journal that says otherwise is not read.
+            next = entry.cause();
+        }
+        (reasons, None)
+    }
+}

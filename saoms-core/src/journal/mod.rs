@@ -1,0 +1,29 @@
+//! The journal of a run: what each loop of each component saw, decided and did, and what came from what.
+//!
+//! While a component's code runs, its records go to a buffer of its own; they are handed over together with the messages that it sent, into a
+//! ring of the newest records of each component, and to a file where one was asked for. A record keeps its text and values apart: it is formatted
+//! when somebody reads it.
+
+mod batch;
+mod entry;
+mod fingerprint;
+mod json;
+mod kept;
+mod read;
+mod recorder;
+mod ring;
+mod select;
+mod stream;
+#[cfg(test)]
+mod tests;
+mod why;
+
+pub(crate) use batch::Head;
+pub use entry::{Change, Entry};
+pub use kept::{Journal, LoopCounts};
+pub use read::{Document, Named, ReadError, read};
+pub(crate) use recorder::{Recorder, Stamp};
+pub(crate) use ring::Ring;
+pub use select::Selection;
+pub(crate) use stream::{JournalFile, Stream, Written};
+pub use why::{Chain, Known, Why, WhyError};

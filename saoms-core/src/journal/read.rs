@@ -1,0 +1,162 @@
+use std::fmt;
+
+use saoms_api::Time;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::json::{in_order, time};
+use super::{Entry, Journal};
+
+/// A component of the fleet whose journal it is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Named {
+    /// Its path in the composite.
+    pub name: String,
+    /// Its `ID`; a passive component has none.
+    #[serde(default)]
+    pub id: Option<String>,
+}
+
+/// What a file tells about a run: the report that `saoms run --report` writes, or the lines of `--journal`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document {
+    /// The records.
+    pub journal: Journal,
+    /// The components of the fleet, in document order.
+    pub components: Vec<Named>,
+    /// When the run ended; `None` in a file whose run has not ended, or not properly.
+    pub end: Option<Time>,
+    /// Whether it is a report, which holds the newest records alone.
+    pub is_report: bool,
+}
+
+/// Why a file could not be read as a journal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReadError {
+    /// Something in it is not as it should be.
+    Malformed {
+        /// The line, from 1.
+        line: usize,
+        /// The column, from 1; 0 is the line as a whole.
+        column: usize,
+        /// What was found and what was expected.
+        message: String,
+    },
+    /// It is a report, but holds no journal.
+    NoJournal,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ReadError::Malformed { line, column: 0, message } => write!(formatter, "line {line}: {message}"),
+            ReadError::Malformed { line, column, message } => {
+                write!(formatter, "line {line}, column {column}: {message}")
+            }
+            ReadError::NoJournal => formatter.write_str("this report holds no journal"),
+        }
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+/// What is needed of a report.
+#[derive(Deserialize)]
+struct Report {
+    time_s: f64,
+    components: Vec<Named>,
+    journal: Option<Journal>,
+}
+
+/// The first line of the file of a journal.
+#[derive(Deserialize)]
+struct Head {
+    /// The version of the form.
+    journal: u32,
+    components: Vec<Named>,
+}
+
+/// The last line.
+#[derive(Deserialize)]
+struct Last {
+    end: End,
+}
+
+#[derive(Deserialize)]
+struct End {
+    time_s: f64,
+    lost: u64,
+}
+
+/// Reads a report or the file of a journal, whichever it is.
+///
+/// # Errors
+/// The text is neither, or not whole.
+pub fn read(text: &str) -> Result<Document, ReadError> {
+    let first = text.lines().next().unwrap_or_default();
+    match serde_json::from_str::<Value>(first) {
+        Ok(value) if value.get("journal").is_some_and(Value::is_u64) => lines(text),
+        _ => report(text),
+    }
+}
+
+fn report(text: &str) -> Result<Document, ReadError> {
+    let report: Report = serde_json::from_str(text).map_err(|error| malformed(0, &error, REPORT))?;
+    let journal = report.journal.ok_or(ReadError::NoJournal)?;
+    let end = time(report.time_s).map_err(|wrong| whole(1, wrong.to_string()))?;
+    Ok(Document { journal, components: report.components, end: Some(end), is_report: true })
+}
+
+const REPORT: &str = "expected a report of `saoms run --report`, or a file of `saoms run --journal`";
+
+fn lines(text: &str) -> Result<Document, ReadError> {
+    let mut lines = text.lines().enumerate().peekable();
+    let head = lines.next().map_or("", |(_, line)| line);
+    let head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
+    if head.journal != 1 {
+        let message =
+            format!("this file has the form {}, which a newer version of the program writes", head.journal);
+        return Err(whole(1, message));
+    }
+    let (mut entries, mut end) = (Vec::new(), None);
+    while let Some((number, line)) = lines.next() {
+        if line.trim().is_empty() {
+            continue;
+        }
+        if line.starts_with("{\"end\"") {
+            let last: Last = serde_json::from_str(line)
+                .map_err(|error| malformed(number, &error, "expected the end of the journal"))?;
+            end = Some(last.end);
+            continue;
+        }
+        match serde_json::from_str::<Entry>(line) {
+            Ok(entry) => entries.push(entry),
+            // A run that goes on, or was killed, may have written half of its last line.
+            Err(error) if error.is_eof() && lines.peek().is_none() && !text.ends_with('\n') => {}
+            Err(error) => return Err(malformed(number, &error, "expected a record of the journal")),
+        }
+    }
+    let entries = in_order(entries).map_err(|wrong| whole(1, wrong.to_string()))?;
+    let newest = entries.last().map_or(0, |entry: &Entry| entry.id().0);
+    let lost = newest - entries.len() as u64;
+    let journal = Journal {
+        records: newest.max(entries.len() as u64),
+        lost: end.as_ref().map_or(lost, |end| end.lost),
+        entries,
+        ..Journal::default()
+    };
+    let end = end.map(|end| time(end.time_s)).transpose().map_err(|wrong| whole(1, wrong.to_string()))?;
+    Ok(Document { journal, components: head.components, end, is_report: false })
+}
+
+/// What the reader of JSON says, with the place in the whole text.
+fn malformed(lines_before: usize, error: &serde_json::Error, expected: &str) -> ReadError {
+    let text = error.to_string();
+    let what = text.rfind(" at line ").map_or(text.as_str(), |end| &text[..end]);
+    let line = lines_before + error.line().max(1);
+    ReadError::Malformed { line, column: error.column(), message: format!("{expected}: {what}") }
+}
+
+fn whole(line: usize, message: String) -> ReadError {
+    ReadError::Malformed { line, column: 0, message }
+}

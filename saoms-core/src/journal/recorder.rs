@@ -1,0 +1,259 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use saoms_api::{Cause, Phase, Record, Value};
+
+use super::batch::{Batch, Note, OUTSIDE};
+use super::fingerprint::fingerprint;
+
+/// What a component writes to the journal while its code runs, and what it has in mind for that: where each of its loops is on the way from
+/// symptom to effect.
+#[derive(Debug, Default)]
+pub(crate) struct Recorder {
+    present: Option<u16>,
+    /// The way of what happens outside all loops.
+    outside: Trail,
+    loops: Vec<Way>,
+    /// What is to be handed over.
+    pub(crate) batch: Batch,
+    pub(crate) notices: Vec<Notice>,
+}
+
+/// What is handed over beside the records.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Notice {
+    /// The name of the loop at this place.
+    Name(u16, String),
+    /// The decision of this loop that goes on since an earlier execution had an effect now.
+    Acted(u16),
+}
+
+/// Where records come from: the run's counter of records, the component and the time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stamp<'a> {
+    pub(crate) ids: &'a AtomicU64,
+    pub(crate) component: u32,
+    pub(crate) time: u64,
+}
+
+/// One execution of one loop.
+#[derive(Clone, Copy, Debug, Default)]
+struct Trail {
+    because: Cause,
+    symptom: Option<Noted>,
+    decision: Option<Noted>,
+    newest: Cause,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Noted {
+    fingerprint: u64,
+    id: Cause,
+    /// Its place in the batch, where it is new.
+    at: Option<u32>,
+    acted: bool,
+}
+
+/// A loop in its present execution and in the one before.
+#[derive(Debug, Default)]
+struct Way {
+    /// The number of the present execution, from 1.
+    execution: u64,
+    trail: Trail,
+    last: Trail,
+    /// Digests, causes and numbers of its effects.
+    effects: Vec<(u64, Cause, Cause)>,
+    last_effects: Vec<(u64, Cause, Cause)>,
+}
+
+impl Recorder {
+    /// Whether there is nothing to hand over.
+    #[inline]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.batch.is_empty() && self.notices.is_empty()
+    }
+
+    /// An execution begins, or a call whose caller has this cause.
+    #[inline]
+    pub(crate) fn begin(&mut self, because: Cause) {
+        self.present = None;
+        self.outside = Trail::because(because);
+    }
+
+    /// A new instance begins, which knows nothing of the one before.
+    pub(crate) fn reset(&mut self) {
+        self.loops.clear();
+    }
+
+    pub(crate) fn name(&mut self, place: u32, name: &str) {
+        self.notices.push(Notice::Name(bounded(place), name.to_owned()));
+    }
+
+    /// A loop acts from now on in this execution, or none.
+    pub(crate) fn enter(&mut self, place: Option<u32>, execution: u64) {
+        self.present = place.map(bounded);
+        let Some(place) = self.present.map(usize::from) else { return };
+        if self.loops.len() <= place {
+            self.loops.resize_with(place + 1, Way::default);
+        }
+        let way = &mut self.loops[place];
+        let number = execution + 1;
+        if way.execution == number {
+            return;
+        }
+        let trail = std::mem::take(&mut way.trail);
+        std::mem::swap(&mut way.effects, &mut way.last_effects);
+        way.effects.clear();
+        // Whoever was away for a while begins anew.
+        way.last = if way.execution + 1 == number { trail } else { Trail::default() };
+        if way.execution + 1 != number {
+            way.last_effects.clear();
+        }
+        way.execution = number;
+    }
+
+    pub(crate) fn because(&mut self, cause: Cause) {
+        match self.way() {
+            Some(way) => way.trail.because = cause,
+            None => self.outside = Trail::because(cause),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn cause(&self) -> Cause {
+        let trail = match self.present {
+            Some(place) => &self.loops[usize::from(place)].trail,
+            None => &self.outside,
+        };
+        if trail.newest == Cause::default() { trail.because } else { trail.newest }
+    }
+
+    fn way(&mut self) -> Option<&mut Way> {
+        self.present.and_then(|place| self.loops.get_mut(usize::from(place)))
+    }
+
+    fn trail(&mut self) -> &mut Trail {
+        match self.present {
+            Some(place) => &mut self.loops[usize::from(place)].trail,
+            None => &mut self.outside,
+        }
+    }
+
+    /// Notes down what the present loop saw, decided or did, unless it is what it saw, decided and did in its last execution.
+    pub(crate) fn write(&mut self, stamp: Stamp<'_>, phase: Phase, record: &Record) {
+        let fingerprint = fingerprint(phase, record);
+        match phase {
+            Phase::Symptom => self.symptom(stamp, fingerprint, record),
+            Phase::Decision => self.decision(stamp, fingerprint, record),
+            Phase::Effect => self.effect(stamp, fingerprint, record),
+        }
+    }
+
+    fn symptom(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
+        let before = self.way().and_then(|way| way.last.symptom);
+        let noted = match before.filter(|before| before.fingerprint == fingerprint) {
+            Some(before) => before,
+            None => {
+                let cause = self.trail().because;
+                self.push(stamp, Phase::Symptom, fingerprint, cause, false, record)
+            }
+        };
+        *self.trail() =
+            Trail { because: Cause::default(), symptom: Some(noted), decision: None, newest: noted.id };
+    }
+
+    fn decision(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
+        let cause = self.trail().reason();
+        let before = self.way().and_then(|way| way.last.decision.filter(|_| way.last.symptom_id() == cause));
+        let noted = match before.filter(|before| before.fingerprint == fingerprint) {
+            Some(before) => Noted { at: None, ..before },
+            None => self.push(stamp, Phase::Decision, fingerprint, cause, false, record),
+        };
+        let trail = self.trail();
+        (trail.decision, trail.newest) = (Some(noted), noted.id);
+    }
+
+    fn effect(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
+        self.acted();
+        let cause = self.trail().cause_of_effect();
+        let same = |(digest, reason, _): &&(u64, Cause, Cause)| *digest == fingerprint && *reason == cause;
+        let before = self.way().and_then(|way| way.last_effects.iter().find(same).copied());
+        let effect = before.unwrap_or_else(|| {
+            let noted = self.push(stamp, Phase::Effect, fingerprint, cause, false, record);
+            (fingerprint, cause, noted.id)
+        });
+        self.trail().newest = effect.2;
+        if let Some(way) = self.way() {
+            way.effects.push(effect);
+        }
+    }
+
+    /// Notes down that the present loop changed an entry of the knowledge.
+    pub(crate) fn changed(&mut self, stamp: Stamp<'_>, entry: &'static str, before: Value, after: Value) {
+        if before.is_same(after) {
+            return;
+        }
+        self.acted();
+        let record = saoms_api::record!("{entry}: {before} -> {after}", entry, before, after);
+        let cause = self.trail().cause_of_effect();
+        let fingerprint = fingerprint(Phase::Effect, &record);
+        self.trail().newest = self.push(stamp, Phase::Effect, fingerprint, cause, true, &record).id;
+    }
+
+    /// Something followed from the present decision: an effect, a message, a call.
+    #[inline]
+    pub(crate) fn acted(&mut self) {
+        let Some(decision) = self.trail().decision.as_mut().filter(|decision| !decision.acted) else {
+            return;
+        };
+        decision.acted = true;
+        match decision.at {
+            Some(at) => {
+                if let Some(head) = self.batch.head_mut(at) {
+                    head.acted = true;
+                }
+            }
+            None => self.notices.push(Notice::Acted(self.present.unwrap_or(OUTSIDE))),
+        }
+    }
+
+    fn push(
+        &mut self,
+        stamp: Stamp<'_>,
+        phase: Phase,
+        fingerprint: u64,
+        cause: Cause,
+        change: bool,
+        record: &Record,
+    ) -> Noted {
+        let Stamp { ids, component, time } = stamp;
+        let id = Cause(ids.fetch_add(1, Ordering::Relaxed) + 1);
+        let at = Some(self.batch.len() as u32);
+        let place = self.present.unwrap_or(OUTSIDE);
+        self.batch.push(&Note { id, time, cause, fingerprint, component, place, phase, change, record });
+        Noted { fingerprint, id, at, acted: false }
+    }
+}
+
+impl Trail {
+    fn because(cause: Cause) -> Trail {
+        Trail { because: cause, ..Trail::default() }
+    }
+
+    fn symptom_id(&self) -> Cause {
+        self.symptom.map_or(Cause::default(), |symptom| symptom.id)
+    }
+
+    /// Where a decision comes from.
+    fn reason(&self) -> Cause {
+        self.symptom.map_or(self.because, |symptom| symptom.id)
+    }
+
+    fn cause_of_effect(&self) -> Cause {
+        self.decision.map_or_else(|| self.reason(), |decision| decision.id)
+    }
+}
+
+/// Nobody has so many loops.
+fn bounded(place: u32) -> u16 {
+    u16::try_from(place).unwrap_or(OUTSIDE).min(OUTSIDE - 1)
+}

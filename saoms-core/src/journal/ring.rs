@@ -1,0 +1,126 @@
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use saoms_api::Phase;
+
+use super::batch::{Batch, Head, OUTSIDE};
+use super::recorder::{Notice, Recorder};
+
+/// How many records lie together: they come to be and are overwritten together, so that none is ever moved.
+const CHUNK: usize = 64;
+
+/// The newest records of one component, and counts of all that it has written.
+#[derive(Debug, Default)]
+pub(crate) struct Ring {
+    chunks: VecDeque<Batch>,
+    pub(super) overwritten: u64,
+    /// Those of each loop by its place, first those of none.
+    pub(super) tallies: Vec<Tally>,
+    names: Names,
+}
+
+/// What a component's loops are called.
+#[derive(Debug, Default)]
+pub(super) struct Names(Vec<Option<Arc<str>>>);
+
+impl Names {
+    pub(super) fn set(&mut self, place: u16, name: &str) {
+        let place = usize::from(place);
+        if self.0.len() <= place {
+            self.0.resize(place + 1, None);
+        }
+        self.0[place] = Some(Arc::from(name));
+    }
+
+    /// The name of a loop; `None` outside all of them.
+    pub(super) fn get(&self, place: u16) -> Option<Arc<str>> {
+        if place == OUTSIDE {
+            return None;
+        }
+        let name = self.0.get(usize::from(place)).cloned().flatten();
+        Some(name.unwrap_or_else(|| Arc::from(format!("loop {}", place + 1))))
+    }
+}
+
+/// How many records of each phase one loop has written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Tally {
+    pub(super) symptoms: u64,
+    pub(super) decisions: u64,
+    pub(super) effects: u64,
+    /// Decisions from which nothing followed, before the present one.
+    idle: u64,
+    /// Nothing has followed from the present one.
+    waiting: bool,
+}
+
+impl Tally {
+    pub(super) fn without_effect(&self) -> u64 {
+        self.idle + u64::from(self.waiting)
+    }
+
+    pub(super) fn total(&self) -> u64 {
+        self.symptoms + self.decisions + self.effects
+    }
+}
+
+impl Ring {
+    /// Takes over what a component has written, and keeps at most so many records.
+    pub(crate) fn take(&mut self, recorder: &mut Recorder, capacity: usize) {
+        for notice in recorder.notices.drain(..) {
+            match notice {
+                Notice::Name(place, name) => self.names.set(place, &name),
+                Notice::Acted(place) => self.tally(place).waiting = false,
+            }
+        }
+        for head in recorder.batch.heads() {
+            self.count(head);
+            self.room(capacity).copy(head, &recorder.batch);
+        }
+        recorder.batch.clear();
+    }
+
+    fn count(&mut self, head: &Head) {
+        let tally = self.tally(head.place);
+        match head.phase {
+            Phase::Symptom => tally.symptoms += 1,
+            Phase::Decision => {
+                tally.decisions += 1;
+                tally.idle += u64::from(std::mem::replace(&mut tally.waiting, !head.acted));
+            }
+            Phase::Effect => tally.effects += 1,
+        }
+    }
+
+    fn tally(&mut self, place: u16) -> &mut Tally {
+        let index = usize::from(place.wrapping_add(1));
+        if self.tallies.len() <= index {
+            self.tallies.resize(index + 1, Tally::default());
+        }
+        &mut self.tallies[index]
+    }
+
+    /// The chunk with room for the next record.
+    fn room(&mut self, capacity: usize) -> &mut Batch {
+        if self.chunks.back().is_none_or(|chunk| chunk.len() >= CHUNK) {
+            // Never the newest chunk itself: it would leave nothing.
+            let full = self.chunks.len() >= capacity.div_ceil(CHUNK).max(2);
+            let mut chunk = full.then(|| self.chunks.pop_front()).flatten().unwrap_or_default();
+            self.overwritten += chunk.len() as u64;
+            chunk.clear();
+            self.chunks.push_back(chunk);
+        }
+        let last = self.chunks.len() - 1;
+        &mut self.chunks[last]
+    }
+
+    /// The records that are left, oldest first.
+    pub(super) fn batches(&self) -> impl Iterator<Item = &Batch> {
+        self.chunks.iter()
+    }
+
+    /// The name of a loop; `None` outside all of them.
+    pub(super) fn name(&self, place: u16) -> Option<Arc<str>> {
+        self.names.get(place)
+    }
+}

@@ -1,0 +1,111 @@
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use saoms_api::{Phase, Time};
+
+use super::Entry;
+
+/// Records of a journal, oldest first: all, or those that are left after some were filtered out.
+///
+/// It shows as one line for each record, so that a test can compare all of them with a text.
+#[derive(Clone, Debug, Default)]
+pub struct Selection<'a> {
+    entries: Vec<&'a Entry>,
+}
+
+impl<'a> Selection<'a> {
+    pub(super) fn new(entries: impl Iterator<Item = &'a Entry>) -> Selection<'a> {
+        Selection { entries: entries.collect() }
+    }
+
+    /// Those of one component, by its path.
+    #[must_use]
+    pub fn of(self, component: &str) -> Selection<'a> {
+        self.only(|entry| entry.component() == component)
+    }
+
+    /// Those of the loops with this name.
+    #[must_use]
+    pub fn of_loop(self, name: &str) -> Selection<'a> {
+        self.only(|entry| entry.loop_name() == Some(name))
+    }
+
+    /// What was seen.
+    #[must_use]
+    pub fn symptoms(self) -> Selection<'a> {
+        self.only(|entry| entry.phase() == Phase::Symptom)
+    }
+
+    /// What was decided.
+    #[must_use]
+    pub fn decisions(self) -> Selection<'a> {
+        self.only(|entry| entry.phase() == Phase::Decision)
+    }
+
+    /// What was done, the changes of knowledge among it.
+    #[must_use]
+    pub fn effects(self) -> Selection<'a> {
+        self.only(|entry| entry.phase() == Phase::Effect)
+    }
+
+    /// The changes of this entry of the knowledge.
+    #[must_use]
+    pub fn changes(self, entry: &str) -> Selection<'a> {
+        self.only(|one| one.change().is_some_and(|change| change.entry == entry))
+    }
+
+    /// Those of this time of the run.
+    #[must_use]
+    pub fn during(self, times: RangeInclusive<Time>) -> Selection<'a> {
+        self.only(|entry| times.contains(&entry.time()))
+    }
+
+    /// Those whose text contains this.
+    #[must_use]
+    pub fn with(self, text: &str) -> Selection<'a> {
+        self.only(|entry| entry.text().contains(text))
+    }
+
+    /// Those for which this holds.
+    #[must_use]
+    pub fn only(mut self, holds: impl Fn(&Entry) -> bool) -> Selection<'a> {
+        self.entries.retain(|entry| holds(entry));
+        self
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// The oldest.
+    pub fn first(&self) -> Option<&'a Entry> {
+        self.entries.first().copied()
+    }
+
+    /// The newest.
+    pub fn last(&self) -> Option<&'a Entry> {
+        self.entries.last().copied()
+    }
+
+    /// Each of them, oldest first.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &'a Entry> {
+        self.entries.iter().copied()
+    }
+
+    /// Their texts, oldest first.
+    pub fn texts(&self) -> Vec<String> {
+        self.iter().map(Entry::text).collect()
+    }
+}
+
+impl fmt::Display for Selection<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.iter().try_for_each(|entry| writeln!(formatter, "{entry}"))
+    }
+}

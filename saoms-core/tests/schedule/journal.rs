@@ -1,0 +1,298 @@
+//! The journal of fleets whose loops talk to each other over topics.
+
+use std::sync::Arc;
+
+use saoms_api::{
+    Class, Component, Context, DynLoop, Failure, Knowledge, Loop, Loops, Message, Properties, Publisher,
+    Record, Registration, Subscription, Topic, Value, record,
+};
+use saoms_core::assembly::Assembly;
+use saoms_core::journal::Journal;
+use saoms_core::registry::Registry;
+use saoms_core::report::RunReport;
+use saoms_core::schedule::{Fleet, Quiet, Settings};
+
+use crate::fleet::{assembly_of, simulated, unindent};
+
+/// A piece of luggage that waits.
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Request {
+    piece: u32,
+}
+
+/// Who takes it.
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Taken {
+    piece: u32,
+}
+
+const REQUESTS: Topic<Request> = Topic::event("REQUESTS");
+const TAKEN: Topic<Taken> = Topic::event("TAKEN");
+
+/// When pieces appear.
+#[derive(Clone, Properties)]
+struct GateProperties {
+    /// In which executions.
+    #[property(default = 2)]
+    every: u64,
+}
+
+/// Asks for help: the root of every chain.
+#[derive(Class)]
+#[class(name = "gate", periodic, publishes(REQUESTS), subscribes(TAKEN))]
+struct Gate {
+    every: u64,
+    requests: Publisher<Request>,
+    taken: Subscription<Taken>,
+}
+
+impl Component for Gate {
+    type Properties = GateProperties;
+
+    fn new(properties: GateProperties) -> Result<Self, Failure> {
+        Ok(Gate { every: properties.every, requests: Publisher::default(), taken: Subscription::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.requests = context.publish(&REQUESTS)?;
+        self.taken = context.subscribe(&TAKEN)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for (header, taken) in context.receive(&self.taken).with_headers() {
+            context.because(header.cause);
+            context.effect(record!("strikes piece {piece} off its list", piece = taken.piece));
+        }
+        if context.execution() % self.every == 1 {
+            let piece = u32::try_from(context.execution() / self.every).unwrap_or(0) + 1;
+            context.because(saoms_api::Cause::default());
+            context.symptom(record!("piece {piece} waits at {place}", piece, place = (3, 1)));
+            context.send(&self.requests, Request { piece })?;
+        }
+        Ok(())
+    }
+}
+
+/// Passes messages on, and has no opinion.
+#[derive(Class)]
+#[class(name = "relay", periodic, publishes(REQUESTS), subscribes(REQUESTS))]
+struct Relay {
+    requests: Publisher<Request>,
+    heard: Subscription<Request>,
+}
+
+impl Component for Relay {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Relay { requests: Publisher::default(), heard: Subscription::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.heard = context.subscribe(&Topic::<Request>::event("FIRST"))?;
+        self.requests = context.publish(&REQUESTS)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for (header, request) in context.receive(&self.heard).with_headers() {
+            context.because(header.cause);
+            context.send(&self.requests, request.clone())?;
+        }
+        Ok(())
+    }
+}
+
+/// What a robot knows.
+#[derive(Default)]
+struct Mind {
+    piece: Option<(u32, saoms_api::Cause)>,
+    charge: i64,
+    told: bool,
+}
+
+impl Knowledge for Mind {
+    fn declaration(&self) -> &'static str {
+        "{}"
+    }
+
+    fn get(&self, _: u32) -> Option<Value> {
+        None
+    }
+
+    fn set(&mut self, _: u32, _: Value) -> Result<(), Failure> {
+        Err(Failure::new("nothing can be set"))
+    }
+}
+
+/// Takes what waits.
+#[derive(Default)]
+struct JobLoop {
+    heard: Subscription<Request>,
+    taken: Publisher<Taken>,
+}
+
+impl Loop for JobLoop {
+    type Properties = ();
+    type Knowledge = Mind;
+    type Symptom = Record;
+    type Decision = Record;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(JobLoop::default())
+    }
+
+    fn initialize(&mut self, _: &mut Mind, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.heard = context.subscribe(&REQUESTS)?;
+        self.taken = context.publish(&TAKEN)?;
+        Ok(())
+    }
+
+    fn monitor(&mut self, mind: &mut Mind, context: &mut Context<'_>) -> Result<(), Failure> {
+        if let Some((header, request)) = context.receive(&self.heard).with_headers().last() {
+            mind.piece = Some((request.piece, header.cause));
+            mind.told = false;
+        }
+        Ok(())
+    }
+
+    fn analyze(&mut self, mind: &mut Mind, context: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        let Some((piece, cause)) = mind.piece else { return Ok(None) };
+        context.because(cause);
+        Ok(Some(record!("hears of piece {piece}", piece)))
+    }
+
+    fn plan(&mut self, _: Record, mind: &mut Mind, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        Ok((mind.charge > 0).then(|| record!("takes it")))
+    }
+
+    fn execute(&mut self, _: Record, mind: &mut Mind, context: &mut Context<'_>) -> Result<(), Failure> {
+        if let Some((piece, _)) = mind.piece
+            && !std::mem::replace(&mut mind.told, true)
+        {
+            context.send(&self.taken, Taken { piece })?;
+        }
+        context.effect(record!("goes on"));
+        Ok(())
+    }
+}
+
+/// Finds the battery low, and can do nothing about it.
+#[derive(Default)]
+struct BatteryLoop;
+
+impl Loop for BatteryLoop {
+    type Properties = ();
+    type Knowledge = Mind;
+    type Symptom = Record;
+    type Decision = Record;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(BatteryLoop)
+    }
+
+    fn monitor(&mut self, mind: &mut Mind, _: &mut Context<'_>) -> Result<(), Failure> {
+        mind.charge -= 1;
+        Ok(())
+    }
+
+    fn analyze(&mut self, mind: &mut Mind, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        Ok((mind.charge <= 2).then(|| record!("{charge} left", charge = mind.charge)))
+    }
+
+    fn plan(&mut self, _: Record, _: &mut Mind, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        Ok(Some(record!("would charge")))
+    }
+
+    fn execute(&mut self, _: Record, _: &mut Mind, _: &mut Context<'_>) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+/// What a robot is given.
+#[derive(Clone, Properties)]
+struct RobotProperties {
+    /// How many executions the battery lasts.
+    #[property(default = 1000)]
+    charge: i64,
+    /// In which execution it fails.
+    #[property(default = 1_000_000)]
+    fails: u64,
+}
+
+/// Adapts itself by two loops.
+#[derive(Class)]
+#[class(name = "robot", periodic, publishes(TAKEN), subscribes(REQUESTS))]
+struct Robot {
+    properties: RobotProperties,
+    mind: Mind,
+    loops: Loops,
+}
+
+impl Component for Robot {
+    type Properties = RobotProperties;
+
+    fn new(properties: RobotProperties) -> Result<Self, Failure> {
+        let loops: [(String, Box<dyn DynLoop>); 2] = [
+            ("Battery".to_owned(), Box::new(BatteryLoop)),
+            ("Jobs".to_owned(), Box::new(JobLoop::default())),
+        ];
+        let mind = Mind { charge: properties.charge, ..Mind::default() };
+        Ok(Robot { properties, mind, loops: Loops::of(loops) })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.loops.initialize(&mut self.mind, context)
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.loops.monitor(&mut self.mind, context)?;
+        self.loops.adapt(&mut self.mind, context)?;
+        if context.execution() == self.properties.fails {
+            return Err(Failure::new("breaks down"));
+        }
+        Ok(())
+    }
+}
+
+fn fleet(text: &str) -> Assembly {
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Gate>()).unwrap();
+    registry.add(Registration::of::<Relay>()).unwrap();
+    registry.add(Registration::of::<Robot>()).unwrap();
+    assembly_of(text, &registry)
+}
+
+fn run(text: &str, settings: Settings) -> RunReport {
+    Fleet::start(fleet(text), settings, Arc::new(Quiet)).unwrap().run_to_end()
+}
+
+/// The records of a run in virtual time: number, cause, and the record itself.
+fn records(journal: &Journal) -> String {
+    let lines = journal.entries().iter().map(|entry| {
+        let (id, cause) = (entry.id().0, entry.cause().0);
+        let cause = if cause == 0 { String::new() } else { format!(" <- {cause}") };
+        format!("{id}{cause} [{entry}]\n")
+    });
+    lines.collect()
+}
+
+const PAIR: &str = "Gate gate period=100 every=4
+     Robot robot period=100 delay=50";
+
+#[test]
+fn a_chain_leads_through_messages_from_component_to_component() {
+    let report = run(PAIR, simulated(400));
+    assert_eq!(
+        records(&report.journal),
+        unindent(
+            "1 [0.100 s Gate - symptom: piece 1 waits at (3,1)]
+             2 <- 1 [0.150 s Robot Jobs symptom: hears of piece 1]
+             3 <- 2 [0.150 s Robot Jobs decision: takes it]
+             4 <- 3 [0.150 s Robot Jobs effect: goes on]
+             5 <- 3 [0.200 s Gate - effect: strikes piece 1 off its list]
+            "
+        ) + "\n"
+    );
+}
