@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use saoms_api::{
-    Class, Component, Context, DynLoop, Failure, Knowledge, Loop, Loops, Message, Properties, Publisher,
-    Record, Registration, Subscription, Topic, Value, record,
+    Class, Component, Context, DynLoop, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
+    Properties, Publisher, Record, Registration, Subscription, Topic, record,
 };
 use saoms_core::assembly::Assembly;
 use saoms_core::journal::Journal;
@@ -105,29 +105,22 @@ impl Component for Relay {
 }
 
 /// What a robot knows.
-#[derive(Default)]
+#[derive(Default, Knowledge)]
+#[knowledge(name = "test.Mind")]
 struct Mind {
     piece: Option<(u32, saoms_api::Cause)>,
+    #[entry]
     charge: i64,
-    told: bool,
-}
-
-impl Knowledge for Mind {
-    fn declaration(&self) -> &'static str {
-        "{}"
-    }
-
-    fn get(&self, _: u32) -> Option<Value> {
-        None
-    }
-
-    fn set(&mut self, _: u32, _: Value) -> Result<(), Failure> {
-        Err(Failure::new("nothing can be set"))
-    }
+    /// The piece that others were told of.
+    #[entry(effector)]
+    told: u32,
+    #[extras]
+    extras: Extras,
 }
 
 /// Takes what waits.
-#[derive(Default)]
+#[derive(Default, LoopClass)]
+#[looping(name = "test.Jobs", effects("told"))]
 struct JobLoop {
     heard: Subscription<Request>,
     taken: Publisher<Taken>,
@@ -152,7 +145,6 @@ impl Loop for JobLoop {
     fn monitor(&mut self, mind: &mut Mind, context: &mut Context<'_>) -> Result<(), Failure> {
         if let Some((header, request)) = context.receive(&self.heard).with_headers().last() {
             mind.piece = Some((request.piece, header.cause));
-            mind.told = false;
         }
         Ok(())
     }
@@ -169,7 +161,7 @@ impl Loop for JobLoop {
 
     fn execute(&mut self, _: Record, mind: &mut Mind, context: &mut Context<'_>) -> Result<(), Failure> {
         if let Some((piece, _)) = mind.piece
-            && !std::mem::replace(&mut mind.told, true)
+            && std::mem::replace(&mut mind.told, piece) != piece
         {
             context.send(&self.taken, Taken { piece })?;
         }
@@ -179,7 +171,8 @@ impl Loop for JobLoop {
 }
 
 /// Finds the battery low, and can do nothing about it.
-#[derive(Default)]
+#[derive(Default, LoopClass)]
+#[looping(name = "test.Battery")]
 struct BatteryLoop;
 
 impl Loop for BatteryLoop {
@@ -291,7 +284,8 @@ fn a_chain_leads_through_messages_from_component_to_component() {
              2 <- 1 [0.150 s Robot Jobs symptom: hears of piece 1]
              3 <- 2 [0.150 s Robot Jobs decision: takes it]
              4 <- 3 [0.150 s Robot Jobs effect: goes on]
-             5 <- 3 [0.200 s Gate - effect: strikes piece 1 off its list]
+             5 <- 3 [0.150 s Robot Jobs effect: told: 0 -> 1]
+             6 <- 3 [0.200 s Gate - effect: strikes piece 1 off its list]
             "
         ) + "\n"
     );
