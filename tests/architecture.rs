@@ -13,6 +13,7 @@ const CORE: &[&str] = &[
     "model",
     "format",
     "load",
+    "schema",
     "registry",
     "plugin",
     "assembly",

@@ -13,5 +13,6 @@ pub mod plugin;
 pub mod registry;
 pub mod report;
 pub mod schedule;
+pub mod schema;
 pub mod source;
 pub mod xml;

@@ -1,0 +1,106 @@
+use proptest::prelude::*;
+use saoms_api::{Field, Message, cdr};
+use serde_json::json;
+
+use super::Schema;
+
+/// What it is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+enum Kind {
+    #[default]
+    Landing,
+    Takeoff,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Field)]
+struct Block {
+    x: i32,
+    y: i64,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Message)]
+struct All {
+    small: u8,
+    flag: bool,
+    text: String,
+    kind: Kind,
+    block: Block,
+    blocks: Vec<Block>,
+    numbers: Vec<f64>,
+    large: u64,
+    half: f32,
+}
+
+fn schema() -> Schema {
+    Schema::parse(All::SCHEMA).unwrap()
+}
+
+prop_compose! {
+    fn all()(
+        small: u8, flag: bool, text in ".{0,8}", takeoff: bool, x: i32, y: i64,
+        numbers in prop::collection::vec(-1e9..1e9f64, 0..4), large: u64, count in 0..3usize,
+    ) -> All {
+        All {
+            small, flag, text, kind: if takeoff { Kind::Takeoff } else { Kind::Landing }, block: Block { x, y },
+            blocks: vec![Block { x: y as i32, y: x.into() }; count], numbers, large, half: 0.5,
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn bytes_of_a_message_are_that_message_and_come_back_from_json(message in all()) {
+        let bytes = cdr::encode(&message);
+        prop_assert!(schema().check(&bytes).is_ok());
+        let value = schema().decode(&bytes).unwrap();
+        prop_assert_eq!(schema().encode(&value).unwrap(), bytes);
+    }
+
+    #[test]
+    fn any_bytes_are_judged_as_the_type_itself_does(message in all(), at in 0..200usize, byte: u8, cut in 0..200usize) {
+        let mut bytes = cdr::encode(&message);
+        let place = at % bytes.len();
+        bytes[place] = byte;
+        bytes.truncate(cut.max(1));
+        prop_assert_eq!(schema().check(&bytes).is_ok(), cdr::decode::<All>(&bytes).is_ok());
+        prop_assert_eq!(schema().decode(&bytes).is_ok(), cdr::decode::<All>(&bytes).is_ok());
+    }
+}
+
+#[test]
+fn json_is_what_people_expect() {
+    let value = schema()
+        .decode(&cdr::encode(&All { kind: Kind::Takeoff, half: f32::NAN, ..All::default() }))
+        .unwrap();
+    assert_eq!(value["kind"], "TAKEOFF");
+    assert_eq!(value["block"], json!({"x": 0, "y": 0}));
+    assert_eq!(value["half"], "NaN");
+}
+
+#[test]
+fn wrong_json_is_told() {
+    let block = Schema::parse(r#"{"name":"Block","fields":[{"name":"x","type":"int8"}]}"#).unwrap();
+    let error = |value| block.encode(&value).unwrap_err().to_string();
+    assert_eq!(error(json!({"x": 200})), "field `x`: found 200, expected a whole number from -128 to 127");
+    assert_eq!(error(json!({"x": "1"})), "field `x`: found \"1\", expected a whole number from -128 to 127");
+    assert_eq!(error(json!({"y": 1})), "`Block` has no field `y`; its fields are: x");
+    assert_eq!(error(json!({})), "field `x` of `Block` is missing");
+    assert_eq!(error(json!(1)), "found 1, expected an object");
+}
+
+#[test]
+fn a_schema_that_is_none_is_refused() {
+    for text in [
+        "",
+        "{}",
+        r#"{"name":"A","fields":[{"name":"x","type":"int9"}]}"#,
+        r#"{"name":"A","fields":[{"name":"x","type":{"enumeration":"float32","values":{}}}]}"#,
+        r#"{"name":"A","fields":[{"name":"x","type":{"enumeration":"uint8","values":{"A":"1"}}}]}"#,
+    ] {
+        assert!(Schema::parse(text).is_err(), "{text}");
+    }
+    let deep = (0..40).fold("\"int8\"".to_owned(), |inner, _| format!("{{\"sequence\":{inner}}}"));
+    let error =
+        Schema::parse(&format!(r#"{{"name":"A","fields":[{{"name":"x","type":{deep}}}]}}"#)).unwrap_err();
+    assert!(error.to_string().contains("32 deep"), "{error}");
+}
