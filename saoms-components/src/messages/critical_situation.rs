@@ -3,6 +3,7 @@ use std::fmt;
 use saoms_api::{Field, Message};
 
 use crate::grid::Block;
+use crate::robot::Job;
 
 /// What a robot was doing when it became critical.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
@@ -53,6 +54,18 @@ pub struct CriticalSituation {
     pub healer: u32,
     /// Where the healer is; without meaning in a request.
     pub healer_block: Block,
+}
+
+impl CriticalSituation {
+    /// What a healer has to bring: what the robot carries, from where it is, or what it was to collect.
+    pub fn job(&self) -> Option<Job> {
+        let from = match self.kind {
+            CriticalKind::CarriesLuggage => self.block,
+            CriticalKind::OnTheWay => self.from,
+            CriticalKind::Idle => return None,
+        };
+        Some(Job { luggage: self.luggage, from, to: self.to })
+    }
 }
 
 impl fmt::Display for CriticalSituation {

@@ -4,6 +4,9 @@ use saoms_api::Message;
 
 use crate::grid::Block;
 
+/// Below so many percent a robot that is awaked would soon have to charge again, as the manual's robots do.
+const LOW: f64 = 35.0;
+
 /// That a robot is there, or no longer is.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(key = "robot")]
@@ -25,6 +28,11 @@ pub struct RobotList {
 }
 
 impl RobotList {
+    /// Whether it is asleep, and charged so far that it can work when it is awaked.
+    pub fn can_be_awaked(&self) -> bool {
+        self.active && self.asleep && self.battery > LOW
+    }
+
     /// Whether its battery is empty, with no charger there.
     pub fn is_out_of_battery(&self) -> bool {
         self.battery <= 0.0 && !self.in_charge

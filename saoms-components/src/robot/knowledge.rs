@@ -2,7 +2,9 @@ use saoms_api::{Context, Entries, Extras, Knowledge, Publisher, Subscription};
 
 use crate::grid::Block;
 use crate::hardware::Action;
-use crate::messages::{Collision, EventLuggage, Position, Priority, RobotList};
+use crate::messages::{
+    Collision, CriticalKind, CriticalSituation, EventLuggage, Position, Priority, RobotList,
+};
 
 use super::actions::Outcome;
 use super::hooks::Hooks;
@@ -38,6 +40,12 @@ pub struct RobotKnowledge {
     /// Its state.
     #[entry(flatten)]
     pub variables: Variables,
+    /// Whether it broke and does nothing any more.
+    pub shut_down: bool,
+    /// The robot for which it has to stand in, where somebody awaked it for that.
+    pub stands_in_for: Option<u32>,
+    /// Whether it was sent under charge, so that nobody has to stand in for it.
+    pub relieved: bool,
     /// What it heard from others.
     pub lists: Lists,
     /// The area and the ways through it.
@@ -73,6 +81,9 @@ impl RobotKnowledge {
             battery,
             job: None,
             variables: Variables::default(),
+            shut_down: false,
+            stands_in_for: None,
+            relieved: false,
             lists: Lists::new(number),
             routes: Routes::default(),
             hooks: Hooks::default(),
@@ -112,6 +123,30 @@ impl RobotKnowledge {
             next: self.next,
             wanted: self.next,
             priority: Priority { rank: 0, robot: self.number },
+        }
+    }
+
+    /// What it is doing, in the terms of a critical situation.
+    pub fn critical_kind(&self) -> CriticalKind {
+        match self.job {
+            Some(_) if self.variables.has_luggage => CriticalKind::CarriesLuggage,
+            Some(_) => CriticalKind::OnTheWay,
+            None => CriticalKind::Idle,
+        }
+    }
+
+    /// Its request for a healer.
+    pub fn situation(&self, kind: CriticalKind) -> CriticalSituation {
+        let (luggage, from, to) =
+            self.job.map_or((0, self.block, self.block), |job| (job.luggage, job.from, job.to));
+        CriticalSituation {
+            critical: self.number,
+            block: self.block,
+            luggage,
+            from,
+            to,
+            kind,
+            ..CriticalSituation::default()
         }
     }
 

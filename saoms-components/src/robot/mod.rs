@@ -19,12 +19,14 @@ use saoms_api::{Class, Component, Context, Failure, Loops};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::{COLLISION, EVENT_LUGGAGE, POSITION, ROBOT_LIST};
+use crate::messages::{
+    COLLISION, CRITICAL_SITUATION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST, ROBOT_STATE,
+};
 
 pub use battery::Battery;
 pub use job::Job;
 pub use knowledge::{RobotKnowledge, Variables};
-pub use lists::{Lists, Peers, Request, Requests, Rival};
+pub use lists::{Help, Helps, Lists, Peers, Request, Requests, Rival};
 pub use properties::{Policy, RobotProperties};
 pub use routes::Routes;
 
@@ -38,8 +40,8 @@ use hooks::{Hooks, Reply};
 #[class(
     name = "saoms.Robot",
     periodic,
-    publishes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, COLLISION),
-    subscribes(EVENT_LUGGAGE, ROBOT_LIST, POSITION),
+    publishes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, COLLISION, ROBOT_STATE, CRITICAL_SITUATION),
+    subscribes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, ROBOT_STATE, CRITICAL_SITUATION, FAULT),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
@@ -87,6 +89,9 @@ impl Component for Robot {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if self.knowledge.shut_down {
+            return Ok(());
+        }
         let entered = self.enter(context)?;
         if entered {
             context.console(format_args!(
@@ -100,8 +105,12 @@ impl Component for Robot {
         self.loops.monitor(&mut self.knowledge, context)?;
         if entered {
             self.knowledge.show_lists(context);
+            let in_charge = self.knowledge.variables.in_charge;
             self.loops.adapt(&mut self.knowledge, context)?;
-            self.knowledge.show_battery(context);
+            // As in figures 8.6 and 8.15, a robot that arrives at its charger says that alone.
+            if in_charge || !self.knowledge.variables.in_charge {
+                self.knowledge.show_battery(context);
+            }
         }
         Ok(())
     }

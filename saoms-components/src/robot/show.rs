@@ -16,6 +16,8 @@ impl RobotKnowledge {
             let heard = JavaList(lists.peers.heard());
             context.console(format_args!("{name} updated other robot position list: {heard}"));
         }
+        let helps = JavaList(lists.helps.open().iter());
+        context.console(format_args!("{name} help request list: {helps}"));
         let open = JavaList(lists.requests.open().iter());
         context.console(format_args!("{name} luggage request list: {open}"));
     }

@@ -24,8 +24,8 @@ pub enum BatterySymptom {
 pub enum BatteryDecision {
     /// Go under charge after the present job.
     Charge,
-    /// Be ready.
-    BeReady,
+    /// Sleep until the robot is awaked or heals another one.
+    Sleep,
 }
 
 impl Recordable for BatterySymptom {
@@ -41,7 +41,7 @@ impl Recordable for BatteryDecision {
     fn record(&self) -> Record {
         match self {
             BatteryDecision::Charge => record!("goes under charge after its job"),
-            BatteryDecision::BeReady => record!("is ready"),
+            BatteryDecision::Sleep => record!("sleeps until it is awaked or heals a robot"),
         }
     }
 }
@@ -58,6 +58,7 @@ impl Loop for BatteryMS {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.variables.in_charge {
+            knowledge.variables.busy |= !knowledge.battery.is_full();
             knowledge.battery.charge();
         } else if knowledge.block != knowledge.charge_block {
             knowledge.battery.drain();
@@ -68,15 +69,21 @@ impl Loop for BatteryMS {
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Option<BatterySymptom>, Failure> {
         let (variables, battery) = (&knowledge.variables, &knowledge.battery);
-        Ok(if variables.in_charge {
-            battery.is_full().then_some(BatterySymptom::Full)
-        } else {
+        if !variables.in_charge {
             let low = battery.is_at_most(LOW) && knowledge.block != knowledge.charge_block;
-            (low && !variables.ready_to_go_under_charge).then(|| BatterySymptom::Low(battery.percent()))
-        })
+            let news = low && !variables.ready_to_go_under_charge && !variables.healer;
+            return Ok(news.then(|| BatterySymptom::Low(battery.percent())));
+        }
+        if !battery.is_full() {
+            return Ok(None);
+        }
+        // As in figures 8.7 and 8.16 in each execution until it is awake.
+        let name = &knowledge.name;
+        context.console(format_args!("{name} is now fully charged and ready (but still asleep)"));
+        Ok((variables.busy && !variables.healer).then_some(BatterySymptom::Full))
     }
 
     fn plan(
@@ -87,7 +94,7 @@ impl Loop for BatteryMS {
     ) -> Result<Option<BatteryDecision>, Failure> {
         Ok(Some(match symptom {
             BatterySymptom::Low(_) => BatteryDecision::Charge,
-            BatterySymptom::Full => BatteryDecision::BeReady,
+            BatterySymptom::Full => BatteryDecision::Sleep,
         }))
     }
 
@@ -104,13 +111,7 @@ impl Loop for BatteryMS {
                 let battery = &knowledge.battery;
                 context.info(format_args!("has low battery ({battery} %): charges after its job"));
             }
-            BatteryDecision::BeReady => {
-                let name = &knowledge.name;
-                context.console(format_args!("{name} is now fully charged and ready (but still asleep)"));
-                // It sleeps for the rest of this execution, and nobody has to wake it in the next.
-                variables.in_charge = variables.busy;
-                variables.busy = false;
-            }
+            BatteryDecision::Sleep => variables.busy = false,
         }
         Ok(())
     }

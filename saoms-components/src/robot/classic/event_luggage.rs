@@ -97,14 +97,18 @@ impl Loop for EventLuggageMS {
         context: &mut Context<'_>,
     ) -> Result<Option<EventLuggageSymptom>, Failure> {
         let variables = &knowledge.variables;
-        if variables.busy || variables.ready_to_go_under_charge || variables.in_charge {
+        if variables.busy || variables.in_charge || variables.healer || variables.critical {
             return Ok(None);
         }
+        // Others dropped what it took an interest in, so that it decides about that whatever happened since.
         if variables.transporter {
             let request = knowledge.lists.requests.claimed();
             let closest = request.filter(|request| is_closest(knowledge, request));
             let symptom = closest.map(|request| EventLuggageSymptom::Closest(request.job));
             return Ok(symptom.or(Some(EventLuggageSymptom::Beaten)));
+        }
+        if variables.ready_to_go_under_charge {
+            return Ok(None);
         }
         let Some(request) = knowledge.lists.requests.open().first() else { return Ok(None) };
         context.because(request.cause);

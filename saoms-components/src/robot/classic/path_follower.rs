@@ -2,7 +2,10 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
-use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION, Position};
+use crate::messages::{
+    CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION,
+    Position,
+};
 use crate::robot::RobotKnowledge;
 use crate::robot::actions::Outcome;
 
@@ -14,6 +17,7 @@ use crate::robot::actions::Outcome;
 pub struct PathFollowerMS {
     luggage: Publisher<EventLuggage>,
     positions: Publisher<Position>,
+    situations: Publisher<CriticalSituation>,
 }
 
 /// How the robot stands on its path.
@@ -106,6 +110,7 @@ impl Loop for PathFollowerMS {
     ) -> Result<(), Failure> {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         self.positions = context.publish(&POSITION)?;
+        self.situations = context.publish(&CRITICAL_SITUATION)?;
         Ok(())
     }
 
@@ -114,6 +119,9 @@ impl Loop for PathFollowerMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<PathSymptom>, Failure> {
+        if knowledge.shut_down {
+            return Ok(None);
+        }
         if std::mem::take(&mut knowledge.variables.stop_a_period) {
             return Ok(Some(PathSymptom::Stopped));
         }
@@ -175,7 +183,7 @@ impl Loop for PathFollowerMS {
             }
             PathDecision::GoCharging { to, moved } => {
                 if go_charging(knowledge, context, to, moved)? {
-                    return Ok(());
+                    return self.ask_for_substitute(knowledge, context);
                 }
             }
         }
@@ -184,6 +192,18 @@ impl Loop for PathFollowerMS {
 }
 
 impl PathFollowerMS {
+    /// Somebody has to stand in for a robot in charge, unless it was sent there.
+    fn ask_for_substitute(
+        &self,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        if std::mem::take(&mut knowledge.relieved) {
+            return Ok(());
+        }
+        context.send(&self.situations, knowledge.situation(CriticalKind::Idle))
+    }
+
     /// Tells what was delivered.
     fn tell(&self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let Some(job) = knowledge.delivered.take() else { return Ok(()) };
@@ -210,7 +230,7 @@ fn go_charging(
     context.info(format_args!("charges (battery {} %)", knowledge.battery));
     let variables = &mut knowledge.variables;
     (variables.reaching_charge, variables.ready_to_go_under_charge) = (false, false);
-    (variables.in_charge, variables.busy) = (true, true);
+    (variables.in_charge, variables.asleep, variables.busy) = (true, true, true);
     Ok(true)
 }
 

@@ -45,7 +45,9 @@ impl Loop for RobotListMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<Record>, Failure> {
-        context.send(&self.robots, knowledge.robot(true))?;
+        if !knowledge.variables.critical {
+            context.send(&self.robots, knowledge.robot(true))?;
+        }
         let robots = knowledge.lists.active.len();
         let changed = std::mem::replace(&mut self.known, robots) != robots;
         Ok(changed.then(|| {

@@ -1,5 +1,6 @@
 //! What a robot heard from others.
 
+mod helps;
 mod peers;
 mod requests;
 #[cfg(test)]
@@ -7,6 +8,7 @@ mod tests;
 
 use crate::messages::RobotList;
 
+pub use helps::{Help, Helps};
 pub use peers::Peers;
 pub use requests::{Request, Requests, Rival};
 
@@ -18,6 +20,8 @@ pub struct Lists {
     pub active: Vec<RobotList>,
     /// The luggage that waits, oldest first.
     pub requests: Requests,
+    /// The robots that wait for a healer, oldest first.
+    pub helps: Helps,
     /// Where the other robots are and go.
     pub peers: Peers,
     /// Robots that cannot move any more, until it is known where they are.
@@ -31,6 +35,7 @@ impl Lists {
             number,
             active: Vec::new(),
             requests: Requests::new(number),
+            helps: Helps::new(number),
             peers: Peers::new(number),
             lost: Vec::new(),
         }
@@ -43,6 +48,7 @@ impl Lists {
 
     /// Takes in that a robot is active, or no longer is.
     pub fn hear_robot(&mut self, robot: &RobotList) {
+        self.helps.hear_robot(robot);
         if robot.robot == self.number {
             return;
         }

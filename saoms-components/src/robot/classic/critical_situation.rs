@@ -1,0 +1,280 @@
+use std::cmp::Reverse;
+
+use saoms_api::{Cause, Context, Failure, Loop, Publisher, Record, Recordable, Subscription, record};
+
+use crate::messages::{
+    CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT,
+    Fault, LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList, RobotState,
+};
+use crate::robot::{Help, RobotKnowledge};
+
+/// Asks for help when the robot cannot go on, and heals other robots (listings 6.7 to 6.10).
+///
+/// A robot that could heal another one says so; in its next execution, when the others' responses are known, the closest one takes over what
+/// the other robot had to do, and awakes a robot in its own place.
+#[derive(Debug, Default)]
+pub struct CriticalSituationMS {
+    faults: Subscription<Fault>,
+    situations: Publisher<CriticalSituation>,
+    situations_heard: Subscription<CriticalSituation>,
+    states: Publisher<RobotState>,
+    robots: Publisher<RobotList>,
+    luggage: Publisher<EventLuggage>,
+    positions: Publisher<Position>,
+    /// Why something in the robot broke.
+    cause: Cause,
+}
+
+/// What there is to do about critical situations.
+#[derive(Clone, Copy, Debug)]
+pub enum CriticalSymptom {
+    /// The robot itself cannot go on.
+    Broken(CriticalKind),
+    /// Another robot, or this one itself, waits for a healer.
+    NeedsHelp(u32),
+    /// The robot would heal that one, and no other robot is closer.
+    Closest(u32),
+    /// Another robot is closer, or heals it.
+    Beaten,
+}
+
+/// What to do.
+#[derive(Clone, Copy, Debug)]
+pub enum CriticalDecision {
+    /// Ask for help, and shut down.
+    AskForHelp(CriticalKind),
+    /// Say that it would heal that robot.
+    Intend(u32),
+    /// Heal that robot.
+    Heal(u32),
+    /// Be free again.
+    Forget,
+}
+
+impl Recordable for CriticalSymptom {
+    fn record(&self) -> Record {
+        match *self {
+            CriticalSymptom::Broken(CriticalKind::CarriesLuggage) => record!("breaks down with luggage"),
+            CriticalSymptom::Broken(CriticalKind::OnTheWay) => record!("breaks down on its way to luggage"),
+            CriticalSymptom::Broken(CriticalKind::Idle) => record!("breaks down without a job"),
+            CriticalSymptom::NeedsHelp(robot) => record!("robot {robot} needs help", robot),
+            CriticalSymptom::Closest(robot) => {
+                record!("no other robot that would heal robot {robot} is closer", robot)
+            }
+            CriticalSymptom::Beaten => record!("another robot is closer to the one that needs help"),
+        }
+    }
+}
+
+impl Recordable for CriticalDecision {
+    fn record(&self) -> Record {
+        match *self {
+            CriticalDecision::AskForHelp(_) => record!("asks for help and shuts down"),
+            CriticalDecision::Intend(robot) => record!("would heal robot {robot}", robot),
+            CriticalDecision::Heal(robot) => record!("heals robot {robot}", robot),
+            CriticalDecision::Forget => record!("is free again"),
+        }
+    }
+}
+
+impl Loop for CriticalSituationMS {
+    type Properties = ();
+    type Knowledge = RobotKnowledge;
+    type Symptom = CriticalSymptom;
+    type Decision = CriticalDecision;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(CriticalSituationMS::default())
+    }
+
+    fn initialize(
+        &mut self,
+        _knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.faults = context.subscribe(&FAULT)?;
+        self.situations = context.publish(&CRITICAL_SITUATION)?;
+        self.situations_heard = context.subscribe(&CRITICAL_SITUATION)?;
+        self.states = context.publish(&ROBOT_STATE)?;
+        self.robots = context.publish(&ROBOT_LIST)?;
+        self.luggage = context.publish(&EVENT_LUGGAGE)?;
+        self.positions = context.publish(&POSITION)?;
+        Ok(())
+    }
+
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        for (header, situation) in context.receive(&self.situations_heard).with_headers() {
+            knowledge.lists.helps.hear(situation, header);
+        }
+        knowledge.lists.helps.drop_contested();
+        let mut faults = context.receive(&self.faults).with_headers();
+        if let Some((header, _)) = faults.find(|(_, fault)| fault.robot == knowledge.number) {
+            knowledge.variables.critical = true;
+            self.cause = header.cause;
+        }
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<Option<CriticalSymptom>, Failure> {
+        let (variables, helps) = (&knowledge.variables, &knowledge.lists.helps);
+        if variables.critical {
+            context.because(self.cause);
+            return Ok(Some(CriticalSymptom::Broken(knowledge.critical_kind())));
+        }
+        if variables.healer {
+            let closest = helps.claimed().filter(|help| is_closest(knowledge, help));
+            let symptom = closest.map(|help| CriticalSymptom::Closest(help.situation.critical));
+            return Ok(symptom.or(Some(CriticalSymptom::Beaten)));
+        }
+        if variables.busy || variables.transporter || variables.ready_to_go_under_charge {
+            return Ok(None);
+        }
+        let emulated = knowledge.stands_in_for.take();
+        let emulated = helps.open().iter().find(|help| Some(help.situation.critical) == emulated);
+        let Some(help) = emulated.or(helps.open().first()) else { return Ok(None) };
+        context.because(help.cause);
+        Ok(Some(CriticalSymptom::NeedsHelp(help.situation.critical)))
+    }
+
+    fn plan(
+        &mut self,
+        symptom: CriticalSymptom,
+        _knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<CriticalDecision>, Failure> {
+        Ok(Some(match symptom {
+            CriticalSymptom::Broken(kind) => CriticalDecision::AskForHelp(kind),
+            CriticalSymptom::NeedsHelp(robot) => CriticalDecision::Intend(robot),
+            CriticalSymptom::Closest(robot) => CriticalDecision::Heal(robot),
+            CriticalSymptom::Beaten => CriticalDecision::Forget,
+        }))
+    }
+
+    fn execute(
+        &mut self,
+        decision: CriticalDecision,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        match decision {
+            CriticalDecision::AskForHelp(kind) => self.ask_for_help(kind, knowledge, context),
+            CriticalDecision::Intend(robot) => self.intend(robot, knowledge, context),
+            CriticalDecision::Heal(_) => self.heal(knowledge, context),
+            CriticalDecision::Forget => {
+                knowledge.lists.helps.settle();
+                knowledge.variables.healer = false;
+                // Who is in charge is busy until the battery is full.
+                knowledge.variables.busy = knowledge.variables.in_charge && !knowledge.battery.is_full();
+                Ok(())
+            }
+        }
+    }
+}
+
+impl CriticalSituationMS {
+    fn ask_for_help(
+        &self,
+        kind: CriticalKind,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        knowledge.hooks.stop(context, knowledge.number)?;
+        knowledge.next = knowledge.block;
+        context.send(&self.situations, knowledge.situation(kind))?;
+        context.warn(format_args!(
+            "breaks down at {}: asks for help, and for human assistance",
+            knowledge.block
+        ));
+        // What it only took an interest in waits again, for those that dropped it because of that.
+        if let Some(request) = knowledge.lists.requests.settle() {
+            let job = request.job;
+            let release = job.response(knowledge.number, knowledge.block, LuggageStage::Release);
+            context.send(&self.luggage, release)?;
+            context.send(&self.luggage, EventLuggage::request(job.luggage, job.from, job.to))?;
+        }
+        // So does the robot that it would have healed.
+        if let Some(help) = knowledge.lists.helps.settle() {
+            context.send(&self.situations, help.situation)?;
+        }
+        context.send(&self.positions, knowledge.position())?;
+        context.send(&self.robots, knowledge.robot(false))?;
+        knowledge.shut_down = true;
+        Ok(())
+    }
+
+    fn intend(
+        &self,
+        robot: u32,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let Some(help) = knowledge.lists.helps.claim(robot) else { return Ok(()) };
+        let situation = help.situation.clone();
+        (knowledge.variables.healer, knowledge.variables.busy) = (true, true);
+        context.console(format_args!("Robot{} is a new healer for Robot{robot}", knowledge.number));
+        self.respond(situation, CriticalStage::Intention, knowledge, context)
+    }
+
+    fn heal(&self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let Some(Help { situation, .. }) = knowledge.lists.helps.settle() else { return Ok(()) };
+        let critical = situation.critical;
+        let (job, name) = (situation.job(), &knowledge.name);
+        let variables = &mut knowledge.variables;
+        let asleep = std::mem::take(&mut variables.in_charge);
+        variables.asleep = false;
+        (variables.healer, variables.busy, variables.transporter) = (false, job.is_some(), job.is_some());
+        knowledge.job = job;
+        if asleep {
+            context.console(format_args!("{name} is a healer and now is awake"));
+        } else {
+            context.console(format_args!("{name} is a healer and awakes another robot"));
+            if let Some(robot) = best_charged(knowledge, critical) {
+                let state = RobotState { robot, awake: true, emulate: critical };
+                context.send(&self.states, state)?;
+                context.effect(record!("awakes robot {robot}", robot));
+            } else {
+                context.effect(record!("finds no robot that it could awake"));
+            }
+        }
+        match job {
+            Some(job) => context.info(format_args!(
+                "heals robot {critical}: takes luggage {} from {} to {}",
+                job.luggage, job.from, job.to
+            )),
+            None => context.info(format_args!("heals robot {critical}")),
+        }
+        self.respond(situation, CriticalStage::Taken, knowledge, context)
+    }
+
+    fn respond(
+        &self,
+        situation: CriticalSituation,
+        stage: CriticalStage,
+        knowledge: &RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let (healer, healer_block) = (knowledge.number, knowledge.block);
+        context.send(&self.situations, CriticalSituation { stage, healer, healer_block, ..situation })
+    }
+}
+
+/// By straight-line distance; at the same distance the lower number is the closest.
+fn is_closest(knowledge: &RobotKnowledge, help: &Help) -> bool {
+    let to = help.situation.block;
+    let mine = (knowledge.block.straight_squared(to), knowledge.number);
+    help.rivals.iter().all(|rival| mine < (rival.block.straight_squared(to), rival.robot))
+}
+
+/// Of the robots that could be awaked the one with the most charge, then with the lowest number. The one that needs help is none of them.
+fn best_charged(knowledge: &RobotKnowledge, critical: u32) -> Option<u32> {
+    let others =
+        knowledge.lists.active.iter().filter(|other| other.can_be_awaked() && other.robot != critical);
+    let best = others.max_by(|one, other| {
+        one.battery.total_cmp(&other.battery).then(Reverse(one.robot).cmp(&Reverse(other.robot)))
+    });
+    best.map(|robot| robot.robot)
+}

@@ -1,0 +1,130 @@
+use std::fmt;
+
+use saoms_api::{Cause, Header, Time};
+
+use crate::messages::{CriticalKind, CriticalSituation, CriticalStage, RobotList};
+
+use super::Rival;
+
+/// A robot that waits for a healer.
+#[derive(Clone, Debug)]
+pub struct Help {
+    /// What it asked for.
+    pub situation: CriticalSituation,
+    /// When.
+    pub since: Time,
+    /// Why.
+    pub cause: Cause,
+    /// The other robots that would heal it and did not take that back.
+    pub rivals: Vec<Rival>,
+}
+
+impl fmt::Display for Help {
+    /// As the console of the manual's figures shows it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "New help request from Robot{}", self.situation.critical)
+    }
+}
+
+/// The robots that wait for a healer, in the order in which they asked.
+#[derive(Debug)]
+pub struct Helps {
+    number: u32,
+    open: Vec<Help>,
+    /// The one that this robot would heal: no longer on the list.
+    claimed: Option<Help>,
+}
+
+impl Helps {
+    /// None, for the robot of this number.
+    pub fn new(number: u32) -> Helps {
+        Helps { number, open: Vec::new(), claimed: None }
+    }
+
+    /// Takes in a request, the own ones too, or a response of another robot.
+    pub fn hear(&mut self, message: &CriticalSituation, header: Header) {
+        let critical = message.critical;
+        if message.stage == CriticalStage::Request {
+            return self.hear_request(message, header);
+        }
+        if message.healer == self.number {
+            return;
+        }
+        let respond = |help: &mut Help| match message.stage {
+            CriticalStage::Intention => {
+                help.rivals.retain(|rival| rival.robot != message.healer);
+                help.rivals.push(Rival { robot: message.healer, block: message.healer_block });
+            }
+            CriticalStage::Release => help.rivals.retain(|rival| rival.robot != message.healer),
+            CriticalStage::Request | CriticalStage::Taken => {}
+        };
+        self.open.iter_mut().chain(&mut self.claimed).filter(|help| help.is_of(critical)).for_each(respond);
+        if message.stage == CriticalStage::Taken {
+            self.drop(critical);
+        }
+    }
+
+    /// A robot that asks again has another reason: what was known of the last one does not count any more.
+    fn hear_request(&mut self, message: &CriticalSituation, header: Header) {
+        let help =
+            Help { situation: message.clone(), since: header.sent, cause: header.cause, rivals: Vec::new() };
+        if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.is_of(message.critical)) {
+            claimed.situation = help.situation;
+        } else if let Some(known) = self.open.iter_mut().find(|known| known.is_of(message.critical)) {
+            *known = help;
+        } else {
+            self.open.push(help);
+        }
+    }
+
+    /// Takes in that a robot is active, or no longer is. One that works again needs no substitute, one that ended heals nobody.
+    pub fn hear_robot(&mut self, robot: &RobotList) {
+        if robot.active && !robot.in_charge {
+            self.open.retain(|help| !help.is_of(robot.robot) || help.situation.kind != CriticalKind::Idle);
+        } else if !robot.active {
+            for help in self.open.iter_mut().chain(&mut self.claimed) {
+                help.rivals.retain(|rival| rival.robot != robot.robot);
+            }
+        }
+    }
+
+    /// Takes those that others would heal off the list.
+    pub fn drop_contested(&mut self) {
+        self.open.retain(|help| help.rivals.is_empty());
+    }
+
+    /// Those on the list, oldest first.
+    pub fn open(&self) -> &[Help] {
+        &self.open
+    }
+
+    /// The one that this robot would heal, unless another robot does.
+    pub fn claimed(&self) -> Option<&Help> {
+        self.claimed.as_ref()
+    }
+
+    /// Would heal the robot of this number, if it waits.
+    pub fn claim(&mut self, critical: u32) -> Option<&Help> {
+        if self.claimed.is_none() {
+            let place = self.open.iter().position(|help| help.is_of(critical))?;
+            self.claimed = Some(self.open.remove(place));
+        }
+        self.claimed.as_ref()
+    }
+
+    /// Ends that: this robot heals the other one, or somebody else does.
+    pub fn settle(&mut self) -> Option<Help> {
+        self.claimed.take()
+    }
+
+    fn drop(&mut self, critical: u32) {
+        self.open.retain(|help| !help.is_of(critical));
+        self.claimed.take_if(|claimed| claimed.is_of(critical));
+    }
+}
+
+impl Help {
+    fn is_of(&self, critical: u32) -> bool {
+        self.situation.critical == critical
+    }
+}
