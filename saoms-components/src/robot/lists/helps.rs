@@ -56,10 +56,10 @@ impl Helps {
                 help.rivals.push(Rival { robot: message.healer, block: message.healer_block });
             }
             CriticalStage::Release => help.rivals.retain(|rival| rival.robot != message.healer),
-            CriticalStage::Request | CriticalStage::Taken => {}
+            CriticalStage::Request | CriticalStage::Taken | CriticalStage::StandsIn => {}
         };
         self.open.iter_mut().chain(&mut self.claimed).filter(|help| help.is_of(critical)).for_each(respond);
-        if message.stage == CriticalStage::Taken {
+        if matches!(message.stage, CriticalStage::Taken | CriticalStage::StandsIn) {
             self.drop(critical);
         }
     }
