@@ -189,9 +189,12 @@ pub struct Variables {
     #[entry]
     pub in_charge: bool,
     /// It helps another robot, or would.
+    #[entry]
     pub healer: bool,
     /// It takes no jobs until somebody awakes it.
+    #[entry]
     pub asleep: bool,
     /// It is broken, and shuts down.
+    #[entry]
     pub critical: bool,
 }

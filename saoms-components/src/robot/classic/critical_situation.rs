@@ -1,6 +1,8 @@
 use std::cmp::Reverse;
 
-use saoms_api::{Cause, Context, Failure, Loop, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{
+    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
+};
 
 use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT,
@@ -12,7 +14,8 @@ use crate::robot::{Help, RobotKnowledge};
 ///
 /// A robot that could heal another one says so; in its next execution, when the others' responses are known, the closest one takes over what
 /// the other robot had to do, and awakes a robot in its own place.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.classic.CriticalSituationMS")]
 pub struct CriticalSituationMS {
     faults: Subscription<Fault>,
     situations: Publisher<CriticalSituation>,

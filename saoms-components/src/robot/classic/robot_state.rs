@@ -1,10 +1,11 @@
-use saoms_api::{Cause, Context, Failure, Loop, Record, Recordable, Subscription, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
 
 use crate::messages::{ROBOT_STATE, RobotState};
 use crate::robot::RobotKnowledge;
 
 /// Obeys whoever awakes the robot or sends it under charge (listing 6.4).
-#[derive(Debug, Default)]
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.classic.RobotMS")]
 pub struct RobotMS {
     states: Subscription<RobotState>,
     /// The newest that is for this robot and arrived for this execution, and why it was sent.
