@@ -252,6 +252,11 @@ impl<'a> Context<'a> {
         self.host.enter_loop(None);
     }
 
+    /// The name of the component that sent a message; `None` where the host does not know it.
+    pub fn sender_name(&self, header: Header) -> Option<&str> {
+        self.host.name_of(header.sender)
+    }
+
     /// Writes a line to the log, with the time and the component's name. Formatted only where somebody listens.
     pub fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         self.host.log(level, line);
@@ -299,6 +304,11 @@ pub trait Host {
     fn name(&self) -> &str;
     /// The index that stands for this component in [`Header::sender`].
     fn sender(&self) -> u32;
+    /// The name of the component that an index stands for in [`Header::sender`].
+    fn name_of(&self, sender: u32) -> Option<&str> {
+        let _ = sender;
+        None
+    }
     /// See [`Context::now`].
     fn now(&self) -> Time;
     /// See [`Context::date`].

@@ -11,7 +11,8 @@ use saoms_api::{
 };
 
 use crate::console::Timestamp;
-use crate::messages::{ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, LuggageStage};
+use crate::hardware::Area;
+use crate::messages::{AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, LuggageStage};
 
 pub use scenario::{Event, Scenario, ScenarioError};
 
@@ -26,13 +27,13 @@ pub struct EnvironmentProperties {
 
 /// Plays a scenario: publishes its events at their times.
 ///
-/// It sees the run as done when all luggage of its scenario is delivered.
+/// It sees the run as done when all luggage of its scenario is delivered or given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.Environment",
     periodic,
     publishes(ENVIRONMENT),
-    subscribes(EVENT_LUGGAGE),
+    subscribes(EVENT_LUGGAGE, AREA),
     also("launch.Environment")
 )]
 pub struct Environment {
@@ -44,6 +45,8 @@ pub struct Environment {
     luggage: u32,
     events: Publisher<EnvironmentEvent>,
     responses: Subscription<EventLuggage>,
+    area: Subscription<Area>,
+    has_world: bool,
     done: bool,
 }
 
@@ -61,6 +64,8 @@ impl Component for Environment {
             luggage: 0,
             events: Publisher::default(),
             responses: Subscription::default(),
+            area: Subscription::default(),
+            has_world: false,
             done: false,
         })
     }
@@ -68,6 +73,7 @@ impl Component for Environment {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.publish(&ENVIRONMENT)?;
         self.responses = context.subscribe(&EVENT_LUGGAGE)?;
+        self.area = context.subscribe(&AREA)?;
         let now = Timestamp::now(context);
         context.console(format_args!("Environment tests start at {now}"));
         if self.scenario.events().is_empty() {
@@ -85,10 +91,18 @@ impl Component for Environment {
             return Ok(());
         }
         for response in context.receive(&self.responses) {
-            if response.stage == LuggageStage::Delivered {
-                self.open.remove(&response.luggage);
+            // What is given up stays open in the report, but nobody waits for it.
+            let counted = match response.stage {
+                LuggageStage::Delivered => -1,
+                LuggageStage::GivenUp => 0,
+                _ => continue,
+            };
+            if self.open.remove(&response.luggage) && !self.has_world {
+                context.count("luggage.open", counted);
             }
         }
+        // A world counts luggage itself.
+        self.has_world |= context.receive_last(&self.area).is_some();
         let start = *self.start.get_or_insert(context.due());
         while let Some((at, event)) = self.scenario.events().get(self.played)
             && context.due() >= start + *at
@@ -113,6 +127,9 @@ impl Environment {
                 self.luggage += 1;
                 let request = EventLuggage::request(self.luggage, from, to);
                 self.open.insert(self.luggage);
+                if !self.has_world {
+                    context.count("luggage.open", 1);
+                }
                 context.console(format_args!("Environment: Test{test}: {request} at {now}"));
                 context.info(format_args!("luggage {} waits at {from} to be brought to {to}", self.luggage));
                 context.send(&self.events, request.into())

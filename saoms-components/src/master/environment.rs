@@ -1,23 +1,36 @@
-use saoms_api::{Class, Component, Context, Failure, Publisher, Subscription};
+use saoms_api::{Class, Component, Context, Failure, Header, Level, Publisher, Subscription};
 
+use super::gate::{Gate, Refusal};
+use super::open::Open;
 use crate::console::Timestamp;
+use crate::hardware::Area;
 use crate::messages::{
-    ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent,
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent,
+    FAULT, Fault, ROBOT_LIST, RobotList,
 };
 
-/// Sorts the events of the environment to their topics: luggage to the robots, exceptional events to the master of the robots.
+/// Sorts the events of the environment to their topics: luggage and faults to the robots, exceptional events to the master of the robots.
+///
+/// Anybody may publish on the environment's topic. What is impossible, such as luggage outside the area that the world has said, is
+/// reported with its sender, counted, and gets no further. What all robots refuse, or what none is left for, is reported as given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.MasterEnvironment",
     periodic,
-    subscribes(ENVIRONMENT),
-    publishes(EVENT_LUGGAGE, EXCEPTIONAL_EVENT),
+    subscribes(ENVIRONMENT, AREA, EVENT_LUGGAGE, ROBOT_LIST),
+    publishes(EVENT_LUGGAGE, EXCEPTIONAL_EVENT, FAULT),
     also("unibg.saoms.MasterEnvironmentManagingSystem")
 )]
 pub struct MasterEnvironment {
+    gate: Gate,
+    open: Open,
     events: Subscription<EnvironmentEvent>,
+    area: Subscription<Area>,
+    responses: Subscription<EventLuggage>,
+    robots: Subscription<RobotList>,
     luggage: Publisher<EventLuggage>,
     exceptional: Publisher<ExceptionalEvent>,
+    faults: Publisher<Fault>,
 }
 
 impl Component for MasterEnvironment {
@@ -25,37 +38,105 @@ impl Component for MasterEnvironment {
 
     fn new((): ()) -> Result<Self, Failure> {
         Ok(MasterEnvironment {
+            gate: Gate::default(),
+            open: Open::default(),
             events: Subscription::default(),
+            area: Subscription::default(),
+            responses: Subscription::default(),
+            robots: Subscription::default(),
             luggage: Publisher::default(),
             exceptional: Publisher::default(),
+            faults: Publisher::default(),
         })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.subscribe(&ENVIRONMENT)?;
+        self.area = context.subscribe(&AREA)?;
+        self.responses = context.subscribe(&EVENT_LUGGAGE)?;
+        self.robots = context.subscribe(&ROBOT_LIST)?;
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         self.exceptional = context.publish(&EXCEPTIONAL_EVENT)?;
+        self.faults = context.publish(&FAULT)?;
         context.count("luggage.requested", 0);
+        context.count("luggage.ignored", 0);
         let now = Timestamp::now(context);
         context.console(format_args!("MasterEnvironmentManagingSystem starts at {now}"));
         Ok(())
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if let Some(area) = context.receive_last(&self.area) {
+            self.gate.learn(area.clone().into());
+        }
         let now = Timestamp::now(context);
-        for event in context.receive(&self.events) {
-            for luggage in &event.luggage {
-                context.count("luggage.requested", 1);
-                let EventLuggage { luggage, from, to, .. } = *luggage;
-                context.send(&self.luggage, EventLuggage::request(luggage, from, to))?;
-            }
-            for exceptional in &event.exceptional {
-                context.send(&self.exceptional, exceptional.clone())?;
-            }
+        for (header, event) in context.receive(&self.events).with_headers() {
+            self.sort(context, header, event)?;
             context.console(format_args!(
                 "MasterEnvironmentManagingSystem: new event received and managed at {now}"
             ));
         }
+        for robot in context.receive(&self.robots) {
+            self.open.hear_robot(robot);
+        }
+        for response in context.receive(&self.responses) {
+            self.open.hear_response(response);
+        }
+        for (luggage, from, to) in self.open.take_hopeless() {
+            context.log(
+                Level::Error,
+                format_args!("gives up luggage {luggage} from {from} to {to}: no robot can bring it"),
+            );
+            context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
+        }
         Ok(())
     }
+}
+
+impl MasterEnvironment {
+    fn sort(
+        &mut self,
+        context: &mut Context<'_>,
+        header: Header,
+        event: &EnvironmentEvent,
+    ) -> Result<(), Failure> {
+        for request in &event.luggage {
+            let EventLuggage { luggage, from, to, .. } = *request;
+            match self.gate.luggage(request) {
+                Ok(()) => {
+                    self.open.add(luggage, from, to);
+                    context.count("luggage.requested", 1);
+                    context.send(&self.luggage, EventLuggage::request(luggage, from, to))?;
+                }
+                Err(refusal) => {
+                    context.count("luggage.ignored", 1);
+                    ignore(context, header, &refusal);
+                    if refusal.is_lost {
+                        context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
+                    }
+                }
+            }
+        }
+        for exceptional in &event.exceptional {
+            context.send(&self.exceptional, exceptional.clone())?;
+        }
+        for fault in &event.faults {
+            match Gate::fault(fault) {
+                Ok(()) => {
+                    self.open.break_down(fault.robot);
+                    context.send(&self.faults, fault.clone())?;
+                }
+                Err(refusal) => ignore(context, header, &refusal),
+            }
+        }
+        Ok(())
+    }
+}
+
+fn ignore(context: &mut Context<'_>, header: Header, refusal: &Refusal) {
+    let sender = match context.sender_name(header) {
+        Some(name) => format!("`{name}`"),
+        None => format!("component {}", header.sender),
+    };
+    context.log(Level::Error, format_args!("ignores what {sender} sent: {}", refusal.reason));
 }

@@ -1,6 +1,8 @@
 //! The masters: one sorts what the environment says, one keeps an eye on the robots.
 
 mod environment;
+mod gate;
+mod open;
 mod robot;
 
 pub use environment::MasterEnvironment;

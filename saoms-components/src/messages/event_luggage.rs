@@ -20,6 +20,8 @@ pub enum LuggageStage {
     Delivered,
     /// The robot can never bring it.
     Refused,
+    /// Nobody can: it is no open work any more.
+    GivenUp,
 }
 
 /// Luggage to bring from one block to another, or a robot's response.
@@ -43,6 +45,11 @@ impl EventLuggage {
     /// A request.
     pub const fn request(luggage: u32, from: Block, to: Block) -> EventLuggage {
         EventLuggage { robot: 0, luggage, stage: LuggageStage::Request, from, to, block: from }
+    }
+
+    /// That nobody can bring the luggage of a request.
+    pub const fn given_up(luggage: u32, from: Block, to: Block) -> EventLuggage {
+        EventLuggage { stage: LuggageStage::GivenUp, ..EventLuggage::request(luggage, from, to) }
     }
 }
 

@@ -19,6 +19,13 @@ pub struct Fault {
     pub kind: FaultKind,
 }
 
+impl Fault {
+    /// That a robot breaks down.
+    pub const fn breakdown(robot: u32) -> Fault {
+        Fault { robot, kind: FaultKind::Breakdown }
+    }
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.kind {

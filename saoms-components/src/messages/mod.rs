@@ -3,14 +3,14 @@
 //! | topic | message | published by | read by |
 //! | --- | --- | --- | --- |
 //! | [`ENVIRONMENT`] | [`EnvironmentEvent`] | environment, or anyone | the master of the environment, world |
-//! | [`EVENT_LUGGAGE`] | [`EventLuggage`] | the master of the environment, robots | robots, environment |
+//! | [`EVENT_LUGGAGE`] | [`EventLuggage`] | the master of the environment, robots | robots, the master of the environment, environment, world |
 //! | [`EXCEPTIONAL_EVENT`] | [`ExceptionalEvent`] | the master of the environment | the master of the robots |
 //! | [`FAULT`] | [`Fault`] | the master of the environment | robots |
 //! | [`ROBOT_STATE`] | [`RobotState`] | the master of the robots, robots | robots |
 //! | [`CRITICAL_SITUATION`] | [`CriticalSituation`] | robots | robots |
 //! | [`ROBOT_LIST`] | [`RobotList`] | robots | robots, the master of the robots |
 //! | [`POSITION`] | [`Position`] | robots | robots |
-//! | [`AREA`] | [`Area`] | world | whoever watches the fleet |
+//! | [`AREA`] | [`Area`] | world | the master of the environment, environment, whoever watches the fleet |
 //! | [`COLLISION`] | [`Collision`] | world, or robots without one | whoever watches the fleet |
 
 mod collision;

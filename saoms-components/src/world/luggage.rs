@@ -1,4 +1,5 @@
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use crate::grid::Block;
 
@@ -6,7 +7,8 @@ use crate::grid::Block;
 #[derive(Debug, Default)]
 pub(super) struct Stock {
     pieces: HashMap<u32, Piece>,
-    delivered: usize,
+    /// How many are neither delivered nor given up.
+    open: usize,
     /// Luggage that a robot asked for before the world heard of it.
     awaited: Vec<(u32, bool)>,
 }
@@ -15,6 +17,14 @@ pub(super) struct Stock {
 struct Piece {
     to: Block,
     place: Place,
+    /// Whether nobody can bring it, as somebody said.
+    given_up: bool,
+}
+
+impl Piece {
+    fn is_open(&self) -> bool {
+        !self.given_up && self.place != Place::Delivered
+    }
 }
 
 /// Where a piece is.
@@ -37,9 +47,22 @@ pub(super) enum Luggage {
 }
 
 impl Stock {
-    /// Takes in a request. A number that is known already does not count again.
-    pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
-        self.pieces.entry(luggage).or_insert(Piece { to, place: Place::At(from) });
+    /// Takes in a request; `false` for a number that is known already.
+    pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) -> bool {
+        let Entry::Vacant(free) = self.pieces.entry(luggage) else { return false };
+        free.insert(Piece { to, place: Place::At(from), given_up: false });
+        self.open += 1;
+        true
+    }
+
+    /// Nobody can bring it.
+    pub(super) fn give_up(&mut self, luggage: u32) {
+        if let Some(piece) = self.pieces.get_mut(&luggage)
+            && piece.is_open()
+        {
+            piece.given_up = true;
+            self.open -= 1;
+        }
     }
 
     /// After all that was said is heard: what is unknown for a whole period stays unknown.
@@ -53,8 +76,9 @@ impl Stock {
         self.pieces.is_empty()
     }
 
-    pub(super) fn is_delivered(&self) -> bool {
-        self.delivered == self.pieces.len()
+    /// Whether nothing is left to bring.
+    pub(super) fn is_settled(&self) -> bool {
+        self.open == 0
     }
 
     /// A robot collects a piece from a block. It may also be on another robot, if that lies on the block like luggage.
@@ -89,8 +113,10 @@ impl Stock {
             piece.place = Place::At(block);
             return Ok(Luggage::Handled);
         }
+        if piece.is_open() {
+            self.open -= 1;
+        }
         piece.place = Place::Delivered;
-        self.delivered += 1;
         Ok(Luggage::Delivered)
     }
 

@@ -1,5 +1,6 @@
 //! What is physically true: the map, where robots and luggage really are, and the simulated hardware of the robots.
 
+mod hooks;
 mod luggage;
 mod properties;
 mod referee;
@@ -8,25 +9,28 @@ mod tests;
 
 use saoms_api::{Class, Component, Context, Failure, Level, Publisher, Subscription, Work};
 
-use crate::grid::Block;
-use crate::hardware::{Action, ActionKind, Area, Hardware, Progress};
-use crate::messages::{AREA, COLLISION, Collision, ENVIRONMENT, EnvironmentEvent};
+use crate::hardware::Hardware;
+use crate::messages::{
+    AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault,
+    LuggageStage,
+};
 
 pub use properties::WorldProperties;
 
-use luggage::{Luggage, Stock};
+use luggage::Stock;
 use referee::Referee;
 
 /// The physical world of a fleet.
 ///
 /// Robots whose reference `world` leads here drive simulated hardware: what they do takes the time that the properties say, and happens
-/// only where it can. The world counts what is delivered and who collides; the run is done when all luggage is delivered.
+/// only where it can. The world counts what is delivered and who collides. A robot that breaks down stays where it is, with its luggage,
+/// which another robot beside it can take over. The run is done when all luggage is delivered or given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.World",
     periodic,
     publishes(AREA, COLLISION),
-    subscribes(ENVIRONMENT),
+    subscribes(ENVIRONMENT, EVENT_LUGGAGE),
     service("hardware": Hardware)
 )]
 pub struct World {
@@ -34,6 +38,7 @@ pub struct World {
     referee: Referee,
     stock: Stock,
     events: Subscription<EnvironmentEvent>,
+    responses: Subscription<EventLuggage>,
     collisions: Publisher<Collision>,
     vote: Option<Work>,
 }
@@ -48,6 +53,7 @@ impl Component for World {
             referee: Referee::new(map),
             stock: Stock::default(),
             events: Subscription::default(),
+            responses: Subscription::default(),
             collisions: Publisher::default(),
             vote: None,
         })
@@ -55,10 +61,13 @@ impl Component for World {
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.subscribe(&ENVIRONMENT)?;
+        self.responses = context.subscribe(&EVENT_LUGGAGE)?;
         self.collisions = context.publish(&COLLISION)?;
         let area = context.publish(&AREA)?;
         context.send(&area, self.referee.map().into())?;
-        for section in ["luggage.delivered", "collisions.vertex", "collisions.swap", "stranded"] {
+        for section in
+            ["luggage.delivered", "luggage.open", "collisions.vertex", "collisions.swap", "stranded"]
+        {
             context.count(section, 0);
         }
         Ok(())
@@ -66,18 +75,21 @@ impl Component for World {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         for event in context.receive(&self.events) {
-            for request in &event.luggage {
-                if let Some(block) =
-                    [request.from, request.to].into_iter().find(|block| !self.referee.map().is_free(*block))
-                {
-                    let luggage = request.luggage;
-                    context.log(
-                        Level::Error,
-                        format_args!("ignores luggage {luggage}: {block} is not a free block of the map"),
-                    );
-                } else {
-                    self.stock.add(request.luggage, request.from, request.to);
+            // What is impossible is reported by the master of the environment, which lets it get no further.
+            let is_free = |block| self.referee.map().is_free(block);
+            for request in event.luggage.iter().filter(|request| is_free(request.from) && is_free(request.to))
+            {
+                if self.stock.add(request.luggage, request.from, request.to) {
+                    context.count("luggage.open", 1);
                 }
+            }
+            for fault in &event.faults {
+                self.break_down(context, fault);
+            }
+        }
+        for response in context.receive(&self.responses) {
+            if response.stage == LuggageStage::GivenUp {
+                self.stock.give_up(response.luggage);
             }
         }
         self.stock.settle();
@@ -90,7 +102,7 @@ impl Component for World {
 impl World {
     /// Nothing is voted before there is luggage, so that a fleet without a scenario runs until it is stopped.
     fn vote(&mut self, context: &mut Context<'_>) {
-        let vote = match self.stock.is_delivered() {
+        let vote = match self.stock.is_settled() {
             _ if self.stock.is_empty() => return,
             true => Work::Done,
             false => Work::Open,
@@ -101,103 +113,14 @@ impl World {
         }
     }
 
-    fn begin_move(&mut self, context: &mut Context<'_>, robot: u32, to: Block) -> Result<Progress, Failure> {
-        let until = context.now() + self.properties.move_time;
-        match self.referee.begin_move(robot, to, until)? {
-            Ok(collision) => {
-                if let Some(collision) = collision {
-                    self.report(context, collision)?;
-                }
-                Ok(self.referee.progress(robot, context.now()))
-            }
-            Err(reason) => {
-                context.warn(format_args!("robot {robot} cannot move: {reason}"));
-                Ok(Progress::Failed)
-            }
-        }
-    }
-
-    fn report(&self, context: &mut Context<'_>, collision: Collision) -> Result<(), Failure> {
-        if collision.swap {
-            // It was counted as meeting in one block when the first of the two moved.
-            context.count("collisions.vertex", -1);
-            context.count("collisions.swap", 1);
+    fn break_down(&mut self, context: &mut Context<'_>, fault: &Fault) {
+        if self.referee.retire(fault.robot).is_ok() {
+            context.count("robots.broken", 1);
+            context.warn(format_args!("{fault}"));
         } else {
-            context.count("collisions.vertex", 1);
+            context.count("faults.ignored", 1);
+            let robot = fault.robot;
+            context.log(Level::Error, format_args!("ignores a fault: robot {robot} is not in this world"));
         }
-        context.warn(format_args!("{collision}"));
-        context.send(&self.collisions, collision)
-    }
-
-    /// The end of collecting or depositing.
-    fn handle(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
-        let here = self.referee.block(robot)?;
-        // Where a robot is out of order, those beside it reach its block.
-        let in_reach = here.distance(action.block) == 1 && self.referee.is_retired_at(action.block);
-        let block = if in_reach { action.block } else { here };
-        let referee = &self.referee;
-        let lies_on = |other: u32| referee.is_retired(other) && referee.block(other) == Ok(block);
-        let result = match action.kind {
-            ActionKind::Collect => self.stock.collect(action.luggage, robot, block, lies_on),
-            _ => self.stock.deposit(action.luggage, robot, block),
-        };
-        match result {
-            Ok(Luggage::Unknown) => return Ok(Progress::Running),
-            Ok(Luggage::Delivered) => {
-                context.count("luggage.delivered", 1);
-                self.vote(context);
-            }
-            Ok(Luggage::Handled) => {}
-            Err(reason) => {
-                context.warn(format_args!("robot {robot} at {block}: {reason}"));
-                self.referee.end_handling(robot);
-                return Ok(Progress::Failed);
-            }
-        }
-        self.referee.end_handling(robot);
-        Ok(Progress::Done)
-    }
-}
-
-impl Hardware for World {
-    fn enter(
-        &mut self,
-        _context: &mut Context<'_>,
-        robot: u32,
-        name: String,
-        block: Block,
-    ) -> Result<Block, Failure> {
-        self.referee.enter(robot, name, block)
-    }
-
-    fn area(&mut self, _context: &mut Context<'_>) -> Result<Area, Failure> {
-        Ok(self.referee.map().into())
-    }
-
-    fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
-        if self.referee.is_running(robot)? {
-            return Err(Failure::new(format!("robot {robot} begins an action before its last one is over")));
-        }
-        if action.kind == ActionKind::Move {
-            return self.begin_move(context, robot, action.block);
-        }
-        self.referee.begin_handling(robot, action, context.now() + self.properties.handling_time)?;
-        self.poll(context, robot)
-    }
-
-    fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Progress, Failure> {
-        match self.referee.handling(robot)? {
-            None => Ok(self.referee.progress(robot, context.now())),
-            Some((_, until)) if context.now() < until => Ok(Progress::Running),
-            Some((action, _)) => self.handle(context, robot, action),
-        }
-    }
-
-    fn cancel(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
-        self.referee.cancel(robot)
-    }
-
-    fn retire(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
-        self.referee.retire(robot)
     }
 }

@@ -118,7 +118,7 @@ fn luggage_is_delivered_once_and_only_by_who_carries_it() {
     let (from, to) = (block(1, 0), block(2, 0));
     stock.add(7, from, to);
     stock.add(7, to, from);
-    assert!(!stock.is_delivered());
+    assert!(!stock.is_settled());
     assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is not here but at (1,0)".into()));
     assert_eq!(stock.collect(7, 1, from, |_| false), Ok(Luggage::Handled));
     assert_eq!(stock.collect(7, 2, from, |_| false), Err("luggage 7 is on robot 1".into()));
@@ -126,7 +126,7 @@ fn luggage_is_delivered_once_and_only_by_who_carries_it() {
     assert_eq!(stock.deposit(7, 1, block(0, 0)), Ok(Luggage::Handled), "it lies on the way");
     assert_eq!(stock.collect(7, 2, block(0, 0), |_| false), Ok(Luggage::Handled));
     assert_eq!(stock.deposit(7, 2, to), Ok(Luggage::Delivered));
-    assert!(stock.is_delivered());
+    assert!(stock.is_settled());
     assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is delivered already".into()));
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
 }
@@ -182,4 +182,19 @@ fn a_number_belongs_to_one_robot() {
         failure.message(),
         "robots `A7` and `B7` both have the number 7: give one of them another `number`"
     );
+}
+
+#[test]
+fn luggage_that_is_given_up_is_no_open_work() {
+    let mut stock = Stock::default();
+    let (from, to) = (block(1, 0), block(2, 0));
+    assert!(stock.add(7, from, to) && stock.add(8, from, to) && !stock.add(8, to, from));
+    stock.give_up(7);
+    stock.give_up(7);
+    assert!(!stock.is_settled());
+    stock.give_up(8);
+    assert!(stock.is_settled());
+    assert_eq!(stock.collect(7, 1, from, |_| false), Ok(Luggage::Handled), "it can be brought all the same");
+    assert_eq!(stock.deposit(7, 1, to), Ok(Luggage::Delivered));
+    assert!(stock.is_settled());
 }

@@ -16,8 +16,15 @@ enum Entry {
 }
 
 /// What every report shows, counted or not.
-const STANDARD: [&str; 5] =
-    ["luggage.requested", "luggage.delivered", "collisions.vertex", "collisions.swap", "stranded"];
+const STANDARD: [&str; 7] = [
+    "luggage.requested",
+    "luggage.delivered",
+    "luggage.open",
+    "luggage.ignored",
+    "collisions.vertex",
+    "collisions.swap",
+    "stranded",
+];
 
 /// The fields of a report that are not for components to write.
 const RESERVED: [&str; 8] =

@@ -59,7 +59,7 @@ fn sections_nest_by_dots() {
     assert_eq!(
         serde_json::Value::Object(sections.to_json()),
         json!({
-            "luggage": {"requested": 0, "delivered": 3},
+            "luggage": {"requested": 0, "delivered": 3, "open": 0, "ignored": 0},
             "collisions": {"vertex": 0, "swap": 0},
             "stranded": 2,
             "map": {"value": "airport", "blocks": 121},

@@ -72,6 +72,10 @@ impl Host for ComponentHost<'_> {
         self.part.index
     }
 
+    fn name_of(&self, sender: u32) -> Option<&str> {
+        self.shared.assembly.components.get(sender as usize).map(|component| component.path.as_str())
+    }
+
     fn now(&self) -> Time {
         Time::from_nanos(if self.shared.clock.is_virtual() { self.part.now } else { self.shared.clock.now() })
     }

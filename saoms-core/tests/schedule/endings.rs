@@ -138,7 +138,7 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
         json,
         json!({
             "seed": 7, "time_s": 0.0, "periods": 2,
-            "luggage": {"requested": 0, "delivered": 1}, "collisions": {"vertex": 0, "swap": 0}, "stranded": 0,
+            "luggage": {"requested": 0, "delivered": 1, "open": 0, "ignored": 0}, "collisions": {"vertex": 0, "swap": 0}, "stranded": 0,
             "mine": {"number": 1}, "map": {"size": 12},
             "components": [
                 {"name": "A", "id": "A", "class": "actor", "executions": 1, "missed": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},

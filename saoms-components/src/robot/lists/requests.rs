@@ -45,8 +45,11 @@ impl Request {
                 self.rivals.push(Rival { robot: event.robot, block: event.block });
             }
             LuggageStage::Release => self.rivals.retain(|rival| rival.robot != event.robot),
-            LuggageStage::Request | LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::Refused => {
-            }
+            LuggageStage::Request
+            | LuggageStage::Taken
+            | LuggageStage::Delivered
+            | LuggageStage::Refused
+            | LuggageStage::GivenUp => {}
         }
     }
 }
@@ -74,7 +77,8 @@ impl Requests {
         if event.robot == self.number {
             return;
         }
-        let gone = matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered);
+        let gone =
+            matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
         if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.job.luggage == event.luggage) {
             claimed.hear(event);
             if gone {

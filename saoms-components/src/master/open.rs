@@ -1,0 +1,120 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::grid::Block;
+use crate::messages::{EventLuggage, LuggageStage, RobotList};
+
+/// The luggage that is to be brought, and the robots that could.
+#[derive(Debug, Default)]
+pub(super) struct Open {
+    pieces: BTreeMap<u32, Piece>,
+    /// The robots that say they are active.
+    active: BTreeSet<u32>,
+    /// Those of them that are broken down.
+    broken: BTreeSet<u32>,
+    /// Whether there ever was a robot.
+    seen: bool,
+    /// Whether something changed since the last look.
+    changed: bool,
+}
+
+#[derive(Debug)]
+struct Piece {
+    from: Block,
+    to: Block,
+    /// The robots that can never bring it.
+    refused: BTreeSet<u32>,
+}
+
+impl Open {
+    pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
+        self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new() });
+        self.changed = true;
+    }
+
+    pub(super) fn break_down(&mut self, robot: u32) {
+        self.changed |= self.broken.insert(robot);
+    }
+
+    pub(super) fn hear_robot(&mut self, robot: &RobotList) {
+        self.seen = true;
+        self.changed |= if robot.active {
+            self.active.insert(robot.robot)
+        } else {
+            // If it ever comes back, it was repaired.
+            self.broken.remove(&robot.robot);
+            self.active.remove(&robot.robot)
+        };
+    }
+
+    pub(super) fn hear_response(&mut self, response: &EventLuggage) {
+        match response.stage {
+            LuggageStage::Delivered | LuggageStage::GivenUp => _ = self.pieces.remove(&response.luggage),
+            LuggageStage::Refused => {
+                if let Some(piece) = self.pieces.get_mut(&response.luggage) {
+                    self.changed |= piece.refused.insert(response.robot);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Takes out what nobody can bring: every robot refused it, or none is left. Number, origin and destination of each.
+    pub(super) fn take_hopeless(&mut self) -> Vec<(u32, Block, Block)> {
+        if !std::mem::take(&mut self.changed) || !self.seen {
+            return Vec::new();
+        }
+        let Open { pieces, active, broken, .. } = self;
+        let can = |piece: &Piece| active.difference(broken).any(|robot| !piece.refused.contains(robot));
+        let hopeless = pieces.extract_if(.., |_, piece| !can(piece));
+        hopeless.map(|(luggage, piece)| (luggage, piece.from, piece.to)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn robot(robot: u32, active: bool) -> RobotList {
+        RobotList { robot, active, ..RobotList::default() }
+    }
+
+    fn refusal(luggage: u32, robot: u32) -> EventLuggage {
+        EventLuggage { luggage, robot, stage: LuggageStage::Refused, ..EventLuggage::default() }
+    }
+
+    fn hopeless(open: &mut Open) -> Vec<u32> {
+        open.take_hopeless().into_iter().map(|(luggage, ..)| luggage).collect()
+    }
+
+    #[test]
+    fn luggage_is_given_up_once_every_robot_refused_it() {
+        let mut open = Open::default();
+        for luggage in 1..=3 {
+            open.add(luggage, Block::new(0, 0), Block::new(1, 0));
+        }
+        assert_eq!(hopeless(&mut open), [0; 0], "no robot was there yet");
+        open.hear_robot(&robot(1, true));
+        open.hear_robot(&robot(2, true));
+        open.hear_response(&refusal(2, 1));
+        assert_eq!(hopeless(&mut open), [0; 0]);
+        open.hear_response(&refusal(2, 2));
+        assert_eq!(hopeless(&mut open), [2]);
+        open.hear_response(&EventLuggage { stage: LuggageStage::Delivered, luggage: 1, ..refusal(1, 1) });
+        open.hear_response(&refusal(3, 1));
+        open.break_down(2);
+        assert_eq!(hopeless(&mut open), [3], "the other one is broken down");
+    }
+
+    #[test]
+    fn luggage_is_given_up_once_no_robot_is_left() {
+        let mut open = Open::default();
+        open.hear_robot(&robot(1, true));
+        open.add(1, Block::new(0, 0), Block::new(1, 0));
+        assert_eq!(hopeless(&mut open), [0; 0]);
+        open.hear_robot(&robot(1, false));
+        assert_eq!(hopeless(&mut open), [1]);
+        open.hear_robot(&robot(1, true));
+        open.add(2, Block::new(0, 0), Block::new(1, 0));
+        assert_eq!(hopeless(&mut open), [0; 0], "it is back");
+    }
+}

@@ -1,0 +1,116 @@
+//! The simulated hardware of the robots.
+
+use saoms_api::{Context, Failure};
+
+use super::World;
+use super::luggage::Luggage;
+use crate::grid::Block;
+use crate::hardware::{Action, ActionKind, Area, Hardware, Progress};
+use crate::messages::Collision;
+
+impl World {
+    fn begin_move(&mut self, context: &mut Context<'_>, robot: u32, to: Block) -> Result<Progress, Failure> {
+        let until = context.now() + self.properties.move_time;
+        match self.referee.begin_move(robot, to, until)? {
+            Ok(collision) => {
+                if let Some(collision) = collision {
+                    self.report(context, collision)?;
+                }
+                Ok(self.referee.progress(robot, context.now()))
+            }
+            Err(reason) => {
+                context.warn(format_args!("robot {robot} cannot move: {reason}"));
+                Ok(Progress::Failed)
+            }
+        }
+    }
+
+    fn report(&self, context: &mut Context<'_>, collision: Collision) -> Result<(), Failure> {
+        if collision.swap {
+            // It was counted as meeting in one block when the first of the two moved.
+            context.count("collisions.vertex", -1);
+            context.count("collisions.swap", 1);
+        } else {
+            context.count("collisions.vertex", 1);
+        }
+        context.warn(format_args!("{collision}"));
+        context.send(&self.collisions, collision)
+    }
+
+    /// The end of collecting or depositing.
+    fn handle(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
+        let here = self.referee.block(robot)?;
+        // Where a robot is out of order, those beside it reach its block.
+        let in_reach = here.distance(action.block) == 1 && self.referee.is_retired_at(action.block);
+        let block = if in_reach { action.block } else { here };
+        let referee = &self.referee;
+        let lies_on = |other: u32| referee.is_retired(other) && referee.block(other) == Ok(block);
+        let result = match action.kind {
+            ActionKind::Collect => self.stock.collect(action.luggage, robot, block, lies_on),
+            _ => self.stock.deposit(action.luggage, robot, block),
+        };
+        match result {
+            Ok(Luggage::Unknown) => return Ok(Progress::Running),
+            Ok(Luggage::Delivered) => {
+                context.count("luggage.delivered", 1);
+                context.count("luggage.open", -1);
+                self.vote(context);
+            }
+            Ok(Luggage::Handled) => {}
+            Err(reason) => {
+                context.warn(format_args!("robot {robot} at {block}: {reason}"));
+                self.referee.end_handling(robot);
+                return Ok(Progress::Failed);
+            }
+        }
+        self.referee.end_handling(robot);
+        Ok(Progress::Done)
+    }
+}
+
+impl Hardware for World {
+    fn enter(
+        &mut self,
+        _context: &mut Context<'_>,
+        robot: u32,
+        name: String,
+        block: Block,
+    ) -> Result<Block, Failure> {
+        self.referee.enter(robot, name, block)
+    }
+
+    fn area(&mut self, _context: &mut Context<'_>) -> Result<Area, Failure> {
+        Ok(self.referee.map().into())
+    }
+
+    fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
+        if self.referee.is_running(robot)? {
+            return Err(Failure::new(format!("robot {robot} begins an action before its last one is over")));
+        }
+        if self.referee.is_retired(robot) {
+            return Ok(Progress::Failed);
+        }
+        if action.kind == ActionKind::Move {
+            return self.begin_move(context, robot, action.block);
+        }
+        self.referee.begin_handling(robot, action, context.now() + self.properties.handling_time)?;
+        self.poll(context, robot)
+    }
+
+    fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Progress, Failure> {
+        match self.referee.handling(robot)? {
+            _ if self.referee.is_retired(robot) => Ok(Progress::Failed),
+            None => Ok(self.referee.progress(robot, context.now())),
+            Some((_, until)) if context.now() < until => Ok(Progress::Running),
+            Some((action, _)) => self.handle(context, robot, action),
+        }
+    }
+
+    fn cancel(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+        self.referee.cancel(robot)
+    }
+
+    fn retire(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+        self.referee.retire(robot)
+    }
+}
