@@ -89,6 +89,10 @@ pub(crate) struct CheckArguments {
     /// How diagnostics are shown: for people on standard error, or on standard output as one JSON object or as SARIF 2.1.0
     #[arg(long, value_enum, default_value_t = CheckFormat::Human)]
     pub(crate) format: CheckFormat,
+
+    /// Take classes that this program does not know as given, and implementations of other kinds: check all that can be checked without them
+    #[arg(long)]
+    pub(crate) assume_classes: bool,
 }
 
 #[derive(Debug, Args)]

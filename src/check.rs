@@ -8,7 +8,7 @@ use crate::fleet::checked;
 use crate::output::{counted, eprint, print};
 
 pub(crate) fn check(arguments: &CheckArguments) -> Exit {
-    let outcome = match checked(&arguments.fleet) {
+    let outcome = match checked(&arguments.fleet, arguments.assume_classes) {
         Ok(outcome) => outcome,
         Err(exit) => return exit,
     };
@@ -27,5 +27,5 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
             });
         }
     }
-    if outcome.assembly.is_some() { Exit::Done } else { Exit::WrongInput }
+    if outcome.count(Severity::Error) == 0 { Exit::Done } else { Exit::WrongInput }
 }

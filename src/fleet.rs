@@ -21,11 +21,11 @@ pub(crate) struct Checked {
     diagnostics: Vec<Diagnostic>,
 }
 
-/// Loads the files and checks them as one fleet.
+/// Loads the files and checks them as one fleet. Classes that are not known may be taken as given; there is no assembly then.
 ///
 /// # Errors
 /// A plugin cannot be used, which was told.
-pub(crate) fn checked(arguments: &FleetArguments) -> Result<Checked, Exit> {
+pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Result<Checked, Exit> {
     let registry = registry(&arguments.plugins, &arguments.files)?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
@@ -43,7 +43,7 @@ pub(crate) fn checked(arguments: &FleetArguments) -> Result<Checked, Exit> {
     }
     let mut contribution = Contribution::of(composites);
     load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
-    let options = Options::with_settings(settings);
+    let options = Options { settings, assume_classes };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
     Ok(Checked { assembly, sources, diagnostics: diagnostics.into_sorted() })
 }

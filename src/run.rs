@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 
 /// The fleet to run; without one, what is wrong has been shown. Texts and diagnostics do not outlive this: a run may last for days.
 fn assembly(arguments: &RunArguments) -> Option<Assembly> {
-    let outcome = checked(&arguments.fleet).ok()?;
+    let outcome = checked(&arguments.fleet, false).ok()?;
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &outcome.assembly) {
         (Format::Json, None) => print(&outcome.json()),

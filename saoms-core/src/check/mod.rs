@@ -77,6 +77,7 @@ pub fn check(
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly> {
     let report = &mut Report::new(sources, diagnostics);
+    report.assumes = options.assume_classes;
     let mut fleet = unfold::unfold(contribution, options.assume_classes, report);
     let parameters = Parameters::of(&fleet, &options.settings, report);
     let classes = classes::resolve(&mut fleet, registry, options.assume_classes, report);

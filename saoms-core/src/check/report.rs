@@ -17,6 +17,8 @@ pub(super) struct Report<'a> {
     sources: &'a Sources,
     diagnostics: &'a mut Diagnostics,
     candidates: usize,
+    /// Whether what is not known is taken as given.
+    pub(super) assumes: bool,
     escalated: HashSet<(&'static str, FileId)>,
     /// What was said where: a composite that implements several components has its faults once.
     said: HashSet<(&'static str, Location, u64)>,
@@ -27,7 +29,14 @@ const REMEMBERED: usize = 100_000;
 
 impl<'a> Report<'a> {
     pub(super) fn new(sources: &'a Sources, diagnostics: &'a mut Diagnostics) -> Self {
-        Self { sources, diagnostics, candidates: CANDIDATES, escalated: HashSet::new(), said: HashSet::new() }
+        Self {
+            sources,
+            diagnostics,
+            candidates: CANDIDATES,
+            assumes: false,
+            escalated: HashSet::new(),
+            said: HashSet::new(),
+        }
     }
 
     /// Adds a diagnostic, unless the same was said of the same place.

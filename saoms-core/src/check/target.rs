@@ -6,7 +6,7 @@ use super::classes::ClassIndex;
 use super::fleet::Fleet;
 use super::offer::Offer;
 use super::report::{Report, escaped, list, replacing};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
 
@@ -77,6 +77,7 @@ impl<'t> Uri<'t> {
         text: &Text,
         scope: usize,
         fleet: &Fleet<'_>,
+        rule: Option<&'static str>,
         report: &mut Report<'_>,
     ) -> Option<usize> {
         let found = fleet.find(scope, self.component);
@@ -85,7 +86,10 @@ impl<'t> Uri<'t> {
             let at = report.part(text, 0..self.component.len());
             let known = ("the components are", fleet.names(scope));
             let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known);
-            report.push(one);
+            report.push(match rule {
+                Some(rule) => one.rule(rule),
+                None => one,
+            });
         }
         found
     }
@@ -102,8 +106,15 @@ pub(super) fn target(
     classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Target {
+    if is_address(text) && report.assumes {
+        return Target::Open;
+    }
     let Some(uri) = Uri::of(text, 3, report) else { return Target::Wrong };
-    let Some(member) = uri.member(text, scope, fleet, report) else { return Target::Wrong };
+    if scope == 0 && report.assumes && fleet.find(scope, uri.component).is_none() {
+        elsewhere(text, uri.component, fleet, report);
+        return Target::Open;
+    }
+    let Some(member) = uri.member(text, scope, fleet, None, report) else { return Target::Wrong };
     let component = fleet.members[member].component;
     let Some((name, at)) = uri.part.clone() else {
         return match interface {
@@ -166,6 +177,26 @@ pub(super) fn target(
         }
     }
     Target::Service(provider)
+}
+
+/// Whether a target is an address on a network rather than a component.
+fn is_address(text: &str) -> bool {
+    let scheme = text.split(':').next().unwrap_or_default();
+    scheme.len() < text.len()
+        && !scheme.contains('/')
+        && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
+}
+
+/// Says that a target is not in the composites at hand. Where things are taken as given, it may be in others of its domain.
+fn elsewhere(text: &Text, component: &str, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let message = format!("there is no component {} in these composites", quoted(component));
+    let at = report.part(text, 0..component.len());
+    let known = ("the components are", fleet.names(0));
+    let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, component, known);
+    report.push(
+        one.severity(Severity::Warning)
+            .help("it is taken as given: another composite of the domain may have it"),
+    );
 }
 
 fn fits(

@@ -102,7 +102,7 @@ fn source_of<'f>(
     report: &mut Report<'_>,
 ) -> Option<(usize, &'f str)> {
     let uri = Uri::of(source, 2, report)?;
-    let member = uri.member(source, scope, fleet, report)?;
+    let member = uri.member(source, scope, fleet, None, report)?;
     let named = uri.part.as_ref().map_or("", |(name, _)| *name);
     let Some(names) = fleet.reference_names(member, classes) else {
         return (fleet.members[member].kind == Kind::Given).then_some((member, named));

@@ -99,10 +99,13 @@ impl Loader<'_> {
                 self.unexpected(element, &COMPONENT, family);
                 return None;
             }
-            _ => ImplementationKind::Other {
-                kind: variant(element, "implementation."),
-                is_sca: family == Family::Sca,
-            },
+            _ => {
+                self.extension(element, family);
+                ImplementationKind::Other {
+                    kind: variant(element, "implementation."),
+                    is_sca: family == Family::Sca,
+                }
+            }
         };
         Some(Implementation { origin: Origin::of(element), kind, policy: self.policy(element) })
     }

@@ -144,6 +144,7 @@ impl Loader<'_> {
             }
             (Family::Sca, "interface.wsdl") => {
                 self.parts_of(element, &INTERFACE_WSDL);
+                self.extension(element, family);
                 required = true;
                 InterfaceKind::Wsdl
             }
@@ -172,6 +173,8 @@ impl Loader<'_> {
         // What other bindings hold is theirs.
         if family == Family::Sca && element.local_name() == BINDING_SCA.name {
             self.parts_of(element, &BINDING_SCA);
+        } else {
+            self.extension(element, family);
         }
         Binding {
             origin: Origin::of(element),

@@ -10,6 +10,7 @@ mod component;
 mod composite;
 mod contract;
 mod encoding;
+mod extension;
 mod missing;
 mod named;
 mod property;

@@ -4,6 +4,7 @@
 
 mod assemblies;
 mod classes;
+mod corpus;
 mod files;
 mod findings;
 mod mutations;

@@ -302,8 +302,9 @@ fn what_is_taken_as_given_has_no_fault_of_its_own() {
           help: declare it: `<property name="...">...</property>` in the composite
         3:53-59 warning S2031: there is no composite `else` in the namespace `urn:t`
           help: name the file of the composite beside this one
-        6:30-31 error S2011: there is no component `D`
+        6:30-31 warning S2011: there is no component `D` in these composites
           help: the components are `A`, `B`, `C` and `N`
+          help: it is taken as given: another composite of the domain may have it
     "#]]
     .assert_eq(&found);
 }
