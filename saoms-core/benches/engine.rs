@@ -165,6 +165,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
                 .to_vec(),
             task: Some(TaskSettings::from_values(&task, Vec::new())?),
             references: Vec::new(),
+            loops: Vec::new(),
         });
     }
     Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Arc::new(Quiet))?)

@@ -3,7 +3,7 @@ use std::collections::HashMap;
 use saoms_api::PropertyValue;
 
 use super::order::providers_first;
-use crate::assembly::{Assembly, ComponentSpec, Target, Wire};
+use crate::assembly::{Assembly, ComponentSpec, LoopSpec, Target, Wire};
 
 /// What turns one fleet into another. Components are the same when their paths are; numbers are places in the two assemblies.
 ///
@@ -47,6 +47,8 @@ pub enum Difference {
     Task,
     /// Where this reference leads.
     Reference(String),
+    /// Which loops it has, in which order, or the values of one of them.
+    Loops,
 }
 
 impl Plan {
@@ -102,6 +104,13 @@ fn differences(
     }
     if before.task != after.task {
         differences.push(Difference::Task);
+    }
+    let loops = |component: &ComponentSpec| -> Vec<_> {
+        let one = |one: &LoopSpec| (one.name.clone(), one.class.name().to_owned(), one.values.clone());
+        component.loops.iter().map(one).collect()
+    };
+    if loops(before) != loops(after) {
+        differences.push(Difference::Loops);
     }
     let leads_to = |assembly: &Assembly, wire: &Wire| -> Vec<Option<(String, String)>> {
         let of = |target: &Target| {

@@ -54,6 +54,7 @@ fn assembly(text: &str) -> Assembly {
             class,
             values: Vec::new(),
             references: Vec::new(),
+            loops: Vec::new(),
         };
         for word in &words[2..] {
             match word.strip_prefix('>') {

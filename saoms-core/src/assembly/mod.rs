@@ -11,7 +11,7 @@ use saoms_api::{PropertyField, PropertyValue};
 
 pub use task::{RestartPolicy, TaskProperties};
 
-use crate::registry::Class;
+use crate::registry::{Class, LoopClass};
 
 /// The components of a fleet in document order.
 #[derive(Clone, Debug, Default)]
@@ -33,6 +33,19 @@ pub struct ComponentSpec {
     pub task: Option<TaskSettings>,
     /// The class's references in the order of its declaration, with the services each leads to.
     pub references: Vec<Wire>,
+    /// Its loops in their order.
+    pub loops: Vec<LoopSpec>,
+}
+
+/// One loop of a component, resolved.
+#[derive(Clone, Debug)]
+pub struct LoopSpec {
+    /// What it is called within the component.
+    pub name: String,
+    /// What it is an instance of.
+    pub class: Arc<LoopClass>,
+    /// Its values; what is absent takes its default.
+    pub values: Vec<(String, PropertyValue)>,
 }
 
 /// Where a reference leads.

@@ -8,10 +8,13 @@ use super::report::{Report, escaped, list, replacing};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, ImplementationKind, Part};
-use crate::registry::{Class, PropertyDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration};
+use crate::registry::{
+    Class, LoopDeclaration, PropertyDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration,
+    TopicDeclaration,
+};
 use crate::source::Text;
 
-/// A class of the fleet, with its declaration at hand.
+/// A class of the fleet, with its declaration at hand; where components of it have loops, together with these.
 pub(super) struct ClassIndex<'r> {
     pub(super) class: &'r Arc<Class>,
     /// Its properties, those of tasks behind its own.
@@ -19,7 +22,10 @@ pub(super) struct ClassIndex<'r> {
     by_name: HashMap<&'r str, usize>,
     /// What it offers, what the host serves for it included.
     pub(super) services: Vec<&'r ServiceDeclaration>,
-    pub(super) references: &'r [ReferenceDeclaration],
+    /// Those of its loops included, like its topics.
+    pub(super) references: Vec<&'r ReferenceDeclaration>,
+    pub(super) publishes: Vec<&'r TopicDeclaration>,
+    pub(super) subscribes: Vec<&'r TopicDeclaration>,
 }
 
 /// A property that components of a class can be given.
@@ -68,7 +74,31 @@ impl<'r> ClassIndex<'r> {
             }
         }
         let services = declaration.offers().collect();
-        Self { class, properties, by_name, services, references: &declaration.references }
+        Self {
+            class,
+            properties,
+            by_name,
+            services,
+            references: declaration.references.iter().collect(),
+            publishes: declaration.publishes.iter().collect(),
+            subscribes: declaration.subscribes.iter().collect(),
+        }
+    }
+
+    /// The same together with what these loops use.
+    pub(super) fn with(&self, loops: impl Iterator<Item = &'r LoopDeclaration>) -> Self {
+        let mut all = Self::new(self.class);
+        for one in loops {
+            // A topic that is declared twice in the same way is one; where two differ, both stay to be compared.
+            all.publishes.extend(one.publishes.iter().filter(|topic| !self.publishes.contains(topic)));
+            all.subscribes.extend(one.subscribes.iter().filter(|topic| !self.subscribes.contains(topic)));
+            for reference in &one.references {
+                if all.references.iter().all(|known| known.name != reference.name) {
+                    all.references.push(reference);
+                }
+            }
+        }
+        all
     }
 
     /// The place of the property of this name.
@@ -83,8 +113,7 @@ impl<'r> ClassIndex<'r> {
 
     /// Whether the topics it declares are any.
     pub(super) fn has_topics(&self) -> bool {
-        let declaration = self.class.declaration();
-        !declaration.publishes.is_empty() || !declaration.subscribes.is_empty()
+        !self.publishes.is_empty() || !self.subscribes.is_empty()
     }
 }
 

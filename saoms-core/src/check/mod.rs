@@ -13,6 +13,7 @@ mod cycles;
 mod endpoint;
 mod findings;
 mod fleet;
+mod loops;
 mod offer;
 mod options;
 mod parameters;
@@ -34,7 +35,7 @@ mod wires;
 
 use saoms_api::PropertyValue;
 
-use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
+use crate::assembly::{Assembly, ComponentSpec, LoopSpec, Target, TaskSettings, Wire};
 use crate::diagnostic::Diagnostics;
 use crate::model::Contribution;
 use crate::registry::Registry;
@@ -45,7 +46,7 @@ use findings::Subject;
 use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
-use properties::Written;
+use properties::{Checked, Written};
 use report::Report;
 pub use setting::Setting;
 use values::Values;
@@ -79,9 +80,12 @@ pub fn check(
     let report = &mut Report::new(sources, diagnostics);
     report.assumes = options.assume_classes;
     let mut fleet = unfold::unfold(contribution, options.assume_classes, report);
-    let parameters = Parameters::of(&fleet, &options.settings, report);
-    let classes = classes::resolve(&mut fleet, registry, options.assume_classes, report);
-    let resolved = components(&fleet, &classes, parameters, report);
+    let mut parameters = Parameters::of(&fleet, &options.settings, report);
+    let mut classes = classes::resolve(&mut fleet, registry, options.assume_classes, report);
+    let checked = properties(&fleet, &classes, &mut parameters, report);
+    let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, report);
+    parameters.finish(&fleet, report);
+    let resolved = components(&fleet, &classes, checked, loops, report);
     contracts::check(&fleet, &classes, report);
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);
@@ -101,6 +105,7 @@ struct Resolved<'r> {
     /// Where the composite gives them.
     written: Vec<Written<'r>>,
     task: Option<TaskSettings>,
+    loops: Vec<LoopSpec>,
 }
 
 impl Resolved<'_> {
@@ -110,48 +115,65 @@ impl Resolved<'_> {
     }
 }
 
-/// Checks everything about components that needs no look at wires; `None` for one with a fault.
+/// Checks the properties of all components; `None` for one without a class.
+fn properties<'a>(
+    fleet: &Fleet<'a>,
+    classes: &[ClassIndex<'a>],
+    parameters: &mut Parameters<'a>,
+    report: &mut Report<'_>,
+) -> Vec<Option<Checked>> {
+    let mut values = Values::default();
+    let mut all = Vec::with_capacity(fleet.members.len());
+    for (place, member) in fleet.members.iter().enumerate() {
+        if let Kind::Class(index) = member.kind {
+            all.push(Some(properties::check(member, &classes[index], parameters, &mut values, report)));
+            continue;
+        }
+        properties::repeated(member.component, report);
+        match fleet.inner(place) {
+            Some(inner) => properties::of_composite(member, inner, report),
+            // Nothing says what its properties should be, but where they come from can be looked at.
+            None => {
+                for source in member.component.properties.iter().filter_map(|property| property.source()) {
+                    let _ = parameters.resolve(member.unit, source, report);
+                }
+            }
+        }
+        all.push(None);
+    }
+    all
+}
+
+/// Checks everything else about components that needs no look at wires; `None` for one with a fault.
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
-    mut parameters: Parameters<'a>,
+    checked: Vec<Option<Checked>>,
+    loops: Vec<Option<Vec<LoopSpec>>>,
     report: &mut Report<'_>,
 ) -> Vec<Option<Resolved<'a>>> {
-    let mut values = Values::default();
     let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
     let mut all = Vec::with_capacity(fleet.members.len());
-    for (place, member) in fleet.members.iter().enumerate() {
-        let Kind::Class(index) = member.kind else {
-            properties::repeated(member.component, report);
-            match fleet.inner(place) {
-                Some(inner) => properties::of_composite(member, inner, report),
-                // Nothing says what its properties should be, but where they come from can be looked at.
-                None => {
-                    for source in member.component.properties.iter().filter_map(|property| property.source())
-                    {
-                        let _ = parameters.resolve(member.unit, source, report);
-                    }
-                }
-            }
+    for ((member, checked), loops) in fleet.members.iter().zip(checked).zip(loops) {
+        let (Kind::Class(index), Some(checked)) = (member.kind, checked) else {
             all.push(None);
             continue;
         };
         let class = &classes[index];
-        let checked = properties::check(member, class, &mut parameters, &mut values, report);
         unique.add(member, class, &checked, report);
         let is_periodic = class.class.declaration().is_periodic();
         let task = is_periodic.then(|| task::check(member.component, class, &checked, report));
         topics.add(member, index, class, task.as_ref(), report);
         let task = task.and_then(|task| task.settings);
-        all.push((checked.is_sound && is_periodic == task.is_some()).then(|| {
+        let sound = checked.is_sound && is_periodic == task.is_some();
+        all.push(loops.filter(|_| sound).map(|loops| {
             let mut values = checked.values(class, |slot| slot.own);
             let absent = class.class.presets().iter().filter(|(name, _)| checked.get(class, name).is_none());
             values.extend(absent.cloned());
-            Resolved { values, written: checked.places(class), task }
+            Resolved { values, written: checked.places(class), task, loops }
         }));
     }
-    parameters.finish(fleet, report);
     all
 }
 
@@ -176,7 +198,7 @@ fn assemble(
             continue;
         }
         let class = fleet.class_of(place, classes)?;
-        let Resolved { values, task, .. } = resolved?;
+        let Resolved { values, task, loops, .. } = resolved?;
         let references = class.references.iter().zip(&wiring[place]);
         let references = references.map(|(declared, providers)| Wire {
             reference: declared.name.clone(),
@@ -196,6 +218,7 @@ fn assemble(
             values,
             task,
             references: references.collect(),
+            loops,
         });
     }
     Some(Assembly { components })

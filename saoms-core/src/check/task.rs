@@ -100,10 +100,9 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
 
 /// The topics of a class, each once.
 fn topics<'c>(class: &'c ClassIndex<'_>) -> impl Iterator<Item = &'c TopicDeclaration> + Clone {
-    let declaration = class.class.declaration();
-    let published = |name: &str| declaration.publishes.iter().any(|topic| topic.name == name);
-    let others = declaration.subscribes.iter().filter(move |topic| !published(&topic.name));
-    declaration.publishes.iter().chain(others)
+    let published = |name: &str| class.publishes.iter().any(|topic| topic.name == name);
+    let others = class.subscribes.iter().filter(move |topic| !published(&topic.name));
+    class.publishes.iter().chain(others).copied()
 }
 
 fn renames(
@@ -148,10 +147,8 @@ fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, rep
     if !class.has_topics() || bool::from_value(&given.value) != Ok(false) {
         return;
     }
-    let declaration = class.class.declaration();
     let mut uses = Vec::new();
-    for (verb, topics) in [("publishes", &declaration.publishes), ("subscribes to", &declaration.subscribes)]
-    {
+    for (verb, topics) in [("publishes", &class.publishes), ("subscribes to", &class.subscribes)] {
         if !topics.is_empty() {
             uses.push(format!("{verb} {}", list(topics.iter().map(|topic| topic.name.as_str()))));
         }

@@ -49,10 +49,9 @@ impl<'a> Topics<'a> {
                 return;
             }
         }
-        let declaration: &'a crate::registry::ClassDeclaration = class.class.declaration();
-        let published = declaration.publishes.iter().map(|topic| ("publishes", topic));
+        let published = class.publishes.iter().map(|topic| ("publishes", *topic));
         // What is published as well has been held against the others once.
-        let subscribed = declaration.subscribes.iter().filter(|topic| !declaration.publishes.contains(topic));
+        let subscribed = class.subscribes.iter().copied().filter(|topic| !class.publishes.contains(topic));
         let subscribed = subscribed.map(|topic| ("subscribes to", topic));
         for (verb, topic) in published.chain(subscribed) {
             let renamed = renames.iter().position(|(old, _)| *old == topic.name);

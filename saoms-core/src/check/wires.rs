@@ -61,7 +61,7 @@ pub(super) fn check(
             continue;
         };
         let mut providers = Vec::with_capacity(class.references.len());
-        for declared in class.references {
+        for &declared in &class.references {
             let ends = all.of_class(member, declared, report);
             for end in &ends {
                 circles.add(member, &declared.name, end.provider, end.place, fleet, classes);

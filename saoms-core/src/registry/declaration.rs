@@ -8,6 +8,8 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 use serde_json::Value;
 
+use super::{DefaultLoops, KnowledgeDeclaration};
+
 /// All that a class declares.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct ClassDeclaration {
@@ -37,6 +39,11 @@ pub struct ClassDeclaration {
     /// The references it can call through.
     #[serde(default)]
     pub references: Vec<ReferenceDeclaration>,
+    /// What its loops work on; `None` for a class without loops.
+    pub knowledge: Option<KnowledgeDeclaration>,
+    /// The loops that its components have unless a composite says otherwise.
+    #[serde(default)]
+    pub loops: DefaultLoops,
 }
 
 /// Whether components of a class are executed.

@@ -12,9 +12,16 @@ pub enum RegistryError {
         /// What is wrong.
         message: String,
     },
+    /// The declaration of a loop is no JSON of the right shape, contradicts itself, or its name is taken.
+    MalformedLoop {
+        /// The loop, or the start of the declaration where it has no readable name.
+        name: String,
+        /// What is wrong.
+        message: String,
+    },
     /// The declaration is of another version of the contract.
     Contract {
-        /// The class.
+        /// The class, or the loop.
         class: String,
         /// The version of the declaration.
         found: u32,
@@ -38,6 +45,9 @@ impl fmt::Display for RegistryError {
         match self {
             Self::Malformed { class, message } => {
                 write!(out, "the declaration of class `{class}` is malformed: {message}")
+            }
+            Self::MalformedLoop { name, message } => {
+                write!(out, "the declaration of loop `{name}` is malformed: {message}")
             }
             Self::Contract { class, found } => write!(
                 out,

@@ -1,4 +1,4 @@
-//! The classes that composites can name.
+//! The classes and the loops that composites can name.
 //!
 //! A [`Registry`] is a value. [`Registry::linked`] has the classes that are linked into the program, tests fill their own.
 //! It is built from the text of declarations alone, so that it can know classes whose code it has not run.
@@ -6,6 +6,9 @@
 mod class;
 mod declaration;
 mod error;
+mod looping;
+mod read;
+mod team;
 #[cfg(test)]
 mod tests;
 mod validate;
@@ -13,7 +16,7 @@ mod validate;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use saoms_api::Registration;
+use saoms_api::{LoopRegistration, Registration};
 
 pub use class::{Class, Provider};
 pub use declaration::{
@@ -21,13 +24,17 @@ pub use declaration::{
     ServiceDeclaration, TopicDeclaration,
 };
 pub use error::RegistryError;
+pub use looping::{
+    DefaultLoops, EntryDeclaration, KnowledgeDeclaration, LoopClass, LoopDeclaration, LoopProvider,
+};
+pub use team::{Team, TeamFault};
 
 use crate::diagnostic::nearest_few;
 
 /// How many names are offered in place of an unknown one.
 const OFFERED: usize = 3;
 
-/// Classes by name.
+/// Classes and loops by name.
 ///
 /// ```
 /// use saoms_api::{Class, Component, Failure, Registration};
@@ -56,6 +63,7 @@ const OFFERED: usize = 3;
 #[derive(Clone, Debug, Default)]
 pub struct Registry {
     classes: BTreeMap<String, Arc<Class>>,
+    loops: BTreeMap<String, Arc<LoopClass>>,
 }
 
 impl Registry {
@@ -64,25 +72,66 @@ impl Registry {
         Self::default()
     }
 
-    /// The classes that are linked into this program.
+    /// The classes and loops that are linked into this program.
     ///
     /// # Errors
-    /// As [`Registry::add`].
+    /// As [`Registry::add`] and [`Registry::add_loop`].
     pub fn linked() -> Result<Self, RegistryError> {
         let mut all: Vec<&Registration> = Registration::linked().collect();
         // The linker's order would decide which of two faults is reported.
         all.sort_unstable_by_key(|registration| registration.declaration());
         let mut registry = Self::new();
+        let mut loops: Vec<&LoopRegistration> = LoopRegistration::linked().collect();
+        loops.sort_unstable_by_key(|registration| registration.declaration());
+        loops.into_iter().try_for_each(|registration| registry.add_loop(*registration))?;
         all.into_iter().try_for_each(|registration| registry.add(*registration))?;
         Ok(registry)
     }
 
-    /// Adds a class under all its names. After an error the registry is as it was before.
+    /// Adds a class under all its names, and the loops that it has. After an error the registry is as it was before.
     ///
     /// # Errors
-    /// The declaration is malformed or of another version of the contract, or one of its names is taken.
+    /// The declaration is malformed or of another version of the contract, or one of its names is taken; or as [`Registry::add_loop`].
     pub fn add(&mut self, registration: Registration) -> Result<(), RegistryError> {
-        self.add_provided(registration.declaration(), Arc::new(registration))
+        let before = (!registration.loops().is_empty()).then(|| self.loops.clone());
+        let loops = registration.loops().iter().try_for_each(|one| self.add_loop(*one));
+        let added =
+            loops.and_then(|()| self.add_provided(registration.declaration(), Arc::new(registration)));
+        if let (Err(_), Some(before)) = (&added, before) {
+            self.loops = before;
+        }
+        added
+    }
+
+    /// Adds a loop. One that is there already, with the very same declaration, stays as it is: classes share loops.
+    ///
+    /// # Errors
+    /// The declaration is malformed or of another version of the contract, or its name is taken.
+    pub fn add_loop(&mut self, registration: LoopRegistration) -> Result<(), RegistryError> {
+        self.add_loop_provided(registration.declaration(), Arc::new(registration))
+    }
+
+    /// Adds a loop by its declaration and where its code comes from.
+    ///
+    /// # Errors
+    /// As [`Registry::add_loop`].
+    pub fn add_loop_provided(
+        &mut self,
+        declaration: &str,
+        provider: Arc<dyn LoopProvider>,
+    ) -> Result<(), RegistryError> {
+        if self.loops.values().any(|known| &*known.text == declaration) {
+            return Ok(());
+        }
+        let added = read::looping(declaration, provider)?;
+        let name = added.name();
+        if self.classes.contains_key(name) || self.loops.contains_key(name) {
+            let kind = if self.classes.contains_key(name) { "a class" } else { "another loop" };
+            let message = format!("{kind} has this name already");
+            return Err(RegistryError::MalformedLoop { name: name.to_owned(), message });
+        }
+        self.loops.insert(name.to_owned(), Arc::new(added));
+        Ok(())
     }
 
     /// Adds a class by its declaration and where its code comes from, under all its names. After an error the registry is as it was before.
@@ -94,7 +143,7 @@ impl Registry {
         declaration: &str,
         provider: Arc<dyn Provider>,
     ) -> Result<(), RegistryError> {
-        let classes = read(declaration, &provider)?;
+        let classes = read::class(declaration, &provider)?;
         for (place, class) in classes.iter().enumerate() {
             let taken = self.classes.get(&class.name).map(|other| &other.declaration.name);
             let again = classes[..place].iter().find(|other| other.name == class.name);
@@ -106,6 +155,13 @@ impl Registry {
                 });
             }
         }
+        for class in &classes {
+            let refuse = |message| RegistryError::Malformed { class: class.name.clone(), message };
+            if self.loops.contains_key(&class.name) {
+                return Err(refuse("a loop has this name already".to_owned()));
+            }
+            self.check_loops(&class.declaration).map_err(refuse)?;
+        }
         self.classes.extend(classes.into_iter().map(|class| (class.name.clone(), Arc::new(class))));
         Ok(())
     }
@@ -113,6 +169,16 @@ impl Registry {
     /// The class of this name.
     pub fn get(&self, name: &str) -> Option<&Arc<Class>> {
         self.classes.get(name)
+    }
+
+    /// The loop of this name.
+    pub fn get_loop(&self, name: &str) -> Option<&Arc<LoopClass>> {
+        self.loops.get(name)
+    }
+
+    /// All loops, sorted by name.
+    pub fn loops(&self) -> impl ExactSizeIterator<Item = &Arc<LoopClass>> {
+        self.loops.values()
     }
 
     /// All classes under all their names, sorted by name.
@@ -133,60 +199,44 @@ impl Registry {
     /// Up to three names that are like `name`, the likeliest first: by spelling, or by what follows the last dot when
     /// nothing is spelt alike.
     pub fn nearest(&self, name: &str) -> Vec<&str> {
-        let names = || self.classes.keys().map(String::as_str);
-        let alike = nearest_few(name, names(), OFFERED);
-        if !alike.is_empty() {
-            return alike;
-        }
-        let last = simple(name);
-        names()
-            .filter(|known| !last.is_empty() && simple(known).eq_ignore_ascii_case(last))
-            .take(OFFERED)
-            .collect()
+        near(name, self.classes.keys().map(String::as_str))
     }
+
+    /// Up to three names of loops that are like `name`; see [`Registry::nearest`].
+    pub fn nearest_loops(&self, name: &str) -> Vec<&str> {
+        near(name, self.loops.keys().map(String::as_str))
+    }
+
+    /// Whether each list of loops that a class has by default can work together, as far as they are known.
+    fn check_loops(&self, class: &ClassDeclaration) -> Result<(), String> {
+        for (value, names) in class.loops.all() {
+            let known = || names.iter().filter_map(|name| self.loops.get(name));
+            if known().count() < names.len() {
+                continue;
+            }
+            let which = value.map_or_else(String::new, |value| format!(" for `{value}`"));
+            if let Some((one, property)) = known().find_map(|one| Some((one, one.required()?))) {
+                return Err(format!("its loop `{}` has to be given `{property}`", one.name()));
+            }
+            let team = Team::of(class, known().map(|one| one.declaration()).collect());
+            if let Some(fault) = team.faults().first() {
+                return Err(format!("its loops{which} do not fit together: {}", fault.describe(names)));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn near<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Vec<&'n str> {
+    let alike = nearest_few(name, names.clone(), OFFERED);
+    if !alike.is_empty() {
+        return alike;
+    }
+    let last = simple(name);
+    names.filter(|known| !last.is_empty() && simple(known).eq_ignore_ascii_case(last)).take(OFFERED).collect()
 }
 
 /// What follows the last dot: the class without its package.
 fn simple(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
-}
-
-/// What every version of a declaration has.
-#[derive(serde::Deserialize)]
-struct Head {
-    contract: u32,
-    class: String,
-}
-
-/// A class under each of its names, the declared one first.
-fn read(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Class>, RegistryError> {
-    let declaration = Arc::new(read_text(text)?);
-    let text: Arc<str> = text.into();
-    let class = |name: &str, presets| Class {
-        name: name.to_owned(),
-        declaration: Arc::clone(&declaration),
-        presets,
-        text: Arc::clone(&text),
-        provider: Arc::clone(provider),
-    };
-    let also = declaration.also.iter().map(|alias| {
-        let presets = alias.preset.iter().map(|(name, value)| (name.clone(), value.as_str().into()));
-        class(&alias.name, presets.collect())
-    });
-    Ok(std::iter::once(class(&declaration.name, Vec::new())).chain(also).collect())
-}
-
-fn read_text(text: &str) -> Result<ClassDeclaration, RegistryError> {
-    let malformed =
-        |class: &str, message: String| RegistryError::Malformed { class: class.to_owned(), message };
-    let start: String = text.chars().take(40).collect();
-    // First of all the version: another one may have another shape.
-    let head: Head = serde_json::from_str(text).map_err(|error| malformed(&start, error.to_string()))?;
-    if head.contract != error::CONTRACT {
-        return Err(RegistryError::Contract { class: head.class, found: head.contract });
-    }
-    let declaration: ClassDeclaration =
-        serde_json::from_str(text).map_err(|error| malformed(&head.class, error.to_string()))?;
-    validate::validate(&declaration).map_err(|message| malformed(&head.class, message))?;
-    Ok(declaration)
 }

@@ -1,7 +1,9 @@
 use std::time::Duration;
 
 use saoms_api::declaration::PropertyKind;
-use saoms_api::{Class, Component, Failure, Message, Properties, Registration, Topic};
+use saoms_api::{
+    Class, Component, DynLoop, Failure, Message, Properties, PropertyValue, Registration, Topic,
+};
 use serde_json::{Value, json};
 
 use super::*;
@@ -102,12 +104,16 @@ fn unknown_names_get_the_nearest_ones() {
     assert!(registry.nearest("x.").is_empty());
 }
 
+fn read_text(text: &str) -> String {
+    let error = Registry::new().add_provided(text, Arc::new(Registration::of::<Eye>()));
+    error.unwrap_err().to_string()
+}
+
 /// What `change` makes of a good declaration.
 fn refused(change: impl FnOnce(&mut Value)) -> String {
     let mut declaration: Value = serde_json::from_str(Eye::DECLARATION).unwrap();
     change(&mut declaration);
-    let text: &'static str = Box::leak(declaration.to_string().into_boxed_str());
-    read_text(text).map(|_| ()).unwrap_err().to_string()
+    read_text(&declaration.to_string())
 }
 
 #[test]
@@ -149,9 +155,124 @@ fn a_malformed_declaration_is_refused_with_its_class() {
         refused(|eye| eye["properties"][0]["type"] = json!("complex")),
         malformed("property `number` of type complex has the wrong inner properties")
     );
-    let error = read_text("{ this is no JSON, and longer than can be shown").unwrap_err().to_string();
+    let error = read_text("{ this is no JSON, and longer than can be shown");
     assert!(
         error
             .starts_with("the declaration of class `{ this is no JSON, and longer than can b` is malformed:")
+    );
+}
+
+fn loops() -> Value {
+    let entry = |name: &str, effector| json!({"name": name, "type": "bool", "effector": effector});
+    json!({
+        "contract": 1, "class": "c.Cart", "kind": "periodic",
+        "properties": [{"name": "mood", "type": "enumeration", "default": "calm", "allowed": ["calm", "wild"]}],
+        "knowledge": {"name": "c.Cart", "entries": [entry("busy", false), entry("stopped", true)]},
+        "loops": {"property": "mood", "lists": {"calm": ["c.Driver", "c.Saver"], "wild": ["c.Driver"]}}
+    })
+}
+
+fn driver() -> Value {
+    json!({"contract": 1, "loop": "c.Driver", "knowledge": "c.Cart", "senses": ["busy"], "effects": ["stopped"]})
+}
+
+fn saver() -> Value {
+    json!({
+        "contract": 1, "loop": "c.Saver", "senses": ["busy"], "effects": ["busy"],
+        "entries": [{"name": "saved", "type": "uint32", "value": "integer"}]
+    })
+}
+
+/// What a registry says of two loops and a class that has them.
+fn refused_loops(change: impl FnOnce(&mut Value, &mut Value, &mut Value)) -> String {
+    let (mut class, mut driver, mut saver) = (loops(), driver(), saver());
+    change(&mut class, &mut driver, &mut saver);
+    let mut registry = Registry::new();
+    for text in [driver, saver] {
+        if let Err(error) = registry.add_loop_provided(&text.to_string(), Arc::new(Nowhere)) {
+            return error.to_string();
+        }
+    }
+    let added = registry.add_provided(&class.to_string(), Arc::new(Registration::of::<Eye>()));
+    added.map_or_else(|error| error.to_string(), |()| "fits".to_owned())
+}
+
+#[derive(Debug)]
+struct Nowhere;
+
+impl LoopProvider for Nowhere {
+    fn construct(&self, _: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+        Err("nowhere".into())
+    }
+
+    fn origin(&self) -> Option<&std::path::Path> {
+        None
+    }
+}
+
+#[test]
+fn loops_of_a_class_have_to_fit_together() {
+    let of_class = |what: &str| format!("the declaration of class `c.Cart` is malformed: {what}");
+    let not_together = |what: &str| of_class(&format!("its loops for `calm` do not fit together: {what}"));
+    assert_eq!(refused_loops(|_, _, _| {}), "fits");
+    assert_eq!(
+        refused_loops(|_, _, saver| saver["effects"] = json!(["stopped"])),
+        not_together("`c.Driver` and `c.Saver` both effect `stopped`")
+    );
+    assert_eq!(
+        refused_loops(|_, _, saver| saver["senses"] = json!(["bussy"])),
+        not_together("`c.Saver` senses `bussy`, and there is no such entry")
+    );
+    assert_eq!(
+        refused_loops(|_, _, saver| saver["entries"][0]["name"] = json!("busy")),
+        not_together("`c.Saver` adds the entry `busy`, which the class has already")
+    );
+    assert_eq!(
+        refused_loops(|_, driver, _| driver["knowledge"] = json!("c.Boat")),
+        not_together("`c.Driver` works on another knowledge")
+    );
+    let reference =
+        |interface: &str| json!([{"name": "gps", "interface": {"name": interface, "operations": []}}]);
+    assert_eq!(
+        refused_loops(|class, driver, saver| {
+            driver["references"] = reference("a.Gps");
+            saver["references"] = reference("b.Gps");
+            class["references"] = json!([]);
+        }),
+        not_together("`c.Saver` and `c.Driver` have different references `gps`")
+    );
+    assert_eq!(
+        refused_loops(
+            |_, _, saver| saver["properties"] = json!([{"name": "x", "type": "float", "required": true}])
+        ),
+        of_class("its loop `c.Saver` has to be given `x`")
+    );
+    assert_eq!(
+        refused_loops(|class, _, _| class["loops"]["lists"]["calm"] = json!(["c.Saver", "d.Saver"])),
+        of_class("loop `Saver` is declared twice")
+    );
+    assert_eq!(
+        refused_loops(|class, _, _| class["loops"]["lists"]["merry"] = json!([])),
+        of_class("its loops are chosen by `mood`, which cannot be `merry`")
+    );
+    assert_eq!(
+        refused_loops(|_, driver, saver| *driver = saver.clone()),
+        "fits",
+        "the very same loop twice is one, and loops that are not there yet are not looked at"
+    );
+    assert_eq!(
+        refused_loops(|_, driver, saver| {
+            *driver = saver.clone();
+            driver["doc"] = json!("another");
+        }),
+        "the declaration of loop `c.Saver` is malformed: another loop has this name already"
+    );
+    assert_eq!(
+        refused_loops(|class, _, _| class["class"] = json!("c.Saver")),
+        "the declaration of class `c.Saver` is malformed: a loop has this name already"
+    );
+    assert_eq!(
+        refused_loops(|_, _, saver| saver["loop"] = json!("c.")),
+        "the declaration of loop `c.` is malformed: the loop has no name"
     );
 }

@@ -6,10 +6,10 @@ use std::collections::HashSet;
 
 use saoms_api::declaration::PropertyKind;
 
-use super::{ClassDeclaration, PropertyDeclaration};
+use super::{ClassDeclaration, EntryDeclaration, LoopDeclaration, PropertyDeclaration, simple};
 
 /// The first contradiction.
-pub(super) fn validate(class: &ClassDeclaration) -> Result<(), String> {
+pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
     if class.name.trim().is_empty() {
         return Err("the class has no name".to_owned());
     }
@@ -18,6 +18,7 @@ pub(super) fn validate(class: &ClassDeclaration) -> Result<(), String> {
     unique("reference", class.references.iter().map(|reference| reference.name.as_str()))?;
     unique("published topic", class.publishes.iter().map(|topic| topic.name.as_str()))?;
     unique("subscribed topic", class.subscribes.iter().map(|topic| topic.name.as_str()))?;
+    loops(class)?;
     for alias in &class.also {
         if alias.name.trim().is_empty() {
             return Err("a further name is empty".to_owned());
@@ -31,6 +32,44 @@ pub(super) fn validate(class: &ClassDeclaration) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// What the entries, and the loops that are named, can get wrong.
+fn loops(class: &ClassDeclaration) -> Result<(), String> {
+    match &class.knowledge {
+        Some(knowledge) => entries(&knowledge.entries)?,
+        None if class.loops.all().any(|(_, list)| !list.is_empty()) => {
+            return Err("the class has loops and no knowledge".to_owned());
+        }
+        None => {}
+    }
+    if let Some(name) = &class.loops.property {
+        let Some(property) = class.property(name) else {
+            return Err(format!("its loops are chosen by `{name}`, which is no property"));
+        };
+        if let Some(value) = class.loops.lists.keys().find(|value| property.check(value).is_err()) {
+            return Err(format!("its loops are chosen by `{name}`, which cannot be `{value}`"));
+        }
+    }
+    class.loops.all().try_for_each(|(_, list)| unique("loop", list.iter().map(|name| simple(name))))
+}
+
+/// The first contradiction in the declaration of a loop.
+pub(super) fn looping(one: &LoopDeclaration) -> Result<(), String> {
+    if one.short_name().trim().is_empty() {
+        return Err("the loop has no name".to_owned());
+    }
+    properties(&one.properties)?;
+    entries(&one.entries)?;
+    unique("reference", one.references.iter().map(|reference| reference.name.as_str()))?;
+    unique("published topic", one.publishes.iter().map(|topic| topic.name.as_str()))?;
+    unique("subscribed topic", one.subscribes.iter().map(|topic| topic.name.as_str()))?;
+    unique("entry under `senses`", one.senses.iter().map(String::as_str))?;
+    unique("entry under `effects`", one.effects.iter().map(String::as_str))
+}
+
+fn entries(all: &[EntryDeclaration]) -> Result<(), String> {
+    unique("entry", all.iter().map(|entry| entry.name.as_str()))
 }
 
 fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {

@@ -10,7 +10,7 @@ use saoms_api::{
 use super::body::Part;
 use super::observe::{Event, Occurrence};
 use super::shared::Shared;
-use crate::assembly::{ComponentSpec, TaskSettings, Wire};
+use crate::assembly::{ComponentSpec, LoopSpec, TaskSettings, Wire};
 use crate::journal::Stamp;
 use crate::report::Sections;
 
@@ -192,7 +192,18 @@ impl Host for ComponentHost<'_> {
     }
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
-        Ok(Vec::new())
+        if !self.part.initializing {
+            return Err(Failure::new(
+                "a component can only take its loops in `initialize`; keep what `loops` returns",
+            ));
+        }
+        let construct = |one: &LoopSpec| {
+            let constructed = one.class.construct(&one.values);
+            let constructed =
+                constructed.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", one.name)));
+            Ok((one.name.clone(), constructed?))
+        };
+        self.spec().loops.iter().map(construct).collect()
     }
 
     fn name_loop(&mut self, place: u32, name: &str) {

@@ -1,0 +1,59 @@
+//! Declarations as text, read.
+
+use std::sync::Arc;
+
+use serde::de::DeserializeOwned;
+
+use super::{
+    Class, ClassDeclaration, LoopClass, LoopDeclaration, LoopProvider, Provider, RegistryError, error,
+    validate,
+};
+
+/// What every version of a declaration has.
+#[derive(serde::Deserialize)]
+struct Head {
+    contract: u32,
+    #[serde(alias = "loop")]
+    class: String,
+}
+
+/// A class under each of its names, the declared one first.
+pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Class>, RegistryError> {
+    let malformed = |class: String, message| RegistryError::Malformed { class, message };
+    let declaration: ClassDeclaration = declaration(text, malformed)?;
+    validate::class(&declaration).map_err(|message| malformed(declaration.name.clone(), message))?;
+    let declaration = Arc::new(declaration);
+    let text: Arc<str> = text.into();
+    let class = |name: &str, presets| Class {
+        name: name.to_owned(),
+        declaration: Arc::clone(&declaration),
+        presets,
+        text: Arc::clone(&text),
+        provider: Arc::clone(provider),
+    };
+    let also = declaration.also.iter().map(|alias| {
+        let presets = alias.preset.iter().map(|(name, value)| (name.clone(), value.as_str().into()));
+        class(&alias.name, presets.collect())
+    });
+    Ok(std::iter::once(class(&declaration.name, Vec::new())).chain(also).collect())
+}
+
+pub(super) fn looping(text: &str, provider: Arc<dyn LoopProvider>) -> Result<LoopClass, RegistryError> {
+    let malformed = |name: String, message| RegistryError::MalformedLoop { name, message };
+    let declaration: LoopDeclaration = declaration(text, malformed)?;
+    validate::looping(&declaration).map_err(|message| malformed(declaration.name.clone(), message))?;
+    Ok(LoopClass { declaration, text: text.into(), provider })
+}
+
+fn declaration<D: DeserializeOwned>(
+    text: &str,
+    malformed: impl Fn(String, String) -> RegistryError,
+) -> Result<D, RegistryError> {
+    let start: String = text.chars().take(40).collect();
+    // First of all the version: another one may have another shape.
+    let head: Head = serde_json::from_str(text).map_err(|error| malformed(start, error.to_string()))?;
+    if head.contract != error::CONTRACT {
+        return Err(RegistryError::Contract { class: head.class, found: head.contract });
+    }
+    serde_json::from_str(text).map_err(|error| malformed(head.class, error.to_string()))
+}
