@@ -4,7 +4,7 @@ use crate::{Class, Properties};
 
 use super::component::Instance;
 use super::guard::guarded;
-use super::{Bytes, ComponentTable, PropertyView, Sink, Status, VERSION};
+use super::{Bytes, ComponentTable, LoopTable, PropertyView, Sink, Status, VERSION};
 
 /// A class: how to make components of it, and their functions.
 #[repr(C)]
@@ -59,6 +59,10 @@ pub struct PluginTable {
     pub classes: *const ClassTable,
     /// How many there are.
     pub class_count: usize,
+    /// The loops.
+    pub loops: *const LoopTable,
+    /// How many there are.
+    pub loop_count: usize,
 }
 
 // SAFETY: what the pointers lead to is constant.
@@ -67,13 +71,19 @@ unsafe impl Sync for PluginTable {}
 impl PluginTable {
     /// For [`plugin!`](crate::plugin).
     #[doc(hidden)]
-    pub const fn new(metadata: &'static [u8], classes: &'static [ClassTable]) -> PluginTable {
+    pub const fn new(
+        metadata: &'static [u8],
+        classes: &'static [ClassTable],
+        loops: &'static [LoopTable],
+    ) -> PluginTable {
         PluginTable {
             size: size_of::<PluginTable>(),
             version: VERSION,
             metadata: Bytes::lend(metadata),
             classes: classes.as_ptr(),
             class_count: classes.len(),
+            loops: loops.as_ptr(),
+            loop_count: loops.len(),
         }
     }
 }

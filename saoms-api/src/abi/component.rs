@@ -28,14 +28,69 @@ pub struct ComponentTable {
 /// A component of this side as the other one holds it, behind a pointer.
 pub struct Instance<C> {
     component: C,
+    desk: Desk,
+}
+
+/// What a component or a loop of this side has beside itself.
+#[derive(Default)]
+pub(super) struct Desk {
+    /// By the index of the subscription; only its own are ever filled.
     inboxes: Vec<Vec<SharedMessage>>,
+    subscribed: Vec<u32>,
     buffer: Vec<u8>,
+}
+
+impl Desk {
+    /// Runs code with the context behind a handle. Messages are taken in when the code `takes_in`, and stay until the next time.
+    ///
+    /// # Safety
+    /// The handle is that of a call that goes on.
+    pub(super) unsafe fn with<T>(
+        &mut self,
+        handle: &HostHandle,
+        takes_in: bool,
+        code: impl FnOnce(&mut Context<'_>) -> T,
+    ) -> Result<T, Failure> {
+        if takes_in {
+            // SAFETY: as the caller promises.
+            unsafe { self.take_in(handle) }?;
+        }
+        // SAFETY: as the caller promises.
+        let mut link = unsafe { Link::new(handle, &mut self.buffer, &mut self.subscribed) };
+        Ok(code(&mut Context::new(&mut link, &self.inboxes)))
+    }
+
+    /// Copies what arrived for the own subscriptions.
+    ///
+    /// # Safety
+    /// As [`with`](Desk::with).
+    unsafe fn take_in(&mut self, handle: &HostHandle) -> Result<(), Failure> {
+        for subscription in &self.subscribed {
+            let place = *subscription as usize;
+            if self.inboxes.len() <= place {
+                self.inboxes.resize_with(place + 1, Vec::new);
+            }
+            let inbox = &mut self.inboxes[place];
+            inbox.clear();
+            if place >= handle.inbox_count {
+                continue;
+            }
+            // SAFETY: the host lends `inbox_count` inboxes with their messages for the time of the call.
+            unsafe {
+                let lent = *handle.inboxes.add(place);
+                for message in 0..lent.count {
+                    inbox.push(copy(&*lent.messages.add(message))?);
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 impl<C: DynComponent> Instance<C> {
     /// Gives the component away; [`ComponentTable::destroy`] takes it back.
     pub(super) fn into_pointer(component: C) -> *mut c_void {
-        let instance = Instance { component, inboxes: Vec::new(), buffer: Vec::new() };
+        let instance = Instance { component, desk: Desk::default() };
         Box::into_raw(Box::new(instance)).cast()
     }
 
@@ -54,42 +109,40 @@ impl<C: DynComponent> Instance<C> {
     unsafe fn call<T>(
         this: *mut c_void,
         handle: *const HostHandle,
+        takes_in: bool,
         code: impl FnOnce(&mut C, &mut Context<'_>) -> T,
     ) -> Result<T, Failure> {
         // SAFETY: as the caller promises.
         unsafe {
-            let Instance { component, inboxes, buffer } = &mut *this.cast::<Self>();
-            let handle = &*handle;
-            if handle.inbox_count > 0 {
-                take_in(handle, inboxes)?;
-            }
-            let mut link = Link::new(handle, buffer);
-            let result = code(component, &mut Context::new(&mut link, inboxes));
-            if handle.inbox_count > 0 {
-                inboxes.iter_mut().for_each(Vec::clear);
-            }
-            Ok(result)
+            let Instance { component, desk } = &mut *this.cast::<Self>();
+            desk.with(&*handle, takes_in, |context| code(component, context))
         }
     }
 
     unsafe extern "C" fn initialize(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: the host calls with what the table's contract says.
         unsafe {
-            guarded(error, || Self::call(this, handle, |component, context| component.initialize(context))?)
+            guarded(error, || {
+                Self::call(this, handle, false, |component, context| component.initialize(context))?
+            })
         }
     }
 
     unsafe extern "C" fn execute(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: as in `initialize`.
         unsafe {
-            guarded(error, || Self::call(this, handle, |component, context| component.execute(context))?)
+            guarded(error, || {
+                Self::call(this, handle, true, |component, context| component.execute(context))?
+            })
         }
     }
 
     unsafe extern "C" fn shutdown(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: as in `initialize`.
         unsafe {
-            guarded(error, || Self::call(this, handle, |component, context| component.shutdown(context))?)
+            guarded(error, || {
+                Self::call(this, handle, false, |component, context| component.shutdown(context))?
+            })
         }
     }
 
@@ -107,7 +160,9 @@ impl<C: DynComponent> Instance<C> {
             guarded_call(error, || {
                 let mut call = BytesCall::new(operation, arguments.get()?, reply);
                 let mut invocation = Invocation { service: service.get_text()?, call: &mut call };
-                Self::call(this, handle, |component, context| component.serve(&mut invocation, context))?
+                Self::call(this, handle, false, |component, context| {
+                    component.serve(&mut invocation, context)
+                })?
             })
         }
     }
@@ -117,25 +172,6 @@ impl<C: DynComponent> Instance<C> {
         // SAFETY: the pointer is that of `into_pointer`, given back once.
         let _ = contained(|| drop(unsafe { Box::from_raw(this.cast::<Self>()) }));
     }
-}
-
-/// Copies what arrived.
-///
-/// # Safety
-/// The handle is that of a call that goes on.
-unsafe fn take_in(handle: &HostHandle, inboxes: &mut Vec<Vec<SharedMessage>>) -> Result<(), Failure> {
-    inboxes.resize_with(handle.inbox_count, Vec::new);
-    for (place, inbox) in inboxes.iter_mut().enumerate() {
-        inbox.clear();
-        // SAFETY: the host lends `inbox_count` inboxes with their messages for the time of the call.
-        unsafe {
-            let lent = *handle.inboxes.add(place);
-            for message in 0..lent.count {
-                inbox.push(copy(&*lent.messages.add(message))?);
-            }
-        }
-    }
-    Ok(())
 }
 
 /// # Safety

@@ -17,6 +17,8 @@ pub(super) struct Link<'a> {
     functions: &'a HostFunctions,
     /// For what is put together before it crosses.
     buffer: &'a mut Vec<u8>,
+    /// The subscriptions that are made here.
+    subscribed: &'a mut Vec<u32>,
 }
 
 /// The level of the classic console, behind those of the log.
@@ -25,10 +27,14 @@ const CONSOLE: u32 = LEVELS.len() as u32;
 impl<'a> Link<'a> {
     /// # Safety
     /// The handle, its functions and its state are those of a call that goes on for as long as the link is used.
-    pub(super) unsafe fn new(handle: &'a HostHandle, buffer: &'a mut Vec<u8>) -> Link<'a> {
+    pub(super) unsafe fn new(
+        handle: &'a HostHandle,
+        buffer: &'a mut Vec<u8>,
+        subscribed: &'a mut Vec<u32>,
+    ) -> Link<'a> {
         // SAFETY: as the caller promises.
         let functions = unsafe { &*handle.functions };
-        Link { handle, functions, buffer }
+        Link { handle, functions, buffer, subscribed }
     }
 
     /// Asks for a topic.
@@ -130,7 +136,9 @@ impl Host for Link<'_> {
     }
 
     fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
-        self.topic(topic, self.functions.subscribe)
+        let index = self.topic(topic, self.functions.subscribe)?;
+        self.subscribed.push(index);
+        Ok(index)
     }
 
     fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {

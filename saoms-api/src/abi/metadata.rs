@@ -11,12 +11,13 @@ use super::PluginTable;
 /// | `panic` | `unwind`; a library whose panics abort is refused |
 /// | `entry` | the name of its function of type [`Entry`] |
 /// | `classes` | the [declarations](crate::declaration) of its classes |
+/// | `loops` | those of its loops |
 pub const SECTION: &str = ".saoms.plugin";
 
 /// The function by which a library gives its table: it takes the [`VERSION`](super::VERSION) of the program.
 pub type Entry = unsafe extern "C" fn(version: u32) -> *const PluginTable;
 
-/// Offers classes in a library, to programs that load it.
+/// Offers classes and loops in a library, to programs that load it.
 ///
 /// A crate that is built as a `cdylib` says once what it offers. The same crate can be linked into a program, too: its classes are
 /// registered by their derives then, and this has no part in it.
@@ -44,12 +45,21 @@ pub type Entry = unsafe extern "C" fn(version: u32) -> *const PluginTable;
 /// ```
 #[macro_export]
 macro_rules! plugin {
+    (loops: [$($looping:ty),* $(,)?] $(,)?) => {
+        $crate::plugin! { classes: [], loops: [$($looping),*] }
+    };
     (classes: [$($class:ty),* $(,)?] $(,)?) => {
+        $crate::plugin! { classes: [$($class),*], loops: [] }
+    };
+    (classes: [$($class:ty),* $(,)?], loops: [$($looping:ty),* $(,)?] $(,)?) => {
         const _: () = {
             use $crate::declaration::Text;
 
             const CLASSES: &[Text] = &[$(
                 Text::Plain(","), Text::Plain(<$class as $crate::Class>::DECLARATION),
+            )*];
+            const LOOPS: &[Text] = &[$(
+                Text::Plain(","), Text::Plain(<$looping as $crate::LoopClass>::DECLARATION),
             )*];
             const TEXT: Text = Text::Joined(&[
                 Text::Plain("{\"saoms\":\"plugin\",\"abi\":1,\"api\":"),
@@ -64,6 +74,8 @@ macro_rules! plugin {
                 Text::Quoted(concat!("saoms_plugin_", env!("CARGO_CRATE_NAME"))),
                 Text::Plain(",\"classes\":["),
                 Text::Joined(CLASSES.split_at(if CLASSES.is_empty() { 0 } else { 1 }).1),
+                Text::Plain("],\"loops\":["),
+                Text::Joined(LOOPS.split_at(if LOOPS.is_empty() { 0 } else { 1 }).1),
                 Text::Plain("]}"),
             ]);
 
@@ -72,7 +84,8 @@ macro_rules! plugin {
             static METADATA: [u8; TEXT.length()] = TEXT.bytes();
 
             static TABLES: &[$crate::abi::ClassTable] = &[$($crate::abi::ClassTable::of::<$class>()),*];
-            static TABLE: $crate::abi::PluginTable = $crate::abi::PluginTable::new(&METADATA, TABLES);
+            static LOOP_TABLES: &[$crate::abi::LoopTable] = &[$($crate::abi::LoopTable::of::<$looping>()),*];
+            static TABLE: $crate::abi::PluginTable = $crate::abi::PluginTable::new(&METADATA, TABLES, LOOP_TABLES);
 
             #[unsafe(export_name = concat!("saoms_plugin_", env!("CARGO_CRATE_NAME")))]
             extern "C" fn entry(_version: u32) -> *const $crate::abi::PluginTable {

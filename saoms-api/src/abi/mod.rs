@@ -19,18 +19,22 @@
 mod class;
 mod component;
 mod data;
+mod entries;
 mod guard;
 mod host;
 mod import;
 mod link;
+mod looping;
 mod metadata;
 mod service;
 
 pub use class::{ClassTable, PluginTable};
 pub use component::{ComponentTable, Instance};
 pub use data::{Bytes, Inbox, MAX_BYTES, MessageView, PropertyView, RecordView, Sink, Status, ValueView};
+pub use entries::{EntriesFunctions, EntriesHandle, EntryView};
 pub use host::{HostFunctions, HostHandle, ReportView, TopicView};
 pub use import::{ImportedClass, ImportedComponent};
+pub use looping::{ImportedLoopClass, LoopTable};
 pub use metadata::{Entry, SECTION};
 
 /// The version of the boundary. A program loads libraries of its own version alone.

@@ -20,6 +20,7 @@ pub use entries::{DynEntries, Entries, EntryDeclaration};
 pub use entries::{are_unique, decode_field, joined, no_entry, set_field};
 pub use entry::{Effector, Entry};
 pub use extras::Extras;
+pub(crate) use extras::Writable;
 pub use knowledge::{Knowledge, KnowledgeClass, Subject};
 pub use loops::{Loops, NamedLoops};
 pub use record::{Cause, Phase, Record, Recordable, Value};

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may end where it stands")]
 
 mod adaptation;
+mod boundary;
 mod calls;
 mod host;
 mod messages;
