@@ -3,13 +3,13 @@ use std::time::Duration;
 
 use crate::contain::contained;
 use crate::{
-    Cause, Context, Failure, Header, Host, Level, Phase, Record, ReportValue, SharedMessage, Time,
-    TopicDeclaration, TopicKind, Work,
+    Cause, Context, Failure, Header, Host, Level, Phase, Record, SharedMessage, Time, TopicDeclaration,
+    TopicKind, Work,
 };
 
 use super::guard::{guarded, guarded_call, guarded_value};
 use super::service::BytesCall;
-use super::{Bytes, Inbox, MessageView, RecordView, Sink, Status, ValueView};
+use super::{Bytes, Inbox, MessageView, RecordView, ReportView, Sink, Status, ValueView};
 
 /// What a component is lent for the time of a call: the functions of its context, and what arrived.
 #[repr(C)]
@@ -39,25 +39,6 @@ pub struct TopicView {
     pub kind: u32,
 }
 
-/// A value for the run's report.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct ReportView {
-    /// Its name within `children` of kind 6.
-    pub name: Bytes,
-    /// 0: null, 1: false or true (`bits`), 2: a whole number (`bits`), 3: a number (`bits` of its IEEE 754 form), 4: the `text`, 5: the list
-    /// of `children`, 6: the named `children`.
-    pub kind: u32,
-    /// A number.
-    pub bits: u64,
-    /// A text.
-    pub text: Bytes,
-    /// What it consists of.
-    pub children: *const ReportView,
-    /// How many those are.
-    pub child_count: usize,
-}
-
 /// The functions of a component's context; [`Context`] says what they mean.
 #[repr(C)]
 #[derive(Debug)]
@@ -67,6 +48,8 @@ pub struct HostFunctions {
     pub size: usize,
     pub name: unsafe extern "C" fn(*mut c_void) -> Bytes,
     pub sender: unsafe extern "C" fn(*mut c_void) -> u32,
+    /// The name of the component with this index; null where there is none.
+    pub name_of: unsafe extern "C" fn(*mut c_void, u32) -> Bytes,
     pub now: unsafe extern "C" fn(*mut c_void) -> u64,
     /// In nanoseconds since 1970-01-01 00:00 of local time; `UINT64_MAX`: there is no date.
     pub date: unsafe extern "C" fn(*mut c_void) -> u64,
@@ -85,6 +68,8 @@ pub struct HostFunctions {
     /// The index of a reference, by name and interface.
     pub reference: unsafe extern "C" fn(*mut c_void, Bytes, Bytes, *mut u32, Sink) -> Status,
     pub is_wired: unsafe extern "C" fn(*mut c_void, u32) -> u32,
+    /// How many targets a reference has; the number of one, from 0, goes into the upper 16 bits of the reference's index.
+    pub targets: unsafe extern "C" fn(*mut c_void, u32) -> u32,
     /// Calls through a reference: its index, the operation, the arguments, where the reply goes.
     pub call: unsafe extern "C" fn(*mut c_void, u32, u32, Bytes, Sink, Sink) -> Status,
     /// Whether somebody reads the log at a level from 0 (error) to 3 (debug), or at 4 the classic console.
@@ -95,6 +80,8 @@ pub struct HostFunctions {
     pub count: unsafe extern "C" fn(*mut c_void, Bytes, i64),
     /// 0: there is work left, 1: the work is done.
     pub vote: unsafe extern "C" fn(*mut c_void, u32),
+    /// Names the loop at this place.
+    pub name_loop: unsafe extern "C" fn(*mut c_void, u32, Bytes),
     /// The loop at this place acts from now on; `UINT32_MAX`: none.
     pub enter_loop: unsafe extern "C" fn(*mut c_void, u32),
     pub because: unsafe extern "C" fn(*mut c_void, u64),
@@ -288,6 +275,24 @@ unsafe extern "C" fn is_wired(state: *mut c_void, reference: u32) -> u32 {
     guarded_value(0, || u32::from(host.is_wired(reference)))
 }
 
+unsafe extern "C" fn targets(state: *mut c_void, reference: u32) -> u32 {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value(0, || host.targets(reference))
+}
+
+unsafe extern "C" fn name_of(state: *mut c_void, sender: u32) -> Bytes {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value(Bytes::NONE, || host.name_of(sender).map_or(Bytes::NONE, Bytes::text))
+}
+
+unsafe extern "C" fn name_loop(state: *mut c_void, place: u32, name: Bytes) {
+    // SAFETY: callers pass the state of their handle, and lend the name.
+    let (host, name) = unsafe { (host(state), name.get_text()) };
+    guarded_value((), || host.name_loop(place, name.unwrap_or_default()));
+}
+
 unsafe extern "C" fn call(
     state: *mut c_void,
     reference: u32,
@@ -321,37 +326,6 @@ unsafe extern "C" fn log(state: *mut c_void, level: u32, line: Bytes) {
             None => host.console(format_args!("{line}")),
         }
     });
-}
-
-impl ReportView {
-    /// # Safety
-    /// The view and what it leads to are readable.
-    unsafe fn read(&self) -> Result<ReportValue, Failure> {
-        let children = || -> Result<Vec<(String, ReportValue)>, Failure> {
-            let mut all = Vec::new();
-            for place in 0..self.child_count {
-                // SAFETY: as the caller promises.
-                unsafe {
-                    let child = &*self.children.add(place);
-                    all.push((child.name.get_text()?.to_owned(), child.read()?));
-                }
-            }
-            Ok(all)
-        };
-        Ok(match self.kind {
-            0 => ReportValue::Null,
-            1 => ReportValue::Bool(self.bits != 0),
-            2 => ReportValue::Integer(self.bits as i64),
-            3 => ReportValue::Float(f64::from_bits(self.bits)),
-            // SAFETY: as the caller promises.
-            4 => ReportValue::Text(unsafe { self.text.get_text() }?.to_owned()),
-            5 => ReportValue::List(children()?.into_iter().map(|(_, value)| value).collect()),
-            6 => ReportValue::Map(children()?),
-            other => {
-                return Err(Failure::new(format!("found {other} for the kind of a value, expected 0 to 6")));
-            }
-        })
-    }
 }
 
 /// A value for the report that cannot be read, or a path that is no text, is left out with a warning.
@@ -453,6 +427,7 @@ static FUNCTIONS: HostFunctions = HostFunctions {
     size: size_of::<HostFunctions>(),
     name,
     sender,
+    name_of,
     now,
     date,
     due,
@@ -466,12 +441,14 @@ static FUNCTIONS: HostFunctions = HostFunctions {
     send,
     reference,
     is_wired,
+    targets,
     call,
     listens,
     log,
     report,
     count,
     vote,
+    name_loop,
     enter_loop,
     because,
     cause,

@@ -8,7 +8,8 @@ use crate::{
 
 use super::data::ValueView;
 use super::guard::{call_outcome, outcome};
-use super::host::{HostFunctions, LEVELS, ReportView, TopicView, time};
+use super::host::{HostFunctions, LEVELS, TopicView, time};
+use super::report::with_view;
 use super::{Bytes, HostHandle, RecordView, Sink};
 
 /// The host on the other side of the boundary.
@@ -100,6 +101,12 @@ impl Host for Link<'_> {
         get!(self.sender)
     }
 
+    fn name_of(&self, sender: u32) -> Option<&str> {
+        let name = get!(self.name_of, sender);
+        // SAFETY: the host's names for components last as long as the call that the link stands for.
+        (!name.data.is_null()).then(|| unsafe { name.get_text() }.unwrap_or_default())
+    }
+
     fn now(&self) -> Time {
         time(get!(self.now))
     }
@@ -160,6 +167,10 @@ impl Host for Link<'_> {
         get!(self.is_wired, reference) != 0
     }
 
+    fn targets(&self, reference: u32) -> u32 {
+        get!(self.targets, reference)
+    }
+
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         let arguments = call.arguments();
         let (mut reply, mut error) = (Vec::new(), Vec::new());
@@ -172,6 +183,10 @@ impl Host for Link<'_> {
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
         Ok(Vec::new())
+    }
+
+    fn name_loop(&mut self, place: u32, name: &str) {
+        get!(self.name_loop, place, Bytes::text(name));
     }
 
     fn enter_loop(&mut self, place: Option<u32>) {
@@ -239,49 +254,5 @@ impl Host for Link<'_> {
             Work::Done => 1,
         };
         get!(self.vote, work);
-    }
-}
-
-/// Shows a value for the report to code.
-fn with_view(name: &str, value: &ReportValue, code: &mut dyn FnMut(&ReportView)) {
-    let scalar = |kind, bits, text: &str| ReportView {
-        name: Bytes::text(name),
-        kind,
-        bits,
-        text: Bytes::text(text),
-        children: std::ptr::null(),
-        child_count: 0,
-    };
-    let mut nested = |kind, children: &[(&str, &ReportValue)]| {
-        collect(children, &mut Vec::new(), &mut |views| {
-            code(&ReportView { children: views.as_ptr(), child_count: views.len(), ..scalar(kind, 0, "") });
-        });
-    };
-    match value {
-        ReportValue::Null => code(&scalar(0, 0, "")),
-        ReportValue::Bool(value) => code(&scalar(1, u64::from(*value), "")),
-        ReportValue::Integer(value) => code(&scalar(2, *value as u64, "")),
-        ReportValue::Float(value) => code(&scalar(3, value.to_bits(), "")),
-        ReportValue::Text(text) => code(&scalar(4, 0, text)),
-        ReportValue::List(values) => nested(5, &values.iter().map(|value| ("", value)).collect::<Vec<_>>()),
-        ReportValue::Map(values) => {
-            nested(6, &values.iter().map(|(name, value)| (name.as_str(), value)).collect::<Vec<_>>());
-        }
-    }
-}
-
-/// Shows the views of several values to code. The views of one lie on the stack while the next is made, so that all stay readable.
-fn collect(
-    values: &[(&str, &ReportValue)],
-    views: &mut Vec<ReportView>,
-    code: &mut dyn FnMut(&[ReportView]),
-) {
-    match values {
-        [] => code(views),
-        [(name, value), rest @ ..] => with_view(name, value, &mut |view| {
-            views.push(*view);
-            collect(rest, views, code);
-            views.pop();
-        }),
     }
 }

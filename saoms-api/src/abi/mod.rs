@@ -26,16 +26,18 @@ mod import;
 mod link;
 mod looping;
 mod metadata;
+mod report;
 mod service;
 
 pub use class::{ClassTable, PluginTable};
 pub use component::{ComponentTable, Instance};
 pub use data::{Bytes, Inbox, MAX_BYTES, MessageView, PropertyView, RecordView, Sink, Status, ValueView};
 pub use entries::{EntriesFunctions, EntriesHandle, EntryView};
-pub use host::{HostFunctions, HostHandle, ReportView, TopicView};
+pub use host::{HostFunctions, HostHandle, TopicView};
 pub use import::{ImportedClass, ImportedComponent};
 pub use looping::{ImportedLoopClass, LoopTable};
 pub use metadata::{Entry, SECTION};
+pub use report::ReportView;
 
 /// The version of the boundary. A program loads libraries of its own version alone.
 pub const VERSION: u32 = 1;
