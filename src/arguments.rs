@@ -26,6 +26,12 @@ Exit codes:
   1  with --check, a file is not formatted (its name is on standard output); else, a file could not be written
   2  a file cannot be read or is not well-formed XML (the diagnostics say where); it was left as it is";
 
+const GRAPH_EXIT_CODES: &str = "\
+Exit codes:
+  0  drawn, also where the composite has mistakes: what is missing is drawn so
+  1  the picture could not be written
+  2  the file cannot be read or is no composite, or nothing says the format";
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Check composites and run the fleet that they describe together
@@ -37,6 +43,9 @@ pub(crate) enum Command {
     /// Write composites in one layout: indentation, attributes, blank lines; order, comments and text stay
     #[command(after_help = FMT_EXIT_CODES)]
     Fmt(FmtArguments),
+    /// Draw a composite: components, services, references, properties, wires, promotions, topics
+    #[command(after_help = GRAPH_EXIT_CODES)]
+    Graph(GraphArguments),
     /// List the component classes, or describe one: properties, topics, services, references
     Components(ComponentsArguments),
 }
@@ -168,6 +177,38 @@ pub(crate) struct FmtArguments {
     /// Refuse larger files
     #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
     pub(crate) max_size: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GraphArguments {
+    /// The composite to draw
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    /// Where the picture goes; the ending says the format (`.svg`, `.mmd`, `.dot`), `-` is standard output
+    #[arg(short, long, value_name = "PICTURE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// The format where no ending says it; SVG by default
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Picture>,
+
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
+
+    /// Refuse larger files
+    #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
+    pub(crate) max_size: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Picture {
+    /// A picture in the notation of SCA
+    Svg,
+    /// A flowchart for Mermaid, as Markdown viewers draw it
+    Mermaid,
+    /// A graph for Graphviz
+    Dot,
 }
 
 #[derive(Debug, Args)]

@@ -9,6 +9,7 @@ mod components;
 mod console;
 mod fleet;
 mod fmt;
+mod graph;
 mod output;
 mod plugins;
 mod run;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Fmt(arguments) => fmt::fmt(&arguments),
+        Command::Graph(arguments) => graph::graph(&arguments),
         Command::Components(arguments) => components::components(&arguments),
     };
     ExitCode::from(exit as u8)

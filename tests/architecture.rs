@@ -18,6 +18,7 @@ const CORE: &[&str] = &[
     "plugin",
     "assembly",
     "check",
+    "graph",
     "assemble",
     "bus",
     "journal",

@@ -6,6 +6,7 @@ pub mod bus;
 pub mod check;
 pub mod diagnostic;
 pub mod format;
+pub mod graph;
 pub mod journal;
 pub mod load;
 pub mod model;

@@ -47,6 +47,7 @@ use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
 use properties::{Checked, Written};
+pub(crate) use rename::topic_renames;
 use report::Report;
 pub use setting::Setting;
 use values::Values;

@@ -5,6 +5,7 @@
 mod corpus;
 mod files;
 mod format;
+mod graph;
 mod named;
 mod oracle;
 mod places;

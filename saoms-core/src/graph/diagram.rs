@@ -1,0 +1,119 @@
+//! What there is to draw.
+
+use saoms_api::TopicKind;
+
+/// A composite as a picture shows it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Diagram {
+    /// Its name.
+    pub name: String,
+    /// Its target namespace.
+    pub namespace: Option<String>,
+    /// Its properties.
+    pub properties: Vec<Setting>,
+    /// The services that it promotes.
+    pub services: Vec<Port>,
+    /// The references that it promotes.
+    pub references: Vec<Port>,
+    /// Its components in order; last those that are named and not there.
+    pub components: Vec<Component>,
+    /// Wires and promotions.
+    pub links: Vec<Link>,
+    /// The topics of its components, in the order of their first use.
+    pub topics: Vec<Topic>,
+}
+
+/// A component.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Component {
+    /// Its name.
+    pub name: String,
+    /// What it is an instance of: a class, or a kind of implementation; empty where the file says nothing.
+    pub class: String,
+    /// What is known of that.
+    pub state: State,
+    /// Its properties.
+    pub properties: Vec<Setting>,
+    /// Its services.
+    pub services: Vec<Port>,
+    /// Its references.
+    pub references: Vec<Port>,
+}
+
+/// What is known of a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Its class is registered, or its implementation is of another kind.
+    Known,
+    /// Its class is not registered.
+    UnknownClass,
+    /// Something names it, and the composite does not have it.
+    Missing,
+}
+
+/// A property and its value as the file gives it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Its name.
+    pub name: String,
+    /// Its value; `None` when there is none, or it is no simple one.
+    pub value: Option<String>,
+}
+
+/// A service or a reference.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// Its name; empty when only its component is named.
+    pub name: String,
+    /// Its interface, where that is known.
+    pub interface: Option<String>,
+}
+
+/// A wire or a promotion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Link {
+    /// Which of both.
+    pub kind: LinkKind,
+    /// The side that calls: a reference of a component, or a service of the composite.
+    pub from: End,
+    /// The side that is called: a service of a component, or a reference of the composite.
+    pub to: End,
+}
+
+/// Whether a link is a wire or a promotion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LinkKind {
+    /// From a component's reference to a component's service.
+    Wire,
+    /// Between a part of the composite and the part of a component that it stands for.
+    Promotion,
+}
+
+/// An end of a link: the place of a service or reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum End {
+    /// Of a component.
+    Component {
+        /// The component's place.
+        component: usize,
+        /// The place among its services or references.
+        port: usize,
+    },
+    /// Of the composite, with the place among its services or references.
+    Composite(usize),
+}
+
+/// A topic with its ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Topic {
+    /// Its name after renaming.
+    pub name: String,
+    /// State or event.
+    pub kind: TopicKind,
+    /// The type of its messages.
+    pub message: String,
+    /// The places of the components that publish it, in order.
+    pub publishers: Vec<usize>,
+    /// The places of the components that read it, in order.
+    pub subscribers: Vec<usize>,
+}

@@ -1,0 +1,92 @@
+//! Diagrams for Mermaid, as Markdown viewers draw them.
+
+use std::fmt::Write as _;
+
+use super::diagram::{Diagram, End, LinkKind, Port, State};
+
+/// Draws a diagram as a flowchart of Mermaid.
+pub fn mermaid(diagram: &Diagram) -> String {
+    let mut out = "flowchart LR\n".to_owned();
+    for (place, port) in diagram.services.iter().enumerate() {
+        let _ = writeln!(out, "  s{place}>{}]:::service", quoted(&port.name));
+    }
+    let _ = writeln!(out, "  subgraph composite [{}]", quoted(&diagram.name));
+    for (place, component) in diagram.components.iter().enumerate() {
+        let mut label = escaped(&component.name);
+        if !component.class.is_empty() {
+            label.push_str(&format!("<br/>{}", escaped(&component.class)));
+        }
+        let class = match component.state {
+            State::Known => "component",
+            State::UnknownClass => "unknown",
+            State::Missing => "missing",
+        };
+        let _ = writeln!(out, "    c{place}(\"{label}\"):::{class}");
+    }
+    for (place, topic) in diagram.topics.iter().enumerate() {
+        let _ = writeln!(out, "    t{place}([{}])", quoted(&topic.name));
+    }
+    out.push_str("  end\n");
+    for (place, port) in diagram.references.iter().enumerate() {
+        let _ = writeln!(out, "  r{place}>{}]:::reference", quoted(&port.name));
+    }
+    let name = |ports: &[Port], place: usize| ports.get(place).map_or("", |port| &port.name).to_owned();
+    for link in &diagram.links {
+        let (from, source) = match link.from {
+            End::Component { component, port } => {
+                (format!("c{component}"), name(&diagram.components[component].references, port))
+            }
+            End::Composite(place) => (format!("s{place}"), String::new()),
+        };
+        let (to, target) = match link.to {
+            End::Component { component, port } => {
+                (format!("c{component}"), name(&diagram.components[component].services, port))
+            }
+            End::Composite(place) => (format!("r{place}"), String::new()),
+        };
+        let arrow = match link.kind {
+            LinkKind::Wire => "-->",
+            LinkKind::Promotion => "-.->",
+        };
+        let names: Vec<&str> = [&*source, &*target].into_iter().filter(|name| !name.is_empty()).collect();
+        let label =
+            if names.is_empty() { String::new() } else { format!("|{}|", quoted(&names.join(" → "))) };
+        let _ = writeln!(out, "  {from} {arrow}{label} {to}");
+    }
+    for (place, topic) in diagram.topics.iter().enumerate() {
+        for component in &topic.publishers {
+            let arrow = if topic.subscribers.binary_search(component).is_ok() { "<-.->" } else { "-.->" };
+            let _ = writeln!(out, "  c{component} {arrow} t{place}");
+        }
+        for component in
+            topic.subscribers.iter().filter(|reader| topic.publishers.binary_search(reader).is_err())
+        {
+            let _ = writeln!(out, "  t{place} -.-> c{component}");
+        }
+    }
+    out.push_str("  classDef component fill:#d8e6f5,stroke:#46617e\n");
+    out.push_str("  classDef unknown fill:#d8e6f5,stroke:#c0392b,stroke-dasharray:5 3\n");
+    out.push_str("  classDef missing fill:#fff,stroke:#c0392b,stroke-dasharray:5 3\n");
+    out.push_str("  classDef service fill:#86c067,stroke:#3d7a22\n");
+    out.push_str("  classDef reference fill:#b59ad6,stroke:#62399a\n");
+    out
+}
+
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", if text.is_empty() { "?".to_owned() } else { escaped(text) })
+}
+
+/// A text inside quotes: what Mermaid or HTML would take for something else by its number.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for one in text.chars() {
+        match one {
+            _ if one.is_control() => out.push(' '),
+            '"' | '#' | '&' | '<' | '>' | '`' | ';' | '|' | '\\' => {
+                let _ = write!(out, "#{};", u32::from(one));
+            }
+            _ => out.push(one),
+        }
+    }
+    out
+}

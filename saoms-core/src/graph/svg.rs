@@ -1,0 +1,269 @@
+//! Pictures as SVG.
+
+use std::fmt::Write as _;
+
+use super::diagram::{Component, Diagram, Port, Setting, State, Topic};
+use super::layout::measure::{CHEVRON, CHIP_HEIGHT, CHIP_SIZE, Chip, LABEL, NAME_SIZE, SMALL_SIZE};
+use super::layout::{LEGEND, Layout, LineKind, Mark, Placed, Point, Rail, Rect, layout};
+use super::text::{width, xml};
+
+/// The colours of topics, dark enough for lines on white (Okabe, Ito: Color universal design, 2008; yellow left out).
+const TOPICS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#555555"];
+
+const STYLE: &str = "\
+text{font-family:Helvetica,Arial,'Liberation Sans',sans-serif;fill:#1c2733}\
+.composite{fill:#f6f9fc;stroke:#46617e;stroke-width:1.5}\
+.component{fill:#d8e6f5;stroke:#46617e}\
+.unknown{stroke:#c0392b;stroke-dasharray:5 3}\
+.missing{fill:#fff;stroke:#c0392b;stroke-dasharray:5 3}\
+.service{fill:#86c067;stroke:#3d7a22}\
+.reference{fill:#b59ad6;stroke:#62399a}\
+.property{fill:#ffe680;stroke:#a88c00}\
+.wire{fill:none;stroke:#33475b;stroke-width:1.5;stroke-linecap:square}\
+.promotion{fill:none;stroke:#33475b;stroke-width:1.2;stroke-dasharray:4 3}\
+.topics{fill:none;stroke:#9aa7b4}\
+.rail{fill:none;stroke-width:3;stroke-linecap:round}\
+.name{font-weight:bold}.small{fill:#46566a}\
+";
+
+/// Draws a diagram as a picture in the notation of SCA Assembly, in pixels.
+///
+/// Services are green chevrons on the left, references purple chevrons on the right, properties yellow boxes on top.
+/// Topics are rails below the components; a triangle into a rail publishes, one out of it reads. Details (interfaces,
+/// values, types of messages) are shown as tooltips.
+pub fn svg(diagram: &Diagram) -> String {
+    let layout = layout(diagram);
+    let mut out = Out::default();
+    let Layout { width, height, .. } = layout;
+    let _ = writeln!(
+        out.text,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">"
+    );
+    let _ = writeln!(out.text, "<title>{}</title>\n<style>{STYLE}</style>", xml(&diagram.name));
+    let _ = writeln!(out.text, "<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
+    out.composite(diagram, &layout);
+    for line in &layout.lines {
+        let (class, dots) = match line.kind {
+            LineKind::Wire => ("wire", true),
+            LineKind::Promotion => ("promotion", true),
+            LineKind::Topics => ("topics", false),
+        };
+        let path = line.parts.iter().map(|(from, to)| {
+            if from.y == to.y {
+                format!("M{},{}H{}", from.x, from.y, to.x)
+            } else {
+                format!("M{},{}V{}", from.x, from.y, to.y)
+            }
+        });
+        let _ = writeln!(out.text, "<path class=\"{class}\" d=\"{}\"/>", path.collect::<String>());
+        for dot in line.dots.iter().filter(|_| dots) {
+            let _ =
+                writeln!(out.text, "<circle cx=\"{}\" cy=\"{}\" r=\"2.5\" fill=\"#33475b\"/>", dot.x, dot.y);
+        }
+    }
+    for (index, (rail, topic)) in layout.rails.iter().zip(&diagram.topics).enumerate() {
+        out.rail(rail, topic, color(index));
+    }
+    for mark in &layout.marks {
+        out.mark(mark);
+    }
+    for (placed, component) in layout.components.iter().zip(&diagram.components) {
+        out.component(placed, component);
+    }
+    for (at, port) in layout.services.iter().zip(&diagram.services) {
+        out.port("service", *at, port, Point { x: at.x - LABEL, y: at.y }, "end");
+    }
+    for (at, port) in layout.references.iter().zip(&diagram.references) {
+        out.port("reference", *at, port, Point { x: at.x + LABEL, y: at.y }, "start");
+    }
+    out.legend(diagram, &layout);
+    out.text.push_str("</svg>\n");
+    out.text
+}
+
+fn color(topic: usize) -> &'static str {
+    TOPICS[topic % TOPICS.len()]
+}
+
+#[derive(Default)]
+struct Out {
+    text: String,
+}
+
+impl Out {
+    fn composite(&mut self, diagram: &Diagram, layout: &Layout) {
+        self.rect("composite", layout.frame, 14);
+        let Rect { x, y, .. } = layout.frame;
+        let name = Point { x: x + 16, y: y + 23 };
+        let _ = write!(self.text, "<g>");
+        self.title(diagram.namespace.as_deref());
+        self.label("name", name, &diagram.name, NAME_SIZE + 2, "start");
+        self.text.push_str("</g>\n");
+        self.chips(&layout.chips, &diagram.properties, Point { x: 0, y: 0 });
+    }
+
+    fn component(&mut self, placed: &Placed, component: &Component) {
+        let Placed { rect, plan } = placed;
+        let class = match component.state {
+            State::Known => "component",
+            State::UnknownClass => "component unknown",
+            State::Missing => "missing",
+        };
+        self.text.push_str("<g>");
+        let mut about = component.name.clone();
+        if !component.class.is_empty() {
+            about.push_str(&format!("\n{}", component.class));
+        }
+        match component.state {
+            State::Known => {}
+            State::UnknownClass => about.push_str("\nno such class is registered"),
+            State::Missing => about.push_str("\nthe composite has no such component"),
+        }
+        self.title(Some(&about));
+        let body = Rect { y: rect.y + plan.body, height: rect.height - plan.body, ..*rect };
+        self.rect(class, body, 8);
+        let middle = |y| Point { x: rect.x + rect.width / 2, y: rect.y + y };
+        self.label("name", middle(plan.name), &plan.name_text, NAME_SIZE, "middle");
+        if !plan.class_text.is_empty() {
+            self.label("small", middle(plan.class), &plan.class_text, SMALL_SIZE, "middle");
+        }
+        self.chips(&plan.chips, &component.properties, Point { x: rect.x, y: rect.y });
+        for (place, port) in component.services.iter().enumerate() {
+            let at = Point { x: rect.x, y: rect.y + plan.port(place) };
+            let shown = Port { name: plan.services[place].clone(), interface: port.interface.clone() };
+            self.port("service", at, &shown, Point { x: at.x + LABEL, y: at.y }, "start");
+        }
+        for (place, port) in component.references.iter().enumerate() {
+            let at = Point { x: rect.x + rect.width, y: rect.y + plan.port(place) };
+            let shown = Port { name: plan.references[place].clone(), interface: port.interface.clone() };
+            self.port("reference", at, &shown, Point { x: at.x - LABEL, y: at.y }, "end");
+        }
+        self.text.push_str("</g>\n");
+    }
+
+    fn port(&mut self, class: &str, at: Point, port: &Port, label: Point, anchor: &str) {
+        self.text.push_str("<g>");
+        self.title(port.interface.as_deref());
+        self.chevron(class, at);
+        if !port.name.is_empty() {
+            self.label("", Point { y: label.y + 3, ..label }, &port.name, SMALL_SIZE, anchor);
+        }
+        self.text.push_str("</g>");
+    }
+
+    fn chevron(&mut self, class: &str, Point { x, y }: Point) {
+        let (far, near) = (CHEVRON, CHEVRON - 5);
+        let _ = write!(
+            self.text,
+            "<path class=\"{class}\" d=\"M{},{}H{}L{},{y}L{},{}H{}L{},{y}Z\"/>",
+            x - far,
+            y - 6,
+            x + near,
+            x + far,
+            x + near,
+            y + 6,
+            x - far,
+            x - near
+        );
+    }
+
+    fn chips(&mut self, chips: &[Chip], settings: &[Setting], origin: Point) {
+        for (chip, setting) in chips.iter().zip(settings) {
+            let (x, y) = (origin.x + chip.x, origin.y + chip.y);
+            self.text.push_str("<g>");
+            let value = setting.value.as_deref();
+            self.title(Some(&format!("{} = {}", setting.name, value.unwrap_or("..."))));
+            self.rect("property", Rect { x, y, width: chip.width, height: CHIP_HEIGHT }, 0);
+            self.label("", Point { x: x + 4, y: y + 10 }, &chip.text, CHIP_SIZE, "start");
+            self.text.push_str("</g>");
+        }
+    }
+
+    fn rail(&mut self, rail: &Rail, topic: &Topic, color: &str) {
+        let Rect { x, y, width, height } = rail.label;
+        let middle = y + height / 2;
+        self.text.push_str("<g>");
+        self.title(Some(&format!("{}\n{} topic of {}", topic.name, topic.kind.name(), topic.message)));
+        let _ = write!(
+            self.text,
+            "<path class=\"rail\" stroke=\"{color}\" d=\"M{},{middle}H{}\"/>",
+            rail.from, rail.to
+        );
+        let _ = write!(
+            self.text,
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"8\" fill=\"#fff\" stroke=\"{color}\" stroke-width=\"1.5\"/>"
+        );
+        self.label("", Point { x: x + 10, y: middle + 4 }, &rail.text, SMALL_SIZE, "start");
+        self.text.push_str("</g>\n");
+    }
+
+    fn mark(&mut self, mark: &Mark) {
+        let Point { x, y } = mark.at;
+        let mut base = y - 2;
+        if mark.publishes {
+            self.triangle(x, base - 7, base, color(mark.topic), true);
+            base -= 8;
+        }
+        if mark.reads {
+            self.triangle(x, base, base - 7, color(mark.topic), false);
+        }
+    }
+
+    /// A triangle with its tip at `tip`.
+    fn triangle(&mut self, x: i32, base: i32, tip: i32, color: &str, is_full: bool) {
+        let fill = if is_full { color } else { "#fff" };
+        let _ = writeln!(
+            self.text,
+            "<path fill=\"{fill}\" stroke=\"{color}\" d=\"M{},{base}H{}L{x},{tip}Z\"/>",
+            x - 3,
+            x + 3
+        );
+    }
+
+    fn legend(&mut self, diagram: &Diagram, layout: &Layout) {
+        let y = layout.height - LEGEND / 2;
+        let mut x = layout.frame.x + 8;
+        let mut entry = |out: &mut Self, text: &str, draw: &dyn Fn(&mut Self, i32)| {
+            draw(out, x);
+            out.label("small", Point { x: x + 24, y: y + 4 }, text, SMALL_SIZE, "start");
+            x += 24 + width(text, SMALL_SIZE, false) + 16;
+        };
+        entry(self, "service", &|out, x| out.chevron("service", Point { x: x + 9, y }));
+        entry(self, "reference", &|out, x| out.chevron("reference", Point { x: x + 9, y }));
+        entry(self, "property", &|out, x| {
+            out.rect("property", Rect { x, y: y - 6, width: 18, height: 12 }, 0);
+        });
+        entry(self, "wire", &|out, x| _ = write!(out.text, "<path class=\"wire\" d=\"M{x},{y}h18\"/>"));
+        entry(self, "promotion", &|out, x| {
+            let _ = write!(out.text, "<path class=\"promotion\" d=\"M{x},{y}h18\"/>");
+        });
+        if !diagram.topics.is_empty() {
+            entry(self, "publishes a topic", &|out, x| out.triangle(x + 9, y - 4, y + 4, color(0), true));
+            entry(self, "reads a topic", &|out, x| out.triangle(x + 9, y + 4, y - 4, color(0), false));
+        }
+        self.text.push('\n');
+    }
+
+    fn rect(&mut self, class: &str, Rect { x, y, width, height }: Rect, round: i32) {
+        let _ = write!(
+            self.text,
+            "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{round}\"/>"
+        );
+    }
+
+    fn title(&mut self, text: Option<&str>) {
+        if let Some(text) = text {
+            let lines: Vec<String> = text.lines().map(xml).collect();
+            let _ = write!(self.text, "<title>{}</title>", lines.join("\n"));
+        }
+    }
+
+    fn label(&mut self, class: &str, at: Point, text: &str, size: i32, anchor: &str) {
+        let Point { x, y } = at;
+        let _ = write!(
+            self.text,
+            "<text class=\"{class}\" x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\">{}</text>",
+            xml(text)
+        );
+    }
+}

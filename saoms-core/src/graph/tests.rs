@@ -1,0 +1,90 @@
+use expect_test::{Expect, expect};
+
+use super::{Diagram, State, dot, mermaid, svg};
+use crate::diagnostic::Diagnostics;
+use crate::load::load_file;
+use crate::registry::Registry;
+use crate::source::Sources;
+
+fn diagram(content: &str) -> Diagram {
+    let namespace = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
+    let text =
+        format!("<composite xmlns='{namespace}' name='c' targetNamespace='urn:c'{content}</composite>");
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = sources.add("c.composite", text);
+    Diagram::of(&load_file(file, &sources, &mut diagnostics).unwrap(), &Registry::new())
+}
+
+/// The edges of the flowchart, each a line.
+fn edges(content: &str, expected: Expect) {
+    let chart = mermaid(&diagram(content));
+    let edges = chart.lines().map(str::trim).filter(|line| line.contains("->"));
+    expected.assert_eq(&edges.map(|line| format!("{line}\n")).collect::<String>());
+}
+
+#[test]
+fn targets_wires_and_promotions_are_links() {
+    edges(
+        "><service name='in' promote='A/s'/>
+        <component name='A'><implementation.java class='a.A'/><service name='s'/>
+          <reference name='one' target='B/t C/u/binding'/><reference name='two'/></component>
+        <component name='B'><implementation.java class='a.B'/><service name='t'/></component>
+        <component name='C'><implementation.java class='a.C'/></component>
+        <wire source='A/two' target='B'/><wire source='A/two' target='B/t'/><wire source='B' target='C'/>
+        <reference name='out' promote='C/rest B'/>",
+        expect![[r#"
+            c0 -->|"one → t"| c1
+            c0 -->|"one → u"| c2
+            c0 -->|"two → t"| c1
+            c1 -->|"u"| c2
+            s0 -.->|"s"| c0
+            c2 -.->|"rest"| r0
+            c1 -.-> r0
+        "#]],
+    );
+}
+
+#[test]
+fn what_is_named_and_not_there_is_missing() {
+    let diagram = diagram(
+        "><component name='A'><reference name='r' target='B/s'/></component><wire source='C/x' target='A'/>",
+    );
+    let found: Vec<_> = diagram.components.iter().map(|one| (&*one.name, one.state)).collect();
+    assert_eq!(found, [("A", State::Known), ("B", State::Missing), ("C", State::Missing)]);
+    assert!(svg(&diagram).contains("the composite has no such component"));
+}
+
+#[test]
+fn autowire_finds_services_of_the_same_interface() {
+    let interface = "<interface.java interface='a.I'/>";
+    edges(
+        &format!(
+            " autowire='true'><component name='A'><implementation.java class='a.A'/>
+            <reference name='r'>{interface}</reference><reference name='n' multiplicity='0..n'>{interface}</reference>
+            <reference name='o' autowire='false'>{interface}</reference></component>
+            <component name='B'><implementation.java class='a.B'/><service name='s'>{interface}</service></component>
+            <component name='C'><implementation.java class='a.C'/><service name='t'>{interface}</service></component>"
+        ),
+        expect![[r#"
+            c0 -->|"r → s"| c1
+            c0 -->|"n → s"| c1
+            c0 -->|"n → t"| c2
+        "#]],
+    );
+}
+
+/// Whatever names hold, the texts stay what they are.
+#[test]
+fn names_are_escaped() {
+    let diagram = diagram(
+        "><component name='&lt;a&gt; &amp; &quot;b&quot; | {c} \\ # ]]'><implementation.java class='x'/></component>",
+    );
+    let drawn = svg(&diagram);
+    let document = roxmltree::Document::parse(&drawn).unwrap();
+    let name = document
+        .descendants()
+        .find(|node| node.attribute("class") == Some("name") && node.text() != Some("c"));
+    assert_eq!(name.unwrap().text(), Some(&*diagram.components[0].name));
+    assert!(dot(&diagram).contains(r#"label="\<a\> & \"b\" \| \{c\} \\ # ]]\nx""#), "{}", dot(&diagram));
+    assert!(mermaid(&diagram).contains("#60;a#62; #38; #34;b#34; #124; {c} #92; #35; ]]<br/>x"));
+}

@@ -1,0 +1,68 @@
+//! How wide texts are, and what of them is shown.
+
+/// Widths of the printable characters of ASCII in thousandths of the size, as the metrics of DejaVu Sans have them: of the
+/// fonts that viewers usually take for sans-serif it is the widest, so that labels fit in all of them.
+const WIDTHS: [u16; 95] = [
+    318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636, 636, 636,
+    636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632, 575, 775, 752, 295,
+    295, 656, 557, 863, 748, 787, 603, 787, 695, 635, 611, 732, 684, 989, 685, 611, 685, 390, 337, 390, 838,
+    500, 500, 613, 635, 550, 635, 615, 352, 635, 634, 278, 278, 579, 278, 974, 634, 612, 635, 635, 411, 521,
+    392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838,
+];
+
+/// The width of a text in pixels.
+pub(super) fn width(text: &str, size: i32, bold: bool) -> i32 {
+    let thousandths: i32 = text.chars().map(|one| i32::from(thousandths(one))).sum();
+    let bold = if bold { 115 } else { 100 };
+    (thousandths * size / 1000 * bold / 100).max(1) + 1
+}
+
+fn thousandths(character: char) -> u16 {
+    let place = (character as usize).checked_sub(0x20);
+    match place.and_then(|place| WIDTHS.get(place)) {
+        Some(width) => *width,
+        // Scripts of Asia and pictures fill a square.
+        None if character as u32 >= 0x1100 => 1000,
+        None => 800,
+    }
+}
+
+/// The start of a text of at most so many characters, with an ellipsis when some are missing.
+pub(super) fn start(text: &str, most: usize) -> String {
+    let text = plain(text);
+    if text.chars().count() <= most {
+        return text;
+    }
+    text.chars().take(most.saturating_sub(1)).chain(['…']).collect()
+}
+
+/// The end of a text of at most so many characters: what tells classes of one package apart.
+pub(super) fn end(text: &str, most: usize) -> String {
+    let text = plain(text);
+    let count = text.chars().count();
+    if count <= most {
+        return text;
+    }
+    let rest: String = text.chars().skip(count + 1 - most).collect();
+    format!("…{}", rest.trim_start_matches('.'))
+}
+
+/// Control characters would break lines and documents.
+fn plain(text: &str) -> String {
+    text.chars().map(|one| if one.is_control() { ' ' } else { one }).collect()
+}
+
+/// A text inside an XML element or attribute.
+pub(super) fn xml(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for one in plain(text).chars() {
+        match one {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            _ => out.push(one),
+        }
+    }
+    out
+}

@@ -1,0 +1,78 @@
+//! `saoms graph`: draws a composite.
+
+use std::fs;
+use std::io::{self, IsTerminal};
+use std::path::Path;
+
+use saoms_core::diagnostic::{Diagnostics, Severity, human};
+use saoms_core::graph::{Diagram, dot, mermaid, svg};
+use saoms_core::load::{load_file, read};
+use saoms_core::source::Sources;
+
+use crate::Exit;
+use crate::arguments::{GraphArguments, Picture};
+use crate::output::{counted, eprint, try_print};
+use crate::plugins::registry;
+
+pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
+    let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
+    let picture = match (arguments.format, path) {
+        (Some(format), _) => format,
+        (None, None) => Picture::Svg,
+        (None, Some(path)) => match by_ending(path) {
+            Some(format) => format,
+            None => {
+                eprint(&format!(
+                    "error: the ending of `{}` says no format\n  = help: known are `.svg`, `.mmd` and `.dot`; `--format` says it for other endings\n",
+                    path.display()
+                ));
+                return Exit::WrongInput;
+            }
+        },
+    };
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = read(&arguments.file, arguments.max_size, &mut sources, &mut diagnostics);
+    let composite = file.and_then(|file| load_file(file, &sources, &mut diagnostics));
+    let found = diagnostics.into_sorted();
+    let Some(composite) = composite else {
+        eprint(&human(&found, &sources, io::stderr().is_terminal()));
+        return Exit::WrongInput;
+    };
+    let errors = found.iter().filter(|one| one.severity == Severity::Error).count();
+    if errors > 0 {
+        let errors = counted(errors, "error");
+        let name = arguments.file.display();
+        eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows {errors}\n"));
+    }
+    let registry = match registry(&arguments.plugins, std::slice::from_ref(&arguments.file)) {
+        Ok(registry) => registry,
+        Err(exit) => return exit,
+    };
+    let diagram = Diagram::of(&composite, &registry);
+    let text = match picture {
+        Picture::Svg => svg(&diagram),
+        Picture::Mermaid => mermaid(&diagram),
+        Picture::Dot => dot(&diagram),
+    };
+    let written = match path {
+        Some(path) => fs::write(path, text),
+        None => try_print(&text),
+    };
+    match written {
+        Ok(()) => Exit::Done,
+        Err(error) => {
+            let name = path.map_or_else(|| "-".to_owned(), |path| path.display().to_string());
+            eprint(&format!("error: the picture cannot be written to `{name}`: {error}\n"));
+            Exit::Failed
+        }
+    }
+}
+
+fn by_ending(path: &Path) -> Option<Picture> {
+    match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        "svg" => Some(Picture::Svg),
+        "mmd" | "mermaid" => Some(Picture::Mermaid),
+        "dot" | "gv" => Some(Picture::Dot),
+        _ => None,
+    }
+}

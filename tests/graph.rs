@@ -1,0 +1,63 @@
+//! `saoms graph` as a user meets it.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use tempfile::tempdir;
+
+/// Runs `saoms graph` in the project's folder: exit code, standard output and standard error.
+fn graph(arguments: &[&str]) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
+    command.arg("graph").args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
+    let output = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+fn written(folder: &Path, name: &str, arguments: &[&str]) -> String {
+    let path = folder.join(name);
+    let all = [arguments, &["-o", path.to_str().unwrap()]].concat();
+    assert_eq!(graph(&all), (0, String::new(), String::new()), "{name}");
+    fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn the_ending_says_the_format_and_the_airport_is_in_the_picture() {
+    let folder = tempdir().unwrap();
+    let airport = &["composites/airport.composite"][..];
+    let svg = written(folder.path(), "a.svg", airport);
+    for part in [">airport<", ">Robot002<", ">MasterRobot<", ">hardware<", ">ELMSTOPIC<", "period = 100<"] {
+        assert!(svg.contains(part), "{part}");
+    }
+    let mermaid = written(folder.path(), "a.mmd", airport);
+    assert!(mermaid.starts_with("flowchart LR\n") && mermaid.contains("\"world → hardware\""));
+    assert!(written(folder.path(), "a.DOT", airport).starts_with("digraph \"airport\" {\n"));
+    assert_eq!(written(folder.path(), "a.txt", &[airport, &["--format", "mermaid"]].concat()), mermaid);
+    assert_eq!(graph(airport), (0, svg, String::new()));
+}
+
+#[test]
+fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
+    let folder = tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let head = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='urn:c'>";
+    let wrong = format!(
+        "{head}<component name='A'><implementation.java class='no.Such'/><oops/></component></composite>"
+    );
+    let (code, picture, error) = graph(&[&file("wrong.composite", &wrong)]);
+    assert!(code == 0 && picture.contains("no such class is registered"), "{picture}");
+    assert!(error.starts_with("warning: drawn as far as it is understood; `saoms check "), "{error}");
+    let (code, picture, error) = graph(&[&file("broken.composite", head)]);
+    assert!((code, picture.as_str()) == (2, "") && error.contains("error[S0103]"), "{error}");
+    let (code, _, error) = graph(&["composites/hall.composite", "-o", "hall.jpeg"]);
+    assert!(code == 2 && error.contains("`hall.jpeg` says no format"), "{error}");
+    let (code, _, error) = graph(&["composites/hall.composite", "-o", "no/such/folder/hall.svg"]);
+    assert!(code == 1 && error.contains("cannot be written to `no/such/folder/hall.svg`"), "{error}");
+}
