@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, outside test functions")]
 
+mod fleet;
+mod master;
 mod run;
 mod scenario1;
 mod scenario2;

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use saoms_api::Time;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Event, Events, Occurrence};
 use saoms_testkit::Fleet;
@@ -17,6 +18,7 @@ pub(crate) struct Run {
 
 /// A line of the console or, where `log` says so, of the log.
 struct Line {
+    time: Time,
     component: Arc<str>,
     log: bool,
     text: String,
@@ -34,7 +36,7 @@ impl Events for Listener {
             _ => return,
         };
         let component = event.component.clone().unwrap_or_default();
-        let line = Line { component, log, text: text.clone() };
+        let line = Line { time: event.time, component, log, text: text.clone() };
         self.0.lock().unwrap().push(line);
     }
 
@@ -70,6 +72,12 @@ impl Run {
     /// The console as a whole, a line each.
     pub(crate) fn console(&self) -> Vec<&str> {
         self.lines.iter().filter(|line| !line.log).map(|line| line.text.as_str()).collect()
+    }
+
+    /// What a component wrote to its log, with the time.
+    pub(crate) fn log(&self, component: &str) -> Vec<String> {
+        let of = |line: &&Line| line.log && &*line.component == component;
+        self.lines.iter().filter(of).map(|line| format!("{} {}", line.time, line.text)).collect()
     }
 
     /// The executions of a robot, in order.

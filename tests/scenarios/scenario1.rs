@@ -21,7 +21,7 @@ fn the_robot_brings_two_pieces_charges_and_heals_itself() {
 45: goes under charge, 28.0
 59: is in charge, 0.0
 69: is charged, would heal 1, 100.0
-70: is charged, heals and is awake, claims (10,8) to (1,8), 100.0
+70: heals and is awake, claims (10,8) to (1,8), 100.0
 88: arrives, 68.0
 89: collects, 66.0
 99: arrives, 46.0

@@ -7,24 +7,26 @@ use crate::run::{Execution, Run};
 impl Run {
     /// The facts of a robot's run, such as `12: collects at (3,1), 94.0`: the execution, what happened, where, and the battery.
     pub(crate) fn story(&self, robot: &str) -> String {
-        let (mut text, mut home) = (String::new(), false);
+        let (mut text, mut before) = (String::new(), Vec::new());
         for execution in self.executions(robot) {
-            let mut facts: Vec<String> = execution.said.iter().filter_map(|line| fact(line)).collect();
-            // A robot says in each execution that it goes to its charger: the first time matters.
-            let goes = facts.iter().any(|fact| fact == GOES_HOME);
-            if std::mem::replace(&mut home, goes) {
-                facts.retain(|fact| fact != GOES_HOME);
-            }
+            let all: Vec<String> = execution.said.iter().filter_map(|line| fact(line)).collect();
+            let news = |fact: &&String| !REPEATED.contains(&fact.as_str()) || !before.contains(*fact);
+            let facts: Vec<&str> = all.iter().filter(news).map(String::as_str).collect();
             if !facts.is_empty() {
                 let battery = execution.battery().map(|battery| format!(", {battery}")).unwrap_or_default();
                 let _ = writeln!(text, "{}: {}{battery}", execution.number, facts.join(", "));
             }
+            before = all;
         }
         text
     }
 }
 
 const GOES_HOME: &str = "goes under charge";
+const CHARGED: &str = "is charged";
+
+/// What a robot says in each execution for as long as it lasts: the first time matters.
+const REPEATED: [&str; 2] = [GOES_HOME, CHARGED];
 
 /// The fact in a line of the console; `None` for those that say how things are and for steps.
 ///
@@ -49,7 +51,7 @@ fn fact(line: &str) -> Option<String> {
         "says: I've arrived to destination." => "arrives".to_owned(),
         "has low battery and is going under charge..." => GOES_HOME.to_owned(),
         "says: I've arrived to charge position." => "is in charge".to_owned(),
-        "is now fully charged and ready (but still asleep)" => "is charged".to_owned(),
+        "is now fully charged and ready (but still asleep)" => CHARGED.to_owned(),
         "is a healer and now is awake" => "heals and is awake".to_owned(),
         "is a healer and awakes another robot" => "heals and awakes another".to_owned(),
         "RISK OF COLLISION DETECTED AND AVOIDED!" => "sees a risk of collision".to_owned(),

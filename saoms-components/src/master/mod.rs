@@ -3,7 +3,7 @@
 mod environment;
 mod gate;
 mod open;
-mod robot;
+pub mod robot;
 
 pub use environment::MasterEnvironment;
 pub use robot::MasterRobot;

@@ -70,8 +70,8 @@ impl Loop for RobotMS {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let states = context.receive(&self.states).with_headers();
-        let mine = states.filter(|(_, state)| state.robot == knowledge.number);
-        self.heard = mine.last().map(|(header, state)| (state.clone(), header.cause));
+        let newest = states.rev().find(|(_, state)| state.robot == knowledge.number);
+        self.heard = newest.map(|(header, state)| (state.clone(), header.cause));
         Ok(())
     }
 

@@ -1,0 +1,213 @@
+use std::fmt;
+
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
+
+use crate::console::JavaList;
+use crate::messages::{EXCEPTIONAL_EVENT, ExceptionalEvent, ROBOT_STATE, RobotState};
+
+use super::MasterRobotKnowledge;
+
+/// Awakes a robot for some of the pieces of luggage that are expected, and sends as many under charge again when its counter comes to an
+/// end (listing 6.12).
+///
+/// Where one shift ends as another begins, its robots stay for that.
+#[derive(Debug, Default, LoopClass)]
+#[looping(
+    name = "saoms.master.AwakeAsleepMS",
+    knowledge = MasterRobotKnowledge,
+    senses("pieces_per_robot", "counter", "robots", "asleep"),
+    effects("on_shift"),
+    subscribes(EXCEPTIONAL_EVENT),
+    publishes(ROBOT_STATE)
+)]
+pub struct AwakeAsleepMS {
+    events: Subscription<ExceptionalEvent>,
+    states: Publisher<RobotState>,
+}
+
+/// How the work changes: how many pieces of luggage are expected from now on, and how many robots are not needed any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Workload {
+    /// Newly expected pieces.
+    pub pieces: u32,
+    /// One robot for so many pieces each.
+    pub needed: u32,
+    /// Robots whose shift is over.
+    pub released: u32,
+}
+
+/// Who has to be awaked, and who has to sleep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AwakeAsleepDecision {
+    /// Awake so many, beside so many that stay.
+    Awake {
+        /// Those to awake.
+        robots: u32,
+        /// Those of a shift that is over, which stay for the next.
+        stay: u32,
+    },
+    /// Send so many under charge; so many stay.
+    Asleep {
+        /// Those to send under charge.
+        robots: u32,
+        /// Those that stay for the next shift.
+        stay: u32,
+    },
+}
+
+impl Recordable for Workload {
+    fn record(&self) -> Record {
+        let Workload { pieces, needed, released } = *self;
+        match (needed, released) {
+            (0, _) => record!("the shift of {released} robots is over", released),
+            (_, 0) => {
+                record!("{pieces} pieces of luggage are expected: needs {needed} robots", pieces, needed)
+            }
+            _ => record!(
+                "{pieces} pieces of luggage are expected: needs {needed} robots, while the shift of {released} is over",
+                pieces,
+                needed,
+                released
+            ),
+        }
+    }
+}
+
+impl Recordable for AwakeAsleepDecision {
+    fn record(&self) -> Record {
+        match *self {
+            AwakeAsleepDecision::Awake { robots, .. } => record!("awakes {robots} robots", robots),
+            AwakeAsleepDecision::Asleep { robots, .. } => {
+                record!("sends {robots} robots under charge", robots)
+            }
+        }
+    }
+}
+
+impl Loop for AwakeAsleepMS {
+    type Properties = ();
+    type Knowledge = MasterRobotKnowledge;
+    type Symptom = Workload;
+    type Decision = AwakeAsleepDecision;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(AwakeAsleepMS::default())
+    }
+
+    fn initialize(
+        &mut self,
+        _knowledge: &mut MasterRobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.events = context.subscribe(&EXCEPTIONAL_EVENT)?;
+        self.states = context.publish(&ROBOT_STATE)?;
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut MasterRobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Workload>, Failure> {
+        let released = knowledge.end_shifts();
+        let (mut pieces, mut needed) = (0_u32, 0_u32);
+        for (header, event) in context.receive(&self.events).with_headers() {
+            context.because(header.cause);
+            pieces = pieces.saturating_add(event.pieces);
+            needed = needed.saturating_add(event.pieces.div_ceil(knowledge.pieces_per_robot));
+            let crew = JavaList(knowledge.crew());
+            context.console(format_args!("MasterRobotManagingSystem updated active robot list: {crew}"));
+        }
+        Ok((needed > 0 || released > 0).then_some(Workload { pieces, needed, released }))
+    }
+
+    fn plan(
+        &mut self,
+        symptom: Workload,
+        _knowledge: &mut MasterRobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<AwakeAsleepDecision>, Failure> {
+        let Workload { needed, released, .. } = symptom;
+        Ok(Some(if needed >= released {
+            AwakeAsleepDecision::Awake { robots: needed - released, stay: released }
+        } else {
+            AwakeAsleepDecision::Asleep { robots: released - needed, stay: needed }
+        }))
+    }
+
+    fn execute(
+        &mut self,
+        decision: AwakeAsleepDecision,
+        knowledge: &mut MasterRobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        match decision {
+            AwakeAsleepDecision::Awake { robots, stay } => {
+                let awaked = self.call(robots, true, knowledge, context)?;
+                knowledge.start_shift(stay.saturating_add(awaked));
+            }
+            AwakeAsleepDecision::Asleep { robots, stay } => {
+                self.call(robots, false, knowledge, context)?;
+                knowledge.start_shift(stay);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl AwakeAsleepMS {
+    /// Calls as many robots as there are, up to this number; how many those are.
+    fn call(
+        &self,
+        robots: u32,
+        awake: bool,
+        knowledge: &mut MasterRobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<u32, Failure> {
+        let mut called = Vec::new();
+        while called.len() < robots as usize {
+            let next = if awake { knowledge.next_to_awake() } else { knowledge.next_to_charge() };
+            let Some(robot) = next else { break };
+            knowledge.note_call(robot, awake);
+            context.send(&self.states, RobotState { robot, awake, emulate: 0 })?;
+            context.effect(match awake {
+                true => record!("awakes robot {robot}", robot),
+                false => record!("sends robot {robot} under charge", robot),
+            });
+            called.push(robot);
+        }
+        let what = if awake { "awakes" } else { "sends under charge" };
+        if !called.is_empty() {
+            context.info(format_args!("{what} {}", Robots(&called)));
+        }
+        let missing = (robots as usize).saturating_sub(called.len());
+        if missing > 0 && awake {
+            context.info(format_args!("finds no robot asleep in place of {missing} that are needed"));
+            context.effect(record!(
+                "finds {missing} robots too few",
+                missing = u32::try_from(missing).unwrap_or(u32::MAX)
+            ));
+        }
+        Ok(u32::try_from(called.len()).unwrap_or(u32::MAX))
+    }
+}
+
+/// Robots as a sentence lists them.
+struct Robots<'a>(&'a [u32]);
+
+impl fmt::Display for Robots<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            [] => formatter.write_str("no robot"),
+            [one] => write!(formatter, "robot {one}"),
+            [first @ .., last] => {
+                formatter.write_str("robots ")?;
+                for (place, robot) in first.iter().enumerate() {
+                    let comma = if place > 0 { ", " } else { "" };
+                    write!(formatter, "{comma}{robot}")?;
+                }
+                write!(formatter, " and {last}")
+            }
+        }
+    }
+}
