@@ -1,33 +1,40 @@
 //! What happens outside the fleet, as a scenario tells it.
 
+mod player;
 mod scenario;
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeSet;
 
-use saoms_api::{
-    Class, Component, Context, Failure, Finding, Place, Properties, Publisher, Subscription, Time, Work,
-};
+use saoms_api::{Class, Component, Context, Failure, Level, Properties, Publisher, Subscription, Time, Work};
 
 use crate::console::Timestamp;
+use crate::grid::Map;
 use crate::hardware::Area;
-use crate::messages::{AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, LuggageStage};
+use crate::messages::{
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, LuggageStage,
+};
 
-pub use scenario::{Event, Scenario, ScenarioError};
+use player::Player;
+
+pub use player::Event;
+pub use scenario::{Drawn, Happening, Line, Scenario, Spot, Written};
 
 /// What a composite says about the environment.
 #[derive(Clone, Debug, Properties)]
 pub struct EnvironmentProperties {
-    /// What happens and when, counted from the environment's first execution: one event a line, such as `at 6s luggage (3,1) to (3,10)`,
-    /// `then 500ms luggage (10,8) to (1,8)` (after the line before), `at 3s landing 4` or `at 3s takeoff 4`. `;` ends a line, too, and `#`
-    /// starts a comment. Without it nothing happens.
-    scenario: Vec<String>,
+    /// What happens and when, counted from the environment's first execution, one event a line: `at 6s luggage (3,1) to (3,10)`,
+    /// `then 500ms luggage (10,8) to (1,8)` (after the line before), `at 3s landing 4`, `at 3s takeoff 4`, `at 9s breakdown Robot002`; again
+    /// and again: `from 10s every 5s 100 times luggage random to random`. Two values with `..` between them are the ends of a range from
+    /// which one is drawn: `every 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`. `;` ends a line, too, and `#` starts a comment. Without it
+    /// nothing happens. A long one has its place in a file: `file="scenario.txt"`.
+    pub(crate) scenario: Vec<String>,
 }
 
-/// Plays a scenario: publishes its events at their times.
+/// Plays a scenario: publishes its events at their times. What is left to chance follows from the seed of the run.
 ///
-/// It sees the run as done when all luggage of its scenario is delivered or given up.
+/// It sees the run as done when the scenario is over, and all its luggage is delivered or given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.Environment",
@@ -38,15 +45,16 @@ pub struct EnvironmentProperties {
 )]
 pub struct Environment {
     scenario: Scenario,
+    playing: Option<(Time, Player)>,
     played: usize,
-    start: Option<Time>,
     /// Luggage that is published and not delivered yet.
     open: BTreeSet<u32>,
     luggage: u32,
+    map: Option<Map>,
+    has_world: bool,
     events: Publisher<EnvironmentEvent>,
     responses: Subscription<EventLuggage>,
     area: Subscription<Area>,
-    has_world: bool,
     done: bool,
 }
 
@@ -54,18 +62,17 @@ impl Component for Environment {
     type Properties = EnvironmentProperties;
 
     fn new(properties: EnvironmentProperties) -> Result<Self, Failure> {
-        let scenario = Scenario::read(properties.scenario.iter().map(String::as_str))
-            .map_err(|error| Finding::new(Place::property("scenario"), error.to_string()))?;
         Ok(Environment {
-            scenario,
+            scenario: Scenario::read(&properties.scenario)?,
+            playing: None,
             played: 0,
-            start: None,
             open: BTreeSet::new(),
             luggage: 0,
+            map: None,
+            has_world: false,
             events: Publisher::default(),
             responses: Subscription::default(),
             area: Subscription::default(),
-            has_world: false,
             done: false,
         })
     }
@@ -76,7 +83,7 @@ impl Component for Environment {
         self.area = context.subscribe(&AREA)?;
         let now = Timestamp::now(context);
         context.console(format_args!("Environment tests start at {now}"));
-        if self.scenario.events().is_empty() {
+        if self.scenario.lines().is_empty() {
             context.info(format_args!("has no scenario: publishes nothing"));
             self.done = true;
         } else {
@@ -90,6 +97,30 @@ impl Component for Environment {
         if self.done {
             return Ok(());
         }
+        self.listen(context);
+        let Some((start, mut player)) = self.playing.take().or_else(|| self.begin(context)) else {
+            return Ok(());
+        };
+        let now = context.due().since(start);
+        while let Some(event) = player.next(now, self.map.as_ref()) {
+            self.publish(context, event)?;
+        }
+        if player.is_over() && self.open.is_empty() {
+            self.done = true;
+            context.vote(Work::Done);
+        }
+        self.playing = Some((start, player));
+        Ok(())
+    }
+}
+
+impl Environment {
+    fn listen(&mut self, context: &mut Context<'_>) {
+        if let Some(area) = context.receive_last(&self.area) {
+            // A world counts luggage itself.
+            self.has_world = true;
+            self.map = area.clone().into();
+        }
         for response in context.receive(&self.responses) {
             // What is given up stays open in the report, but nobody waits for it.
             let counted = match response.stage {
@@ -101,29 +132,32 @@ impl Component for Environment {
                 context.count("luggage.open", counted);
             }
         }
-        // A world counts luggage itself.
-        self.has_world |= context.receive_last(&self.area).is_some();
-        let start = *self.start.get_or_insert(context.due());
-        while let Some((at, event)) = self.scenario.events().get(self.played)
-            && context.due() >= start + *at
-        {
-            let event = event.clone();
-            self.play(context, event)?;
-        }
-        if self.played == self.scenario.events().len() && self.open.is_empty() {
-            self.done = true;
-            context.vote(Work::Done);
-        }
-        Ok(())
     }
-}
 
-impl Environment {
-    fn play(&mut self, context: &mut Context<'_>, event: Event) -> Result<(), Failure> {
+    /// Starts to play, once the area is known where the scenario needs it.
+    fn begin(&self, context: &mut Context<'_>) -> Option<(Time, Player)> {
+        if self.scenario.needs_area() && self.map.is_none() {
+            if context.execution() == 0 {
+                context.warn(format_args!("waits for a world to say how large the area is"));
+            }
+            return None;
+        }
+        Some((context.due(), Player::new(&self.scenario, context.chance())))
+    }
+
+    fn publish(&mut self, context: &mut Context<'_>, event: Option<Event>) -> Result<(), Failure> {
         self.played += 1;
         let (test, now) = (self.played, Timestamp::now(context));
         match event {
-            Event::Luggage { from, to } => {
+            None => {
+                context.count("luggage.ignored", 1);
+                context.log(
+                    Level::Error,
+                    format_args!("finds no free block for luggage where the scenario wants it"),
+                );
+                Ok(())
+            }
+            Some(Event::Luggage { from, to }) => {
                 self.luggage += 1;
                 let request = EventLuggage::request(self.luggage, from, to);
                 self.open.insert(self.luggage);
@@ -134,10 +168,16 @@ impl Environment {
                 context.info(format_args!("luggage {} waits at {from} to be brought to {to}", self.luggage));
                 context.send(&self.events, request.into())
             }
-            Event::Exceptional(event) => {
+            Some(Event::Exceptional(event)) => {
                 context.console(format_args!("Environment: Test{test}: New event: {event}."));
                 context.info(format_args!("{event}"));
                 context.send(&self.events, event.into())
+            }
+            Some(Event::Breakdown(robot)) => {
+                let fault = Fault::breakdown(robot);
+                context.console(format_args!("Environment: Test{test}: New event: {fault}."));
+                context.info(format_args!("{fault}"));
+                context.send(&self.events, fault.into())
             }
         }
     }

@@ -1,51 +1,248 @@
 use std::time::Duration;
 
-use super::scenario::{Event, Scenario};
-use crate::grid::Block;
+use proptest::prelude::*;
+use saoms_api::Chance;
+
+use super::player::{Event, Player};
+use super::scenario::Scenario;
+use crate::grid::{Block, Map};
 use crate::messages::{ExceptionalEvent, ExceptionalKind};
 
 fn luggage(from: (i32, i32), to: (i32, i32)) -> Event {
     Event::Luggage { from: Block::new(from.0, from.1), to: Block::new(to.0, to.1) }
 }
 
+fn exceptional(kind: ExceptionalKind, pieces: u32) -> Event {
+    Event::Exceptional(ExceptionalEvent { kind, pieces })
+}
+
+/// What happens up to a time, looked at every 100 ms.
+fn played(text: &str, seed: u64, area: Option<&Map>, until: u64) -> Vec<(u64, Event)> {
+    let scenario = Scenario::read(&[text]).unwrap_or_else(|findings| panic!("{findings:?}"));
+    let mut player = Player::new(&scenario, &mut Chance::new(seed));
+    let mut events = Vec::new();
+    for now in (0..=until).step_by(100) {
+        while let Some(event) = player.next(Duration::from_millis(now), area) {
+            events.extend(event.map(|event| (now, event)));
+        }
+    }
+    assert!(player.is_over() || text.contains("every"), "{text}");
+    events
+}
+
 #[test]
-fn a_scenario_is_read_in_the_order_of_its_times() {
+fn a_scenario_happens_in_the_order_of_its_times() {
     let text = "
-        # The first pieces.
+        # The first pieces; then others.
         at 6s luggage (3,1) to (3,10)
         then 1 s luggage ( 1 , 5 ) to ( 10 , 5 )   # after the line before
         then 500 luggage(10,8)to(1,8)
         at 3s landing 4; at 3s takeoff 2
+        at 9s breakdown Robot002\r
+        then 0 breakdown 3
     ";
-    let exceptional = |kind, pieces| Event::Exceptional(ExceptionalEvent { kind, pieces });
-    let millis = Duration::from_millis;
     let expected = [
-        (millis(3000), exceptional(ExceptionalKind::Landing, 4)),
-        (millis(3000), exceptional(ExceptionalKind::Takeoff, 2)),
-        (millis(6000), luggage((3, 1), (3, 10))),
-        (millis(7000), luggage((1, 5), (10, 5))),
-        (millis(7500), luggage((10, 8), (1, 8))),
+        (3000, exceptional(ExceptionalKind::Landing, 4)),
+        (3000, exceptional(ExceptionalKind::Takeoff, 2)),
+        (6000, luggage((3, 1), (3, 10))),
+        (7000, luggage((1, 5), (10, 5))),
+        (7500, luggage((10, 8), (1, 8))),
+        (9000, Event::Breakdown(2)),
+        (9000, Event::Breakdown(3)),
     ];
-    assert_eq!(Scenario::read([text]).unwrap().events(), expected);
-    assert!(Scenario::read([]).unwrap().events().is_empty());
-    assert!(Scenario::read(["", " # nothing\n;"]).unwrap().events().is_empty());
+    assert_eq!(played(text, 1, None, 10_000), expected);
+    assert!(Scenario::read::<&str>(&[]).unwrap().lines().is_empty());
+    assert!(Scenario::read(&["", " # nothing\n;"]).unwrap().lines().is_empty());
+    let texts = ["at 1s landing 1", "then 1s landing 2"];
+    assert!(Scenario::read(&texts).unwrap().lines()[1].follows, "also the one in another text");
 }
 
 #[test]
-fn a_wrong_scenario_says_where_and_why() {
-    let expected = "expected a line such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`";
-    for (line, error) in [
-        ("luggage", format!("found `luggage`, {expected}")),
-        ("after 6s landing 4", format!("found `after` at its start, {expected}")),
-        ("at 6s lugage (3,1) to (3,10)", "found no event in `at 6s lugage (3,1) to (3,10)`, expected one of luggage, landing, takeoff".into()),
-        ("at luggage (3,1) to (3,10)", "found no time after `at`, expected one such as `6s` or `500ms`".into()),
-        ("at -6s landing 4", "`-6s` is negative: expected a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h".into()),
-        ("at 6s luggage (3,1)", "found `(3,1)` after `luggage`, expected two blocks such as `(3,1) to (3,10)`".into()),
-        ("at 6s luggage (3,1) to 3,10", "found `3,10`, expected a block such as (3,10)".into()),
-        ("at 6s landing four", "found `four`, expected the number of expected pieces of luggage, such as 4".into()),
-        ("at 6s landing", "found ``, expected the number of expected pieces of luggage, such as 4".into()),
+fn lines_repeat_so_often_or_so_long() {
+    let times = |text: &str| played(text, 1, None, 20_000).into_iter().map(|(at, _)| at).collect::<Vec<_>>();
+    assert_eq!(times("from 1s every 2s 3 times landing 1; then 500ms landing 2"), [1000, 3000, 5000, 5500]);
+    assert_eq!(times("from 1s every 2s until 5s landing 1; then 500ms landing 2"), [1000, 3000, 5000, 5500]);
+    assert_eq!(times("from 1s every 2s 2 times until 9s landing 1"), [1000, 3000]);
+    assert_eq!(times("at 1s 3 times landing 1"), [1000, 1000, 1000]);
+    assert_eq!(times("at 1s landing 1; then 1s every 1s 2 times landing 2"), [1000, 2000, 3000]);
+    assert_eq!(
+        times("at 9s landing 1; then 1s every 1s until 5s landing 2; then 1s landing 3"),
+        [9000, 11_000]
+    );
+    assert_eq!(times("from 0 every 5s landing 1"), [0, 5000, 10_000, 15_000, 20_000]);
+}
+
+#[test]
+fn chance_draws_within_the_ends_and_by_the_seed_alone() {
+    let area = Map::read("....\n.@..\n....").unwrap();
+    let text = "from 1s..2s every 100ms..300ms 200 times luggage random to (0,0)..(3,1)
+        at 30s..60s breakdown 1..3
+        at 5s landing 2..8";
+    let events = played(text, 7, Some(&area), 90_000);
+    assert_eq!(events, played(text, 7, Some(&area), 90_000));
+    assert_ne!(events, played(text, 8, Some(&area), 90_000));
+    let mut last = 0;
+    let mut pieces = 0;
+    for (at, event) in &events {
+        match event {
+            Event::Luggage { from, to } => {
+                pieces += 1;
+                assert!(area.is_free(*from) && area.is_free(*to) && from != to && to.y <= 1, "{event:?}");
+                assert!((1000..=2100).contains(&(at - last)) || (0..=400).contains(&(at - last)), "{at}");
+                last = *at;
+            }
+            Event::Breakdown(robot) => assert!((1..=3).contains(robot) && (30_000..=60_100).contains(at)),
+            Event::Exceptional(event) => assert!((2..=8).contains(&event.pieces)),
+        }
+    }
+    assert_eq!((pieces, events.len()), (200, 202));
+    // Another line changes nothing in the ones before it.
+    let more = played(&format!("{text}\nat 1s landing 1..9"), 7, Some(&area), 90_000);
+    assert!(events.iter().all(|event| more.contains(event)));
+}
+
+#[test]
+fn luggage_for_which_there_is_no_block_does_not_happen() {
+    let area = Map::read(".@\n@@").unwrap();
+    assert_eq!(played("at 1s luggage (1,1)..(0,1) to (0,0)", 1, Some(&area), 2000), []);
+    assert_eq!(played("at 1s luggage random to random", 1, Some(&area), 2000), [], "there is but one");
+    assert_eq!(played("at 1s luggage (50,50)..(60,60) to (0,0)", 1, Some(&area), 2000), []);
+    let some = played("at 1s 9 times luggage (0,0)..(60000,60000) to (7,7)", 1, Some(&area), 2000);
+    assert_eq!(some, vec![(1000, luggage((0, 0), (7, 7))); 9]);
+    assert!(Scenario::read(&["at 1s luggage (1,1) to random"]).unwrap().needs_area());
+    assert!(!Scenario::read(&["at 1s luggage (1,1) to (2,2)..(3,3)"]).unwrap().needs_area());
+}
+
+#[test]
+fn every_wrong_line_says_where_and_why() {
+    let kinds = "`luggage`, `landing`, `takeoff` or `breakdown`";
+    let block = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
+    let robot = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
+    let time = "a time such as `6s` or `500ms`";
+    let pieces = "how many pieces of luggage are expected, such as `4`";
+    let start = "`at`, `from` or `then` at the start of a line";
+    let end = "the end of the line, or `;` before the next event";
+    let times = "how often it happens: a whole number from 1 to 1000000";
+    for (line, at, message, instead) in [
+        ("luggage", "luggage", format!("found `luggage`, expected {start}"), None),
+        ("ta 6s landing 4", "ta", format!("found `ta`, expected {start}"), Some("at")),
+        ("at 6s lugage (3,1) to (3,10)", "lugage", format!("found `lugage`, expected {kinds}"), Some("luggage")),
+        ("at 6s (3,1) to (3,10)", "(3,1)", format!("found `(3,1)`, expected {kinds}"), None),
+        ("at luggage (3,1) to (3,10)", "luggage", format!("found `luggage`, expected {time}"), None),
+        ("at", "", format!("found the end of the line, expected {time}"), None),
+        ("at 6parsec landing 4", "6parsec", "`6parsec` is not a duration: expected a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h".into(), None),
+        ("at -6 s landing 4", "-6 s", "found `-6 s`, which is before the start of the scenario: expected a time from 0s on".into(), Some("6 s")),
+        ("at 6s luggage (3,1)", "", "found the end of the line, expected `to` and the block to bring it to".into(), None),
+        ("at 6s luggage (3,1) too (3,10)", "too", "found `too`, expected `to` and the block to bring it to".into(), Some("to")),
+        ("at 6s luggage (3,1) to 3,10", "3,10", format!("found `3,10`, expected {block}"), None),
+        ("at 6s luggage (3;1) to (3,10)", "(3", format!("found `(3`, expected {block}"), None),
+        ("at 6s luggage (-3,1) to (3,10)", "(-3,1)", "found `(-3,1)`, and every area starts at (0,0)".into(), None),
+        ("at 6s landing four", "four", format!("found `four`, expected {pieces}"), None),
+        ("at 6s landing", "", format!("found the end of the line, expected {pieces}"), None),
+        ("at 6s landing 4 5", "5", format!("found `5`, expected {end}"), None),
+        ("at 6s breakdown Gripper", "Gripper", format!("found `Gripper`, expected {robot}"), None),
+        ("at 6s breakdown 0", "0", format!("found `0`, expected {robot}"), None),
+        ("at 8s..2s landing 4", "8s..2s", "found `8s..2s`, expected the lesser one first".into(), Some("2s..8s")),
+        ("at 8s every 2s landing 4", "at", "found `every` after `at`: what happens again and again happens `from` a time on".into(), Some("from")),
+        ("from 8s landing 4", "from", "found no `every` after `from` and its time: what happens once happens `at` a time".into(), Some("at")),
+        ("from 8s every 0s landing 4", "0s", "found `0s` after `every`, expected at least 1ms".into(), None),
+        ("from 8s every 1s 0 times landing 4", "0", format!("found `0`, expected {times}"), None),
+        ("at 8s until 9s landing 4", "until", "found `until` without `every`: this happens once".into(), None),
+        ("from 8s every 1s until 7s landing 4", "7s", "found `until 7s`, which is before the first event".into(), None),
+        ("from 8s every 1s landing 1\nthen 1s landing 2", "then", "the line before never ends, so nothing comes after it".into(), None),
     ] {
-        let found = Scenario::read(["at 1s landing 1; at 2s landing 1", line]).unwrap_err();
-        assert_eq!((found.line, found.message), (3, error), "{line}");
+        let text = format!("at 1s landing 1; at 2s landing 1 # 2\n{line}\nat 7s landing 9");
+        let findings = Scenario::read(&["at 0 landing 2".to_owned(), text.clone()]).unwrap_err();
+        let finding = &findings[0];
+        let (value, part) = finding.place().value_part().unwrap();
+        assert_eq!((finding.message(), value), (message.as_str(), 1), "{line}");
+        assert_eq!((&text[part], finding.replacement()), (at, instead), "{line}");
+    }
+}
+
+#[test]
+fn all_wrong_lines_are_found_at_once() {
+    let (scenario, findings) =
+        Scenario::read_partly(&["at 1s lading 1; at 2s landing 1", "then landing\nat 3s breakdown 1"]);
+    assert_eq!((scenario.lines().len(), findings.len()), (2, 2));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn any_text_is_read_or_refused_at_a_place_in_it(words in prop::collection::vec(word(), 0..12)) {
+        let text = words.concat();
+        if let Err(findings) = Scenario::read(&[&text]) {
+            for finding in findings {
+                let (_, part) = finding.place().value_part().unwrap();
+                prop_assert!(text.get(part.clone()).is_some(), "{text:?} {part:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn any_scenario_can_be_played(words in prop::collection::vec(word(), 0..30), seed: u64) {
+        let (scenario, _) = Scenario::read_partly(&[words.concat()]);
+        let mut player = Player::new(&scenario, &mut Chance::new(seed));
+        let area = Map::new(11, 11);
+        for _ in 0..100 {
+            if player.next(Duration::from_secs(60), Some(&area)).is_none() {
+                break;
+            }
+        }
+    }
+}
+
+/// What scenarios are made of, and what they are not.
+fn word() -> impl Strategy<Value = String> {
+    let known = [
+        "at ",
+        "from ",
+        "then ",
+        "every ",
+        "times ",
+        "until ",
+        "luggage ",
+        "to ",
+        "random ",
+        "landing ",
+        "takeoff ",
+        "breakdown ",
+        "(3,1)",
+        "(10,10)",
+        "(",
+        ")",
+        "..",
+        ".",
+        ";",
+        "\n",
+        "\r\n",
+        " ",
+        "#",
+        "1s ",
+        "500 ",
+        "2 ",
+        "-1s ",
+        "Robot002 ",
+        "\u{fc}",
+        "\u{1f600} ",
+        "99999999999999999999 ",
+        "1h ",
+        "from 1s every 1ms 9 times luggage random to (0,0)..(5,5)\n",
+        "then 1s landing 1..3;",
+    ];
+    prop::sample::select(known.to_vec()).prop_map(str::to_owned)
+}
+
+#[test]
+fn the_examples_of_the_documentation_are_scenarios() {
+    let page = include_str!("../../../docs/scenarios.md");
+    let examples: Vec<&str> =
+        page.split("```scenario\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(examples.len() >= 4);
+    for example in examples {
+        let (scenario, findings) = Scenario::read_partly(&[example]);
+        assert!(findings.is_empty() && !scenario.lines().is_empty(), "{example}: {findings:?}");
     }
 }

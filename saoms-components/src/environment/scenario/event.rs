@@ -1,0 +1,69 @@
+use super::draw::Spot;
+use super::line::drawn;
+use super::words::{DOTS, Words};
+use super::{Happening, Written};
+use crate::grid::Block;
+use crate::text::TextFault;
+
+const KINDS: [&str; 4] = ["luggage", "landing", "takeoff", "breakdown"];
+const BLOCK: &str = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
+const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
+
+/// Reads what happens.
+pub(super) fn read(words: &mut Words<'_>) -> Result<Happening, TextFault> {
+    Ok(match words.one_of(&KINDS, "`luggage`, `landing`, `takeoff` or `breakdown`")? {
+        "luggage" => {
+            let from = spot(words)?;
+            words.one_of(&["to"], "`to` and the block to bring it to")?;
+            Happening::Luggage { from, to: spot(words)? }
+        }
+        "landing" => Happening::Landing(drawn(words, pieces)?),
+        "takeoff" => Happening::Takeoff(drawn(words, pieces)?),
+        _ => {
+            let first = words.peek().unwrap_or_default();
+            let value = drawn(words, robot)?;
+            Happening::Breakdown(Written { value, bytes: words.bytes(words.span(first, words.last())) })
+        }
+    })
+}
+
+fn spot(words: &mut Words<'_>) -> Result<Written<Spot>, TextFault> {
+    let first = words.next(BLOCK)?;
+    let value = match first {
+        "random" => Spot::Anywhere,
+        _ => {
+            let corner = block(words, first)?;
+            if words.take(DOTS) {
+                let second = words.next("the opposite corner, such as `(10,10)`")?;
+                Spot::between(corner, block(words, second)?)
+            } else {
+                Spot::between(corner, corner)
+            }
+        }
+    };
+    Ok(Written { value, bytes: words.bytes(words.span(first, words.last())) })
+}
+
+fn block(words: &Words<'_>, word: &str) -> Result<Block, TextFault> {
+    let block: Block = word.parse().map_err(|_| words.wrong(word, BLOCK))?;
+    if block.x < 0 || block.y < 0 {
+        return Err(words.fault(word, format!("found `{word}`, and every area starts at (0,0)")));
+    }
+    Ok(block)
+}
+
+fn pieces(words: &mut Words<'_>) -> Result<u32, TextFault> {
+    const EXPECTED: &str = "how many pieces of luggage are expected, such as `4`";
+    let word = words.next(EXPECTED)?;
+    word.parse().map_err(|_| words.wrong(word, EXPECTED))
+}
+
+/// The number of a robot: robots have the one that their name ends with, unless they say another.
+fn robot(words: &mut Words<'_>) -> Result<u32, TextFault> {
+    let word = words.next(ROBOT)?;
+    let digits = &word[word.trim_end_matches(|sign: char| sign.is_ascii_digit()).len()..];
+    match digits.parse() {
+        Ok(number @ 1..) if !word.starts_with(['-', '+', '(']) => Ok(number),
+        _ => Err(words.wrong(word, ROBOT)),
+    }
+}

@@ -1,0 +1,136 @@
+//! What reaches the fleet from outside: scenarios in files, events that anybody publishes, breakdowns.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
+use std::fs;
+use std::time::Duration;
+
+use saoms_api::{Class, Component, Context, Failure, Publisher};
+use saoms_components::grid::Block;
+use saoms_components::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, Fault, LuggageStage};
+use saoms_core::report::{RunReport, Status};
+use saoms_testkit::Fleet;
+use serde_json::{Value, json};
+
+const HOUR: Duration = Duration::from_secs(3600);
+
+/// A fleet of two robots in a world of 5 x 4 blocks with a wall in (2,2), and these components too.
+fn fleet(scenario: &str, more: &str) -> String {
+    let task =
+        |id: &str| format!("<property name=\"ID\">{id}</property><property name=\"period\">100</property>");
+    let robot = |number: u32| {
+        format!(
+            "<component name=\"Robot{number}\"><implementation.java class=\"saoms.Robot\"/>{}<reference name=\"world\" target=\"World\"/></component>\n",
+            task(&format!("Robot{number}"))
+        )
+    };
+    let component = |name: &str, class: &str, inside: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.java class=\"{class}\"/>{}{inside}</component>\n",
+            task(name)
+        )
+    };
+    format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">\n{}{}{}{}{}{more}</composite>",
+        component("World", "saoms.World", "<property name=\"map\">.....\n.....\n..@..\n.....</property>"),
+        component("Master", "saoms.MasterEnvironment", ""),
+        component("Environment", "saoms.Environment", scenario),
+        robot(1),
+        robot(2),
+    )
+}
+
+fn with_scenario(scenario: &str) -> String {
+    fleet(&format!("<property name=\"scenario\">{scenario}</property>"), "")
+}
+
+fn section<'a>(report: &'a RunReport, name: &str) -> &'a Value {
+    report.sections.get(name).unwrap_or(&Value::Null)
+}
+
+/// Publishes impossible events, once.
+#[derive(Class)]
+#[class(name = "test.Prankster", periodic, publishes(ENVIRONMENT))]
+struct Prankster {
+    events: Publisher<EnvironmentEvent>,
+}
+
+impl Component for Prankster {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Prankster { events: Publisher::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.events = context.publish(&ENVIRONMENT)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if context.execution() != 12 {
+            return Ok(());
+        }
+        let (here, there) = (Block::new(1, 0), Block::new(3, 3));
+        let luggage = vec![
+            EventLuggage::request(50, here, Block::new(i32::MAX, -7)),
+            EventLuggage::request(51, Block::new(2, 2), there),
+            EventLuggage { stage: LuggageStage::Delivered, ..EventLuggage::request(1, here, there) },
+            // This one is right, and brought like any other.
+            EventLuggage::request(52, here, there),
+            EventLuggage::request(52, there, here),
+        ];
+        let faults = vec![Fault::breakdown(0), Fault::breakdown(99)];
+        context.send(&self.events, EnvironmentEvent { luggage, exceptional: Vec::new(), faults })
+    }
+}
+
+#[test]
+fn impossible_events_are_ignored_and_the_run_ends_by_itself() {
+    let prankster = "<component name=\"P\"><implementation.java class=\"test.Prankster\"/><property name=\"ID\">P</property><property name=\"period\">100</property></component>";
+    let scenario =
+        "<property name=\"scenario\">at 1s luggage (1,0) to (4,3); at 3s luggage (1,1) to (4,1)</property>";
+    let report = Fleet::of_text(fleet(scenario, prankster)).run(1, HOUR);
+    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
+    let luggage = json!({"requested": 3, "delivered": 3, "open": 0, "ignored": 4});
+    assert_eq!(section(&report, "luggage"), &luggage);
+    assert_eq!(section(&report, "faults"), &json!({"ignored": 2}));
+    assert!(report.components.iter().all(|component| component.failures == 0));
+}
+
+#[test]
+fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends() {
+    let scenario = "at 1s luggage (1,0) to (4,3); at 2s breakdown 1; at 2s breakdown Robot2; at 3s luggage (1,1) to (4,1)";
+    let report = Fleet::of_text(with_scenario(scenario)).run(1, HOUR);
+    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
+    let luggage = json!({"requested": 2, "delivered": 0, "open": 2, "ignored": 0});
+    assert_eq!(section(&report, "luggage"), &luggage);
+    assert_eq!(section(&report, "robots")["broken"], json!(2));
+}
+
+#[test]
+fn a_scenario_is_drawn_from_the_seed_within_the_map() {
+    let fleet = Fleet::of_text(with_scenario("from 1s every 1s..4s 20 times luggage random to (3,0)..(4,3)"));
+    let report = fleet.run(5, HOUR);
+    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
+    let luggage = json!({"requested": 20, "delivered": 20, "open": 0, "ignored": 0});
+    assert_eq!(section(&report, "luggage"), &luggage);
+    assert_eq!(report.trace_hash, fleet.run(5, HOUR).trace_hash);
+    assert_ne!(report.trace_hash, fleet.run(6, HOUR).trace_hash);
+}
+
+#[test]
+fn a_scenario_may_lie_in_a_file_beside_the_composite() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fleet.composite");
+    fs::write(&path, fleet("<property name=\"scenario\" file=\"morning.txt\"/>", "")).unwrap();
+    fs::write(folder.path().join("morning.txt"), "# Early.\nat 1s luggage (1,0) to (4,3)\n").unwrap();
+    let report = Fleet::of_file(&path).run(1, HOUR);
+    assert_eq!(section(&report, "luggage")["delivered"], json!(1));
+    fs::write(folder.path().join("morning.txt"), "at 1s luggage (1,0) to (4,3)\nthen 1s lading 4\n").unwrap();
+    let found = Fleet::of_file(&path).diagnostics();
+    assert!(
+        found.starts_with("error S3014 2:9 component `Environment`: property `scenario`: found `lading`"),
+        "{found}"
+    );
+}
