@@ -16,8 +16,8 @@ pub(crate) struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done, also when --for elapsed with work left (the report says so)
-  1    the run failed: a component failed for good, a message was lost, a finished report could not be written
-  2    the input is wrong: a composite, a value, the command line, a place where no report can be; nothing was started
+  1    the run failed: a component failed for good, a message was lost, a finished report or picture could not be written
+  2    the input is wrong: a composite, a value, the command line, a place where no file can be; nothing was started
   130  ended by Ctrl-C";
 
 const FMT_EXIT_CODES: &str = "\
@@ -128,6 +128,10 @@ pub(crate) struct RunArguments {
     /// Write the report as JSON to this file, `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
+
+    /// Draw the robots' paths into this SVG file, `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) paths: Option<PathBuf>,
 
     /// Show nothing but errors
     #[arg(long, conflicts_with = "console")]

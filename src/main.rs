@@ -1,7 +1,8 @@
 //! The command `saoms`: loads composites, checks them, and runs the fleet that they describe.
 //!
 //! One file per subcommand; each returns the process's exit code. What the machine does is in `saoms-core`; the components that ship are in
-//! `saoms-components`, which is linked here and known nowhere else.
+//! `saoms-components`, which is linked here and known nowhere else; of its
+//! messages, the picture of the robots' paths knows those that it draws.
 
 mod arguments;
 mod check;
@@ -11,9 +12,13 @@ mod fleet;
 mod fmt;
 mod graph;
 mod output;
+mod paths;
 mod plugins;
+mod results;
 mod run;
 mod summary;
+mod svg;
+mod watch;
 
 use std::process::ExitCode;
 

@@ -1,14 +1,12 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
-use std::fs::File;
 use std::io;
-use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 
 use saoms_core::assembly::Assembly;
 use saoms_core::diagnostic::Severity;
-use saoms_core::report::{RunReport, Status};
+use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -17,23 +15,22 @@ use crate::Exit;
 use crate::arguments::{Format, RunArguments};
 use crate::console::Console;
 use crate::fleet::checked;
-use crate::output::{counted, eprint, print, try_print};
+use crate::output::{counted, eprint, print};
+use crate::paths::Paths;
+use crate::results;
 use crate::summary::summary;
+use crate::watch::Watch;
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let Some(assembly) = assembly(arguments) else { return Exit::WrongInput };
-    if let Some(path) = &arguments.report
-        && let Err(problem) = writable(path)
-    {
-        eprint(&format!(
-            "error: the report cannot be written to `{}`: {problem}\n\n1 error: nothing was started\n",
-            path.display()
-        ));
+    if !results::writable(arguments) {
         return Exit::WrongInput;
     }
+    let paths = arguments.paths.is_some().then(Arc::<Paths>::default);
+    let watch = Watch { console: Console::new(arguments), paths: paths.clone() };
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
     let signals = Signals::new([SIGINT, SIGTERM]);
-    let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(Console::new(arguments))) {
+    let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(watch)) {
         Ok(fleet) => fleet,
         Err(error) => {
             eprint(&format!("error: {error}\n"));
@@ -45,10 +42,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     if !arguments.quiet {
         print(&summary(&report));
     }
-    if let Some(path) = &arguments.report
-        && let Err(problem) = write(&report, path)
-    {
-        eprint(&format!("error: the report could not be written to `{}`: {problem}\n", path.display()));
+    if !results::write(arguments, &report, paths.as_deref()) {
         return Exit::Failed;
     }
     match report.outcome.status {
@@ -105,22 +99,4 @@ fn end_on_signals(signals: io::Result<Signals>, stop: Handle) {
     if let Err(error) = spawned {
         eprint(&format!("warning: Ctrl-C will end the process without a report: {error}\n"));
     }
-}
-
-/// Whether the report can be written there, asked before a run that may last for days. What the file holds stays until there is a report.
-fn writable(path: &Path) -> io::Result<()> {
-    if path == Path::new("-") {
-        return Ok(());
-    }
-    File::options().append(true).create(true).open(path).map(drop)
-}
-
-/// Writes the report as JSON; `-` is standard output.
-fn write(report: &RunReport, path: &Path) -> io::Result<()> {
-    let mut text = serde_json::to_string_pretty(report)?;
-    text.push('\n');
-    if path == Path::new("-") {
-        return try_print(&text);
-    }
-    std::fs::write(path, text)
 }

@@ -12,13 +12,28 @@ const ROWS: usize = 24;
 
 /// How the run ended, what was done, and a line per component.
 pub(crate) fn summary(report: &RunReport) -> String {
+    let mut text = format!("\n{}\n", outcome(report));
+    for reason in &report.outcome.reasons {
+        let _ = writeln!(text, "  {reason}");
+    }
+    text.push('\n');
+    text.push_str(&table(&report.components));
+    text.push_str(&troubles(&report.components));
+    if let Some(hash) = &report.trace_hash {
+        let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
+    }
+    text
+}
+
+/// How the run ended and what was done, in one line.
+pub(crate) fn outcome(report: &RunReport) -> String {
     let how = match report.outcome.status {
         Status::Done => "done",
         Status::Elapsed => "time is over",
         Status::Failed => "failed",
         Status::Interrupted => "interrupted",
     };
-    let mut text = format!("\n{how} after {:.3} s", report.time_s);
+    let mut text = format!("{how} after {:.3} s", report.time_s);
     if number(report, "/luggage/requested") > 0 {
         let _ = write!(
             text,
@@ -28,16 +43,6 @@ pub(crate) fn summary(report: &RunReport) -> String {
             collisions(report),
             number(report, "/stranded"),
         );
-    }
-    text.push('\n');
-    for reason in &report.outcome.reasons {
-        let _ = writeln!(text, "  {reason}");
-    }
-    text.push('\n');
-    text.push_str(&table(&report.components));
-    text.push_str(&troubles(&report.components));
-    if let Some(hash) = &report.trace_hash {
-        let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
     }
     text
 }

@@ -143,8 +143,12 @@ fn the_manuals_files_check_and_run_as_they_are() {
 fn ctrl_c_ends_through_shutdown_and_still_reports() {
     let folder = folder("interrupt");
     let fleet = file(&folder, "one.composite", ONE_ROBOT);
-    let report = folder.join("report.json");
-    let mut child = command(&["run", &fleet, "--console", "classic", "--report", report.to_str().unwrap()])
+    let (report, picture) = (folder.join("report.json"), folder.join("paths.svg"));
+    let mut child = command(&["run", &fleet, "--console", "classic"])
+        .arg("--report")
+        .arg(&report)
+        .arg("--paths")
+        .arg(&picture)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -160,6 +164,7 @@ fn ctrl_c_ends_through_shutdown_and_still_reports() {
     let report: Value = serde_json::from_slice(&fs::read(&report).unwrap()).unwrap();
     assert_eq!(report["outcome"]["status"], "interrupted");
     assert!(report["components"][0]["executions"].as_u64().unwrap() >= 2);
+    assert!(fs::read_to_string(picture).unwrap().contains(">interrupted after "));
 }
 
 /// Five hours west of Greenwich, or as the manual's figures have it.

@@ -1,0 +1,170 @@
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+use saoms_api::{SharedMessage, Topic, TopicDeclaration};
+use saoms_components::grid::{Block, Map};
+use saoms_components::messages::{AREA, COLLISION, EVENT_LUGGAGE, FAULT, LuggageStage, POSITION, ROBOT_LIST};
+
+use super::path::{Path, Pieces, Robot};
+
+/// More legs than anybody could tell apart: from then on only how often each block was entered is kept.
+const LEGS: usize = 20_000;
+
+/// What was said in a run, as far as a picture shows it. It grows with the area and the number of robots, not with the length of the run.
+#[derive(Debug, Default)]
+pub(super) struct Recording {
+    topics: HashMap<String, Said>,
+    pub(super) robots: BTreeMap<u32, Robot>,
+    pub(super) map: Option<Map>,
+    /// Luggage that was asked for and not delivered: where it was to be collected.
+    pub(super) open: BTreeMap<u32, Block>,
+    pub(super) collected: BTreeMap<Block, Pieces>,
+    pub(super) delivered: BTreeMap<Block, Pieces>,
+    pub(super) collisions: BTreeMap<Block, u32>,
+    /// Where robots broke down.
+    pub(super) breakdowns: BTreeMap<Block, u32>,
+    pub(super) visits: BTreeMap<Block, Visits>,
+    legs: usize,
+}
+
+/// How often a block was entered, and how much more often rightwards and downwards than the other way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Visits {
+    pub(super) count: u64,
+    pub(super) right: i64,
+    pub(super) down: i64,
+}
+
+/// What a topic carries.
+#[derive(Clone, Copy, Debug)]
+enum Said {
+    Area,
+    Position,
+    Robot,
+    Luggage,
+    Collision,
+    Fault,
+}
+
+fn carries<M: saoms_api::Message>(declared: &TopicDeclaration<'_>, topic: &Topic<M>) -> bool {
+    let topic = topic.declaration();
+    (declared.kind, declared.message, declared.schema) == (topic.kind, topic.message, topic.schema)
+}
+
+impl Recording {
+    /// Whether a topic carries something that is drawn, under whatever name.
+    pub(super) fn wants(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        let said = match declared {
+            area if carries(area, &AREA) => Said::Area,
+            position if carries(position, &POSITION) => Said::Position,
+            robot if carries(robot, &ROBOT_LIST) => Said::Robot,
+            luggage if carries(luggage, &EVENT_LUGGAGE) => Said::Luggage,
+            collision if carries(collision, &COLLISION) => Said::Collision,
+            fault if carries(fault, &FAULT) => Said::Fault,
+            _ => return false,
+        };
+        self.topics.insert(name.to_owned(), said);
+        true
+    }
+
+    /// Takes in a message that a component sent.
+    pub(super) fn hear(&mut self, topic: &str, component: &Arc<str>, message: &SharedMessage) {
+        match self.topics.get(topic) {
+            Some(Said::Area) => self.hear_area(message),
+            Some(Said::Position) => self.hear_position(component, message),
+            Some(Said::Robot) => self.hear_robot(component, message),
+            Some(Said::Luggage) => self.hear_luggage(component, message),
+            Some(Said::Collision) => self.hear_collision(message),
+            Some(Said::Fault) => self.hear_fault(message),
+            None => {}
+        }
+    }
+
+    /// Whether the paths were too long to be kept.
+    pub(super) fn is_too_long(&self) -> bool {
+        self.legs > LEGS
+    }
+
+    fn hear_area(&mut self, message: &SharedMessage) {
+        if let Some(area) = message.get::<saoms_components::hardware::Area>() {
+            self.map = area.clone().into();
+        }
+    }
+
+    fn hear_position(&mut self, component: &Arc<str>, message: &SharedMessage) {
+        if let Some(position) = message.get::<saoms_components::messages::Position>() {
+            self.robot_at(position.robot, component, position.block);
+        }
+    }
+
+    fn hear_robot(&mut self, component: &Arc<str>, message: &SharedMessage) {
+        let Some(said) = message.get::<saoms_components::messages::RobotList>() else { return };
+        let robot = self.robots.entry(said.robot).or_insert_with(|| Robot::new(component));
+        robot.charger = Some(said.charger);
+        robot.empty = said.is_out_of_battery();
+        if said.in_charge {
+            // By the manual's rules a robot does not say the position that it charges at.
+            self.robot_at(said.robot, component, said.charger);
+        }
+    }
+
+    fn hear_luggage(&mut self, component: &Arc<str>, message: &SharedMessage) {
+        let Some(event) = message.get::<saoms_components::messages::EventLuggage>() else { return };
+        match event.stage {
+            LuggageStage::Request => {
+                self.open.insert(event.luggage, event.from);
+            }
+            LuggageStage::Delivered => {
+                self.robot_at(event.robot, component, event.block);
+                let from = self.open.remove(&event.luggage).unwrap_or(event.from);
+                self.collected.entry(from).or_default().add(event.luggage);
+                self.delivered.entry(event.to).or_default().add(event.luggage);
+                if let Some(robot) = self.robots.get_mut(&event.robot) {
+                    robot.delivered.add(event.luggage);
+                }
+            }
+            // The robot responds, and says where it is.
+            _ => self.robot_at(event.robot, component, event.block),
+        }
+    }
+
+    fn hear_collision(&mut self, message: &SharedMessage) {
+        let Some(collision) = message.get::<saoms_components::messages::Collision>() else { return };
+        // An exchange of blocks was told of as a meeting before.
+        if !collision.swap {
+            *self.collisions.entry(collision.block).or_default() += 1;
+        }
+    }
+
+    fn hear_fault(&mut self, message: &SharedMessage) {
+        let Some(fault) = message.get::<saoms_components::messages::Fault>() else { return };
+        if let Some(path) = self.robots.get(&fault.robot).and_then(|robot| robot.path.as_ref()) {
+            *self.breakdowns.entry(path.now).or_default() += 1;
+        }
+    }
+
+    fn robot_at(&mut self, number: u32, component: &Arc<str>, block: Block) {
+        let robot = self.robots.entry(number).or_insert_with(|| Robot::new(component));
+        let Some(path) = &mut robot.path else {
+            robot.path = Some(Path::new(block));
+            self.visits.entry(block).or_default().count += 1;
+            return;
+        };
+        let from = path.now;
+        if from == block {
+            return;
+        }
+        self.legs += path.go(block);
+        let visits = self.visits.entry(block).or_default();
+        visits.count += 1;
+        if from.distance(block) == 1 {
+            visits.right += i64::from(block.x - from.x);
+            visits.down += i64::from(block.y - from.y);
+        }
+        if self.is_too_long() {
+            for path in self.robots.values_mut().filter_map(|robot| robot.path.as_mut()) {
+                path.legs = Vec::new();
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The files that a run leaves behind: asked for before it starts, written when it has ended.
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+use saoms_core::report::RunReport;
+
+use crate::arguments::RunArguments;
+use crate::output::{counted, eprint, try_print};
+use crate::paths::Paths;
+use crate::summary::outcome;
+
+/// Whether the files can be written, asked before a run that may last for days. What they hold stays until there is something new. Where one
+/// cannot, that has been told.
+pub(crate) fn writable(arguments: &RunArguments) -> bool {
+    let files = [("report", &arguments.report), ("picture", &arguments.paths)];
+    let mut problems: Vec<String> = files
+        .iter()
+        .filter_map(|(what, path)| Some((what, path.as_deref()?)))
+        .filter_map(|(what, path)| Some((what, path, try_open(path).err()?)))
+        .map(|(what, path, problem)| {
+            format!("error: the {what} cannot be written to `{}`: {problem}\n", path.display())
+        })
+        .collect();
+    if let (Some(report), Some(picture)) = (&arguments.report, &arguments.paths)
+        && report == picture
+    {
+        problems.push(format!(
+            "error: the report and the picture cannot both be written to `{}`\n  = help: give `--paths` another file\n",
+            report.display()
+        ));
+    }
+    if !problems.is_empty() {
+        eprint(&format!(
+            "{}\n{}: nothing was started\n",
+            problems.concat(),
+            counted(problems.len(), "error")
+        ));
+    }
+    problems.is_empty()
+}
+
+fn try_open(path: &Path) -> io::Result<()> {
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    File::options().append(true).create(true).open(path).map(drop)
+}
+
+/// Writes what was asked for; `false` where that was not possible, which has been told.
+pub(crate) fn write(arguments: &RunArguments, report: &RunReport, paths: Option<&Paths>) -> bool {
+    let report_written = arguments.report.as_ref().is_none_or(|path| {
+        let text = serde_json::to_string_pretty(report).map(|text| text + "\n");
+        told("report", path, text.map_err(io::Error::from).and_then(|text| put(path, &text)))
+    });
+    let picture = arguments.paths.as_ref().zip(paths);
+    let picture_written = picture.is_none_or(|(path, paths)| {
+        told("picture", path, put(path, &paths.picture(&title(arguments), &outcome(report))))
+    });
+    report_written && picture_written
+}
+
+/// `-` is standard output.
+fn put(path: &Path, text: &str) -> io::Result<()> {
+    if path == Path::new("-") { try_print(text) } else { std::fs::write(path, text) }
+}
+
+fn told(what: &str, path: &Path, result: io::Result<()>) -> bool {
+    if let Err(problem) = &result {
+        eprint(&format!("error: the {what} could not be written to `{}`: {problem}\n", path.display()));
+    }
+    result.is_ok()
+}
+
+/// The names of the composites.
+fn title(arguments: &RunArguments) -> String {
+    let names = arguments.fleet.files.iter().filter_map(|path| path.file_stem());
+    names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
+}

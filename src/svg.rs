@@ -1,0 +1,122 @@
+//! Writing SVG: a document grows element by element.
+
+use std::fmt::{self, Write};
+
+/// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from outside goes through
+/// [`escaped`].
+#[derive(Default)]
+pub(crate) struct Svg {
+    text: String,
+    open: Vec<&'static str>,
+}
+
+impl Svg {
+    /// Opens an element; those that follow are inside it until it is closed.
+    pub(crate) fn open(&mut self, name: &'static str, attributes: fmt::Arguments<'_>) {
+        self.begin(name, attributes);
+        self.text.push_str(">\n");
+        self.open.push(name);
+    }
+
+    /// Closes the element that was opened last.
+    pub(crate) fn close(&mut self) {
+        if let Some(name) = self.open.pop() {
+            self.indent();
+            let _ = writeln!(self.text, "</{name}>");
+        }
+    }
+
+    /// An element without content.
+    pub(crate) fn leaf(&mut self, name: &str, attributes: fmt::Arguments<'_>) {
+        self.begin(name, attributes);
+        self.text.push_str("/>\n");
+    }
+
+    /// An element that holds nothing but this text, which is escaped here.
+    pub(crate) fn element(&mut self, name: &str, attributes: fmt::Arguments<'_>, text: &str) {
+        self.begin(name, attributes);
+        let _ = writeln!(self.text, ">{}</{name}>", escaped(text));
+    }
+
+    /// The whole document, of this size, with a title for those who do not see it.
+    pub(crate) fn finish(mut self, width: f64, height: f64, title: &str) -> String {
+        while !self.open.is_empty() {
+            self.close();
+        }
+        let (width, height, title) = (number(width), number(height), escaped(title));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             role=\"img\">\n <title>{title}</title>\n{}</svg>\n",
+            self.text
+        )
+    }
+
+    fn begin(&mut self, name: &str, attributes: fmt::Arguments<'_>) {
+        self.indent();
+        let _ = write!(self.text, "<{name}");
+        let before = self.text.len();
+        let _ = write!(self.text, " {attributes}");
+        if self.text.len() == before + 1 {
+            self.text.pop();
+        }
+    }
+
+    fn indent(&mut self) {
+        for _ in 0..=self.open.len() {
+            self.text.push(' ');
+        }
+    }
+}
+
+/// A text as it may stand in an attribute or an element. What XML cannot hold becomes U+FFFD.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for sign in text.chars() {
+        match sign {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\t' | '\n' | '\r' => escaped.push(' '),
+            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => escaped.push('\u{fffd}'),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
+
+/// A length or a coordinate, to a tenth.
+pub(crate) fn number(value: f64) -> Number {
+    Number(value)
+}
+
+/// See [`number`].
+#[derive(Clone, Copy)]
+pub(crate) struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded = (self.0 * 10.0).round() / 10.0;
+        // Without a sign before zero.
+        write!(formatter, "{}", if rounded == 0.0 { 0.0 } else { rounded })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_document_is_well_formed_whatever_its_texts() {
+        let mut svg = Svg::default();
+        svg.open("g", format_args!(r#"id="{}""#, escaped("\"1\"\u{1}")));
+        svg.leaf("path", format_args!(r#"d="M{} {}""#, number(-0.01), number(1.25)));
+        svg.element("text", format_args!(""), "x < y");
+        assert_eq!(
+            svg.finish(10.04, 20.0, "A & <B>"),
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"10\" height=\"20\" viewBox=\"0 0 10 20\" role=\"img\">\n \
+             <title>A &amp; &lt;B&gt;</title>\n <g id=\"&quot;1&quot;\u{fffd}\">\n  <path d=\"M0 1.3\"/>\n  \
+             <text>x &lt; y</text>\n </g>\n</svg>\n"
+        );
+    }
+}
