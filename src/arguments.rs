@@ -32,6 +32,12 @@ Exit codes:
   1  the picture could not be written
   2  the file cannot be read or is no composite, or nothing says the format";
 
+const WHY_EXIT_CODES: &str = "\
+Exit codes:
+  0  answered, also when the answer is that the robot did nothing
+  2  the input is wrong: no such robot, a time after the end of the run, a file without journal or not whole; or the records that the whole
+     answer needs were overwritten";
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Check composites and run the fleet that they describe together
@@ -46,6 +52,9 @@ pub(crate) enum Command {
     /// Draw a composite: components, services, references, properties, wires, promotions, topics
     #[command(after_help = GRAPH_EXIT_CODES)]
     Graph(GraphArguments),
+    /// Tell why a robot did what it did, from the report or the journal of a run
+    #[command(after_help = WHY_EXIT_CODES)]
+    Why(WhyArguments),
     /// List the component classes, or describe one: properties, topics, services, references
     Components(ComponentsArguments),
 }
@@ -133,6 +142,10 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) paths: Option<PathBuf>,
 
+    /// Write every record of the journal to this file, as lines of JSON; the report holds the newest ones of each component
+    #[arg(long, value_name = "FILE")]
+    pub(crate) journal: Option<PathBuf>,
+
     /// Show nothing but errors
     #[arg(long, conflicts_with = "console")]
     pub(crate) quiet: bool,
@@ -213,6 +226,24 @@ pub(crate) enum Picture {
     Mermaid,
     /// A graph for Graphviz
     Dot,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WhyArguments {
+    /// The robot, or any other component: its path, an ending of its path that no other has, or its ID
+    pub(crate) robot: String,
+
+    /// Ask what it did last up to this time of the run, and not up to its end (a bare number is milliseconds; units us, ms, s, min, h)
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    pub(crate) at: Option<Duration>,
+
+    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input
+    #[arg(long, visible_alias = "journal", value_name = "FILE")]
+    pub(crate) report: PathBuf,
+
+    /// Text for people, or JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
 }
 
 #[derive(Debug, Args)]

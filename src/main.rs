@@ -19,6 +19,7 @@ mod run;
 mod summary;
 mod svg;
 mod watch;
+mod why;
 
 use std::process::ExitCode;
 
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Fmt(arguments) => fmt::fmt(&arguments),
         Command::Graph(arguments) => graph::graph(&arguments),
+        Command::Why(arguments) => why::why(&arguments),
         Command::Components(arguments) => components::components(&arguments),
     };
     ExitCode::from(exit as u8)

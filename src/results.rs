@@ -14,22 +14,34 @@ use crate::summary::outcome;
 /// Whether the files can be written, asked before a run that may last for days. What they hold stays until there is something new. Where one
 /// cannot, that has been told.
 pub(crate) fn writable(arguments: &RunArguments) -> bool {
-    let files = [("report", &arguments.report), ("picture", &arguments.paths)];
+    let files = [
+        ("report", "--report", &arguments.report),
+        ("picture", "--paths", &arguments.paths),
+        ("journal", "--journal", &arguments.journal),
+    ];
     let mut problems: Vec<String> = files
         .iter()
-        .filter_map(|(what, path)| Some((what, path.as_deref()?)))
+        .filter_map(|(what, _, path)| Some((what, path.as_deref()?)))
         .filter_map(|(what, path)| Some((what, path, try_open(path).err()?)))
         .map(|(what, path, problem)| {
             format!("error: the {what} cannot be written to `{}`: {problem}\n", path.display())
         })
         .collect();
-    if let (Some(report), Some(picture)) = (&arguments.report, &arguments.paths)
-        && report == picture
-    {
-        problems.push(format!(
-            "error: the report and the picture cannot both be written to `{}`\n  = help: give `--paths` another file\n",
-            report.display()
-        ));
+    for (place, (what, _, path)) in files.iter().enumerate() {
+        let Some(path) = path else { continue };
+        for (other, option, _) in
+            files[place + 1..].iter().filter(|(_, _, other)| other.as_ref() == Some(path))
+        {
+            problems.push(format!(
+                "error: the {what} and the {other} cannot both be written to `{}`\n  = help: give `{option}` another file\n",
+                path.display()
+            ));
+        }
+    }
+    if arguments.journal.as_deref() == Some(Path::new("-")) {
+        let problem =
+            "error: the journal cannot be written to standard output, which is for the lines of the run\n";
+        problems.push(format!("{problem}  = help: give `--journal` a file\n"));
     }
     if !problems.is_empty() {
         eprint(&format!(

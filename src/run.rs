@@ -78,6 +78,7 @@ fn settings(arguments: &RunArguments) -> Settings {
         timer_slack: arguments.timer_slack,
         realtime: arguments.realtime,
         grace: arguments.grace,
+        journal_file: arguments.journal.clone(),
         ..Settings::default()
     }
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use saoms_api::{Cause, Phase, Time};
 use serde::de::Error as _;
-use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
@@ -149,30 +148,35 @@ pub(super) fn in_order(mut entries: Vec<Entry>) -> Result<Vec<Entry>, Wrong> {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Section<T> {
+#[serde(bound(deserialize = "L: Deserialize<'de>, E: Deserialize<'de>"))]
+struct Section<L, E> {
     records: u64,
     #[serde(default)]
     overwritten: u64,
     #[serde(default)]
     lost: u64,
-    #[serde(default)]
-    loops: Vec<LoopCounts>,
-    entries: Vec<T>,
+    #[serde(default = "Vec::new")]
+    loops: Vec<L>,
+    entries: Vec<E>,
 }
 
 impl Serialize for Journal {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Journal { records, overwritten, lost, .. } = *self;
-        // A line for each, also where the rest is indented.
-        let entries: Result<Vec<Box<RawValue>>, _> = self.entries.iter().map(to_raw_value).collect();
-        let entries = entries.map_err(S::Error::custom)?;
-        Section { records, overwritten, lost, loops: self.loops.clone(), entries }.serialize(serializer)
+        let (loops, entries) = (in_lines(&self.loops)?, in_lines(&self.entries)?);
+        Section { records, overwritten, lost, loops, entries }.serialize(serializer)
     }
+}
+
+/// One line for each, also where the rest is indented.
+fn in_lines<T: Serialize, E: serde::ser::Error>(values: &[T]) -> Result<Vec<Box<RawValue>>, E> {
+    values.iter().map(|value| to_raw_value(value).map_err(E::custom)).collect()
 }
 
 impl<'de> Deserialize<'de> for Journal {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Journal, D::Error> {
-        let Section { records, overwritten, lost, loops, entries } = Section::deserialize(deserializer)?;
+        let Section::<LoopCounts, Entry> { records, overwritten, lost, loops, entries } =
+            Section::deserialize(deserializer)?;
         let entries = in_order(entries).map_err(D::Error::custom)?;
         Ok(Journal { records, overwritten, lost, loops, entries })
     }

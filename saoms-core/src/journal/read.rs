@@ -42,6 +42,8 @@ pub enum ReadError {
         /// What was found and what was expected.
         message: String,
     },
+    /// It is no JSON object at all.
+    Other,
     /// It is a report, but holds no journal.
     NoJournal,
 }
@@ -53,6 +55,9 @@ impl fmt::Display for ReadError {
             ReadError::Malformed { line, column, message } => {
                 write!(formatter, "line {line}, column {column}: {message}")
             }
+            ReadError::Other => formatter.write_str(
+                "this is neither a report of `saoms run --report` nor a file of `saoms run --journal`",
+            ),
             ReadError::NoJournal => formatter.write_str("this report holds no journal"),
         }
     }
@@ -93,6 +98,9 @@ struct End {
 /// # Errors
 /// The text is neither, or not whole.
 pub fn read(text: &str) -> Result<Document, ReadError> {
+    if !text.trim_start().starts_with('{') {
+        return Err(ReadError::Other);
+    }
     let first = text.lines().next().unwrap_or_default();
     match serde_json::from_str::<Value>(first) {
         Ok(value) if value.get("journal").is_some_and(Value::is_u64) => lines(text),
@@ -107,7 +115,7 @@ fn report(text: &str) -> Result<Document, ReadError> {
     Ok(Document { journal, components: report.components, end: Some(end), is_report: true })
 }
 
-const REPORT: &str = "expected a report of `saoms run --report`, or a file of `saoms run --journal`";
+const REPORT: &str = "this is no whole report of `saoms run --report`, and no file of `saoms run --journal`";
 
 fn lines(text: &str) -> Result<Document, ReadError> {
     let mut lines = text.lines().enumerate().peekable();
@@ -125,7 +133,7 @@ fn lines(text: &str) -> Result<Document, ReadError> {
         }
         if line.starts_with("{\"end\"") {
             let last: Last = serde_json::from_str(line)
-                .map_err(|error| malformed(number, &error, "expected the end of the journal"))?;
+                .map_err(|error| malformed(number, &error, "this is not how a journal ends"))?;
             end = Some(last.end);
             continue;
         }
@@ -133,7 +141,7 @@ fn lines(text: &str) -> Result<Document, ReadError> {
             Ok(entry) => entries.push(entry),
             // A run that goes on, or was killed, may have written half of its last line.
             Err(error) if error.is_eof() && lines.peek().is_none() && !text.ends_with('\n') => {}
-            Err(error) => return Err(malformed(number, &error, "expected a record of the journal")),
+            Err(error) => return Err(malformed(number, &error, "this is no record of a journal")),
         }
     }
     let entries = in_order(entries).map_err(|wrong| whole(1, wrong.to_string()))?;
@@ -150,11 +158,11 @@ fn lines(text: &str) -> Result<Document, ReadError> {
 }
 
 /// What the reader of JSON says, with the place in the whole text.
-fn malformed(lines_before: usize, error: &serde_json::Error, expected: &str) -> ReadError {
+fn malformed(lines_before: usize, error: &serde_json::Error, about: &str) -> ReadError {
     let text = error.to_string();
     let what = text.rfind(" at line ").map_or(text.as_str(), |end| &text[..end]);
     let line = lines_before + error.line().max(1);
-    ReadError::Malformed { line, column: error.column(), message: format!("{expected}: {what}") }
+    ReadError::Malformed { line, column: error.column(), message: format!("{about}: {what}") }
 }
 
 fn whole(line: usize, message: String) -> ReadError {

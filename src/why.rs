@@ -1,0 +1,148 @@
+//! `saoms why`: what led to what a robot did, from the journal of a run.
+
+mod answer;
+
+use std::io::Read;
+use std::path::Path;
+
+use saoms_api::{Time, format_duration};
+use saoms_core::diagnostic::nearest_few;
+use saoms_core::journal::{Document, Named, ReadError, Why, read};
+use serde_json::json;
+
+use crate::Exit;
+use crate::arguments::{Format, WhyArguments};
+use crate::output::{eprint, print};
+
+pub(crate) fn why(arguments: &WhyArguments) -> Exit {
+    match answer(arguments) {
+        Ok(Answer { text, lost: None }) => {
+            print(&text);
+            Exit::Done
+        }
+        Ok(Answer { text, lost: Some(lost) }) => {
+            print(&text);
+            eprint(&format!("error: {lost}\n"));
+            Exit::WrongInput
+        }
+        Err(problem) => {
+            eprint(&format!("error: {problem}\n"));
+            Exit::WrongInput
+        }
+    }
+}
+
+struct Answer {
+    text: String,
+    /// Why it is not the whole answer.
+    lost: Option<String>,
+}
+
+fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
+    let path = arguments.report.as_path();
+    let document = document(path)?;
+    let robot = find(&document.components, &arguments.robot)?;
+    let at = arguments.at.map(|at| Time::START + at);
+    if let (Some(asked), Some(at), Some(end)) = (arguments.at, at, document.end)
+        && at > end
+    {
+        let asked = format_duration(asked);
+        return Err(format!("the run had ended at {end}, before {asked}: ask for a time up to then"));
+    }
+    let why = document.journal.why(&robot.name, at).map_err(|error| {
+        format!("what led to what `{}` did cannot be told: {error}. {}", robot.name, advice(&document))
+    })?;
+    let missing = why.chains.iter().find_map(|chain| chain.missing);
+    let lost = missing.map(|missing| {
+        let how = if document.is_report { "overwritten" } else { "not written to the file" };
+        format!("record {}, which led to this, was {how}. {}", missing.0, advice(&document))
+    });
+    let text = match arguments.format {
+        Format::Human => answer::human(&robot.name, at, &why, &document),
+        Format::Json => machine(&robot.name, at, &why),
+    };
+    Ok(Answer { text, lost })
+}
+
+/// What to do about records that are not there.
+fn advice(document: &Document) -> String {
+    if document.is_report {
+        "A report holds the newest records of each component: run with `--journal FILE` to keep all of them"
+            .to_owned()
+    } else {
+        format!("Of this run {} records are not in the file", document.journal.lost)
+    }
+}
+
+fn document(path: &Path) -> Result<Document, String> {
+    let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
+    let bytes = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        std::fs::read(path)
+    };
+    let bytes = bytes.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        format!("`{name}` is not text: byte {} is no UTF-8", error.utf8_error().valid_up_to() + 1)
+    })?;
+    read(&text).map_err(|error| match error {
+        ReadError::NoJournal => {
+            format!("`{name}` holds no journal: write the report anew with `saoms run --report FILE`")
+        }
+        ReadError::Other => format!("`{name}` cannot be read: {error}"),
+        ReadError::Malformed { .. } => format!("`{name}`, {error}"),
+    })
+}
+
+/// The component that is meant: by its path, its ID, or an ending of its path that no other has.
+fn find<'a>(components: &'a [Named], robot: &str) -> Result<&'a Named, String> {
+    let is_id = |one: &Named| one.id.as_deref() == Some(robot);
+    if let Some(found) = components.iter().find(|one| one.name == robot) {
+        return Ok(found);
+    }
+    let ids: Vec<&Named> = components.iter().filter(|one| is_id(one)).collect();
+    let found = if ids.is_empty() && !robot.is_empty() {
+        components.iter().filter(|one| one.name.ends_with(robot)).collect()
+    } else {
+        ids
+    };
+    match found[..] {
+        [one] => Ok(one),
+        [] => Err(unknown(components, robot)),
+        ref several => {
+            let names: Vec<String> = several.iter().map(|one| format!("`{}`", one.name)).collect();
+            Err(format!("`{robot}` can be any of {}: say more of its path", names.join(", ")))
+        }
+    }
+}
+
+fn unknown(components: &[Named], robot: &str) -> String {
+    let names = components.iter().map(|one| one.name.as_str());
+    let ids = components.iter().filter_map(|one| one.id.as_deref());
+    let endings = components.iter().filter_map(|one| one.name.rsplit('/').next());
+    let like = nearest_few(robot, names.clone().chain(ids).chain(endings), 3);
+    let quoted =
+        |names: Vec<&str>| names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let help = match like[..] {
+        [] if components.is_empty() => "it had none at all".to_owned(),
+        [] if components.len() > 12 => {
+            format!("its {} components begin with {}", components.len(), quoted(names.take(12).collect()))
+        }
+        [] => format!("its components are {}", quoted(names.collect())),
+        _ => format!("did you mean {}?", quoted(like)),
+    };
+    format!("the fleet of this run had no component `{robot}`: {help}")
+}
+
+fn machine(robot: &str, at: Option<Time>, why: &Why<'_>) -> String {
+    let asked = at.map(Time::as_secs_f64);
+    let json = json!({
+        "component": robot,
+        "asked_s": asked,
+        "time_s": why.time.map(Time::as_secs_f64),
+        "chains": why.chains,
+        "knowledge": why.knowledge,
+    });
+    format!("{json:#}\n")
+}

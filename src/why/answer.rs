@@ -1,0 +1,120 @@
+//! The answer for people.
+
+use std::fmt::Write;
+
+use saoms_api::{Phase, Time};
+use saoms_core::journal::{Chain, Document, Entry, Why};
+
+/// How many reasons are shown; of a longer chain, the first and the last ones.
+const SHOWN: usize = 40;
+/// How many of the last ones.
+const LAST: usize = 8;
+
+/// What was done, what led to it, and what was known.
+pub(super) fn human(robot: &str, asked: Option<Time>, why: &Why<'_>, document: &Document) -> String {
+    let Some(time) = why.time else { return nothing(robot, asked, document) };
+    let mut text = match asked.filter(|asked| *asked != time) {
+        Some(asked) => {
+            format!("What {robot} did last up to {asked}, at {time}, and what led to it:\n")
+        }
+        None => format!("What {robot} did at {time}, and what led to it:\n"),
+    };
+    for chain in &why.chains {
+        text.push('\n');
+        text.push_str(&table(chain));
+    }
+    if !why.knowledge.is_empty() {
+        let when = asked.or(document.end).unwrap_or(time);
+        let _ = writeln!(text, "\nWhat it knew at {when}:\n");
+        let shown: Vec<(String, String)> = why
+            .knowledge
+            .iter()
+            .map(|known| {
+                let since = known.since.map_or("from before".to_owned(), |since| format!("since {since}"));
+                (known.shown(), since)
+            })
+            .collect();
+        let names = why.knowledge.iter().map(|known| known.entry.chars().count()).max().unwrap_or(0);
+        let values = shown.iter().map(|(value, _)| value.chars().count()).max().unwrap_or(0);
+        for (known, (value, since)) in why.knowledge.iter().zip(&shown) {
+            let _ = writeln!(text, "  {:names$}  {value:values$}  {since}", known.entry);
+        }
+    }
+    text
+}
+
+fn nothing(robot: &str, asked: Option<Time>, document: &Document) -> String {
+    let own = document.journal.of(robot);
+    match (asked, own.first()) {
+        (Some(asked), Some(first)) => {
+            format!("{robot} had done nothing by {asked}: its journal begins at {}\n", first.time())
+        }
+        _ => {
+            format!("{robot} wrote nothing to the journal in this run: no loop of it found a reason to act\n")
+        }
+    }
+}
+
+/// One line in the table.
+struct Row<'a> {
+    number: String,
+    entry: Option<&'a Entry>,
+    text: String,
+}
+
+fn table(chain: &Chain<'_>) -> String {
+    let mut rows: Vec<Row<'_>> = Vec::new();
+    for (place, act) in chain.acts.iter().enumerate() {
+        let number = if place == 0 { "1".to_owned() } else { String::new() };
+        rows.push(Row { number, entry: Some(act), text: act.text() });
+    }
+    let elided = chain.reasons.len().saturating_sub(SHOWN);
+    let kept = SHOWN - LAST;
+    for (place, reason) in chain.reasons.iter().enumerate() {
+        if elided > 0 && place == kept {
+            let text = format!("... {elided} more, all of them with --format json ...");
+            rows.push(Row { number: String::new(), entry: None, text });
+        }
+        if elided == 0 || place < kept || place >= kept + elided {
+            rows.push(Row { number: (place + 2).to_string(), entry: Some(reason), text: reason.text() });
+        }
+    }
+    if chain.missing.is_some() {
+        let text = "... what led to this is not in the journal any more ...".to_owned();
+        rows.push(Row { number: String::new(), entry: None, text });
+    }
+    let width = |cell: &dyn Fn(&Row<'_>) -> usize| rows.iter().map(cell).max().unwrap_or(0);
+    let number = width(&|row| row.number.len());
+    let time = width(&|row| row.entry.map_or(0, |entry| entry.time().to_string().len()));
+    let component = width(&|row| row.entry.map_or(0, |entry| entry.component().chars().count()));
+    let by = width(&|row| row.entry.map_or(0, |entry| loop_of(entry).chars().count()));
+    let mut text = String::new();
+    for row in &rows {
+        let _ = match row.entry {
+            Some(entry) => writeln!(
+                text,
+                "  {:>number$}  {:>time$}  {:component$}  {:by$}  {:8}  {}",
+                row.number,
+                entry.time().to_string(),
+                entry.component(),
+                loop_of(entry),
+                phase(entry.phase()),
+                row.text
+            ),
+            None => writeln!(text, "  {:>number$}  {}", "", row.text),
+        };
+    }
+    text
+}
+
+fn loop_of(entry: &Entry) -> &str {
+    entry.loop_name().unwrap_or("-")
+}
+
+fn phase(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Symptom => "symptom",
+        Phase::Decision => "decision",
+        Phase::Effect => "effect",
+    }
+}
