@@ -7,11 +7,12 @@ use saoms_api::{
     Properties, Publisher, Record, Registration, Subscription, Topic, record,
 };
 use saoms_core::assembly::Assembly;
-use saoms_core::journal::Journal;
+use saoms_core::journal::{Journal, LoopCounts, read};
 use saoms_core::registry::Registry;
-use saoms_core::report::RunReport;
+use saoms_core::report::{RunReport, Status};
 use saoms_core::schedule::{Fleet, Quiet, Settings};
 
+use crate::actor::{Echo, EchoReference};
 use crate::fleet::{assembly_of, simulated, unindent};
 
 /// A piece of luggage that waits.
@@ -249,11 +250,60 @@ impl Component for Robot {
     }
 }
 
+/// Asks another.
+#[derive(Class)]
+#[class(name = "asker", periodic, reference("peer": Echo, optional), reference("task": saoms_api::TaskInterface, optional))]
+struct Asker {
+    peer: EchoReference,
+}
+
+impl Component for Asker {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Asker { peer: EchoReference::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.peer = context.reference("peer")?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.symptom(record!("does not know"));
+        context.decision(record!("asks"));
+        self.peer.echo(context, String::new())?;
+        Ok(())
+    }
+}
+
+/// Answers.
+#[derive(Class)]
+#[class(name = "helper", passive, service("echo": Echo))]
+struct Helper;
+
+impl Component for Helper {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Helper)
+    }
+}
+
+impl Echo for Helper {
+    fn echo(&mut self, context: &mut Context<'_>, text: String) -> Result<String, Failure> {
+        context.effect(record!("answers"));
+        Ok(text)
+    }
+}
+
 fn fleet(text: &str) -> Assembly {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Gate>()).unwrap();
     registry.add(Registration::of::<Relay>()).unwrap();
     registry.add(Registration::of::<Robot>()).unwrap();
+    registry.add(Registration::of::<Asker>()).unwrap();
+    registry.add(Registration::of::<Helper>()).unwrap();
     assembly_of(text, &registry)
 }
 
@@ -289,4 +339,184 @@ fn a_chain_leads_through_messages_from_component_to_component() {
             "
         ) + "\n"
     );
+}
+
+#[test]
+fn who_passes_a_message_on_keeps_the_chain_together() {
+    let report = run(
+        "Gate gate period=100 every=4 rename=REQUESTS/FIRST
+         Relay relay period=100 delay=10
+         Robot robot period=100 delay=50",
+        simulated(200),
+    );
+    let heard = report.journal.of("Robot").symptoms().last().unwrap();
+    assert_eq!(report.journal.reasons(heard).0[0].text(), "piece 1 waits at (3,1)");
+}
+
+#[test]
+fn a_loop_that_goes_on_as_before_writes_nothing_new() {
+    let report = run(PAIR, simulated(10_000));
+    let robot = report.journal.of("Robot").of_loop("Jobs");
+    // 25 pieces in 100 executions: each is heard of, decided on and begun once.
+    let count = |selection: saoms_core::journal::Selection<'_>| selection.len();
+    assert_eq!(count(robot.clone().symptoms()), 25);
+    assert_eq!(count(robot.clone().decisions()), 25);
+    assert_eq!(count(robot.clone().effects().with("goes on")), 25);
+    assert_eq!(count(robot.changes("told")), 25);
+}
+
+#[test]
+fn another_decision_for_the_same_reason_is_new() {
+    // The battery is empty from execution 3 on: what the loop for jobs finds stays, what it decides does not.
+    let report = run(
+        "Gate gate period=100 every=4
+         Robot robot period=100 delay=50 charge=4",
+        simulated(700),
+    );
+    assert_eq!(
+        report.journal.of("Robot").to_string(),
+        unindent(
+            "0.150 s Robot Battery symptom: 2 left
+             0.150 s Robot Battery decision: would charge
+             0.150 s Robot Jobs symptom: hears of piece 1
+             0.150 s Robot Jobs decision: takes it
+             0.150 s Robot Jobs effect: goes on
+             0.150 s Robot Jobs effect: told: 0 -> 1
+             0.250 s Robot Battery symptom: 1 left
+             0.250 s Robot Battery decision: would charge
+             0.350 s Robot Battery symptom: 0 left
+             0.350 s Robot Battery decision: would charge
+             0.450 s Robot Battery symptom: -1 left
+             0.450 s Robot Battery decision: would charge
+             0.550 s Robot Battery symptom: -2 left
+             0.550 s Robot Battery decision: would charge
+             0.550 s Robot Jobs symptom: hears of piece 2
+             0.650 s Robot Battery symptom: -3 left
+             0.650 s Robot Battery decision: would charge"
+        ) + "\n"
+    );
+    let counts = |name: Option<&str>, symptoms, decisions, effects, without_effect| LoopCounts {
+        component: if name.is_some() { "Robot" } else { "Gate" }.to_owned(),
+        loop_name: name.map(str::to_owned),
+        symptoms,
+        decisions,
+        effects,
+        without_effect,
+    };
+    assert_eq!(
+        report.journal.loops,
+        [counts(None, 2, 0, 1, 0), counts(Some("Battery"), 6, 6, 0, 6), counts(Some("Jobs"), 2, 1, 2, 0)]
+    );
+}
+
+#[test]
+fn what_was_decided_before_a_failure_is_kept() {
+    let report = run(
+        "Gate gate period=100 every=4
+         Robot robot period=100 delay=50 fails=1 restart=50/1",
+        simulated(900),
+    );
+    assert_eq!(report.outcome.status, Status::Failed);
+    let texts = report.journal.of("Robot").decisions().texts();
+    // The first instance fails when it has decided; the second one, which knows nothing of that, in its second execution.
+    assert_eq!(texts, ["takes it"]);
+    // Its message never left.
+    assert!(report.journal.of("Gate").effects().is_empty());
+}
+
+#[test]
+fn the_same_seed_gives_the_same_journal_and_another_journal_another_digest() {
+    let one = run(PAIR, simulated(3000));
+    let same = run(PAIR, simulated(3000));
+    assert_eq!(one.journal, same.journal);
+    assert_eq!(one.trace_hash, same.trace_hash);
+    // This robot does and says the same, but its battery loop has something to tell.
+    let other = run(&PAIR.replace("delay=50", "delay=50 charge=32"), simulated(3000));
+    assert_ne!(one.trace_hash, other.trace_hash);
+}
+
+#[test]
+fn the_oldest_records_of_each_component_are_overwritten_and_counted() {
+    let settings = Settings { journal: 0, ..simulated(100_000) };
+    let report = run(&PAIR.replace("every=4", "every=2"), settings);
+    let journal = &report.journal;
+    assert!(journal.overwritten > 1000);
+    assert_eq!(journal.entries().len() as u64 + journal.overwritten, journal.records);
+    assert_eq!(journal.loops.iter().map(LoopCounts::records).sum::<u64>(), journal.records);
+    for component in ["Gate", "Robot"] {
+        let left = journal.of(component);
+        assert!((65..=128).contains(&left.len()), "{component}: {}", left.len());
+        assert_eq!(
+            left.last().map(|entry| entry.time() > saoms_api::Time::from_nanos(99_000_000_000)),
+            Some(true)
+        );
+    }
+    let early = saoms_api::Time::from_nanos(1_000_000_000);
+    let error = journal.why("Robot", Some(early)).unwrap_err();
+    assert!(
+        error.to_string().starts_with("what it did then was overwritten: its journal reaches back to "),
+        "{error}"
+    );
+}
+
+/// A folder and the path of a file in it.
+fn place() -> (tempfile::TempDir, std::path::PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal.jsonl");
+    (folder, path)
+}
+
+#[test]
+fn the_file_holds_every_record_in_the_form_of_the_report() {
+    let (_folder, path) = place();
+    let settings = Settings { journal: 0, journal_file: Some(path.clone()), ..simulated(100_000) };
+    let text = PAIR.replace("every=4", "every=2");
+    let report = run(&text, settings);
+    let whole = run(&text, Settings { journal: 1_000_000, ..simulated(100_000) });
+    let document = read(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    assert_eq!(document.journal.entries(), whole.journal.entries());
+    assert_eq!(document.journal.records, report.journal.records);
+    assert_eq!((document.journal.lost, report.journal.lost), (0, 0));
+    assert_eq!(document.end, Some(saoms_api::Time::from_nanos(100_000_000_000)));
+    let names: Vec<_> =
+        document.components.iter().map(|one| (one.name.as_str(), one.id.as_deref())).collect();
+    assert_eq!(names, [("Gate", Some("Gate")), ("Robot", Some("Robot"))]);
+    let report = serde_json::to_string_pretty(&whole).unwrap();
+    let document = read(&report).unwrap();
+    assert_eq!(document.journal, whole.journal);
+    // One line for each record, however the rest is laid out.
+    assert!(report.lines().count() < whole.journal.entries().len() + 100);
+}
+
+#[test]
+fn the_file_is_whole_in_real_time_too() {
+    let (_folder, path) = place();
+    let settings = Settings { journal_file: Some(path.clone()), ..crate::fleet::real(60) };
+    let report = run(&PAIR.replace("period=100", "period=2").replace("delay=50", "delay=1"), settings);
+    let document = read(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    assert_eq!(document.journal.entries(), report.journal.entries());
+    assert!(report.journal.records > 10, "{}", report.journal.records);
+}
+
+#[test]
+fn a_file_that_takes_nothing_fails_the_run_and_says_why() {
+    let full = std::path::PathBuf::from("/dev/full");
+    let settings = Settings { journal_file: Some(full), ..simulated(1000) };
+    let error = Fleet::start(fleet(PAIR), settings, Arc::new(Quiet)).unwrap_err();
+    assert_eq!(error.to_string(), "the journal cannot be written: No space left on device (os error 28)");
+}
+
+#[test]
+fn a_call_follows_from_what_its_caller_does() {
+    let report = run(
+        "Asker asker period=100 peer=Helper
+         Helper helper",
+        simulated(100),
+    );
+    assert_eq!(
+        records(&report.journal),
+        "1 [0.000 s Asker - symptom: does not know]\n2 <- 1 [0.000 s Asker - decision: asks]\n\
+         3 <- 2 [0.000 s Helper - effect: answers]\n"
+    );
+    assert_eq!(report.journal.loops[0].without_effect, 0, "the call is what followed");
 }
