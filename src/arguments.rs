@@ -46,6 +46,9 @@ pub(crate) enum Command {
     /// Check composites without running anything
     #[command(after_help = EXIT_CODES)]
     Check(CheckArguments),
+    /// Print the one composite that is left when includes, inner composites, property sources and wires are resolved
+    #[command(after_help = EXIT_CODES)]
+    Expand(ExpandArguments),
     /// Write composites in one layout: indentation, attributes, blank lines; order, comments and text stay
     #[command(after_help = FMT_EXIT_CODES)]
     Fmt(FmtArguments),
@@ -111,6 +114,12 @@ pub(crate) struct CheckArguments {
     /// Take classes that this program does not know as given, and implementations of other kinds: check all that can be checked without them
     #[arg(long)]
     pub(crate) assume_classes: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExpandArguments {
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
 }
 
 #[derive(Debug, Args)]

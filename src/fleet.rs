@@ -6,7 +6,7 @@ use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::load::{load_file, load_named, read, read_values};
-use saoms_core::model::Contribution;
+use saoms_core::model::{Composite, Contribution};
 use saoms_core::source::Sources;
 
 use crate::Exit;
@@ -17,6 +17,7 @@ use crate::plugins::registry;
 pub(crate) struct Checked {
     /// What is to run; absent where there was an error.
     pub(crate) assembly: Option<Assembly>,
+    contribution: Contribution,
     sources: Sources,
     diagnostics: Vec<Diagnostic>,
 }
@@ -45,10 +46,15 @@ pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Resul
     load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
     let options = Options { settings, assume_classes };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
-    Ok(Checked { assembly, sources, diagnostics: diagnostics.into_sorted() })
+    Ok(Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() })
 }
 
 impl Checked {
+    /// The first composite that was asked for.
+    pub(crate) fn first(&self) -> Option<&Composite> {
+        self.contribution.asked_for().first()
+    }
+
     /// The diagnostics of at least this severity, as people read them.
     pub(crate) fn human(&self, least: Severity) -> String {
         let shown: Vec<Diagnostic> =

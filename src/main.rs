@@ -8,6 +8,7 @@ mod arguments;
 mod check;
 mod components;
 mod console;
+mod expand;
 mod fleet;
 mod fmt;
 mod graph;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Expand(arguments) => expand::expand(&arguments),
         Command::Fmt(arguments) => fmt::fmt(&arguments),
         Command::Graph(arguments) => graph::graph(&arguments),
         Command::Why(arguments) => why::why(&arguments),

@@ -53,7 +53,7 @@ impl Fleet {
 
     /// What the checker finds, a line each: `error S3001 5:32 there is no class ...`; empty where all is well.
     pub fn diagnostics(&self) -> String {
-        let (_, sources, diagnostics) = self.checked();
+        let (_, sources, diagnostics, _) = self.checked();
         let mut text = String::new();
         for one in &diagnostics {
             let place = sources.get(one.location.file).range(one.location.span).start;
@@ -61,6 +61,19 @@ impl Fleet {
             let _ = writeln!(text, "{severity} {code} {}:{} {}", place.line, place.column, one.message);
         }
         text
+    }
+
+    /// The one composite that is left when all is resolved, as `saoms expand` writes it: what a test can hold an assembly to.
+    ///
+    /// # Panics
+    /// With all diagnostics when the composites have errors.
+    #[expect(clippy::panic, reason = "a test whose fleet has errors has failed")]
+    pub fn expanded(&self) -> String {
+        let (assembly, sources, diagnostics, contribution) = self.checked();
+        match (assembly, contribution.asked_for().first()) {
+            (Some(assembly), Some(first)) => saoms_core::assembly::expanded(&assembly, first),
+            _ => panic!("{}", human(&diagnostics, &sources, false)),
+        }
     }
 
     /// Runs the fleet in virtual time, until it ends by itself or the time is over. Same seed, same run.
@@ -77,7 +90,7 @@ impl Fleet {
     /// As [`run`](Fleet::run).
     #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
     pub fn run_with(&self, seed: u64, limit: Duration, events: Arc<dyn Events>) -> RunReport {
-        let (assembly, sources, diagnostics) = self.checked();
+        let (assembly, sources, diagnostics, _) = self.checked();
         let Some(assembly) = assembly else { panic!("{}", human(&diagnostics, &sources, false)) };
         let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
         match saoms_core::schedule::Fleet::start(assembly, settings, events) {
@@ -87,7 +100,7 @@ impl Fleet {
     }
 
     #[expect(clippy::panic, reason = "two linked classes of one name are a fault of the test's own build")]
-    fn checked(&self) -> (Option<Assembly>, Sources, Vec<Diagnostic>) {
+    fn checked(&self) -> (Option<Assembly>, Sources, Vec<Diagnostic>, Contribution) {
         let registry = Registry::linked().unwrap_or_else(|error| panic!("{error}"));
         let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
         let mut settings = Vec::new();
@@ -111,6 +124,6 @@ impl Fleet {
         load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
         let options = Options::with_settings(settings);
         let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
-        (assembly, sources, diagnostics.into_sorted())
+        (assembly, sources, diagnostics.into_sorted(), contribution)
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
+mod expanded;
 mod task;
 
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use std::time::Duration;
 
 use saoms_api::{PropertyField, PropertyValue};
 
+pub use expanded::expanded;
 pub use task::{RestartPolicy, TaskProperties};
 
 use crate::registry::{Class, LoopClass};

@@ -7,6 +7,7 @@ use super::fleet::{Fleet, Kind, Member, Scope, Unit};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Component, Composite, Contribution, Include, Link, Missing, Naming};
+use crate::source::Location;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
 const MOST_MEMBERS: usize = 1_000_000;
@@ -40,7 +41,27 @@ pub(super) fn unfold<'a>(
             unfolding.walk(report);
         }
     }
-    unfolding.fleet
+    let fleet = unfolding.fleet;
+    paths(&fleet, report);
+    fleet
+}
+
+/// Checks that no two components have one path. Where nobody gives one, names alone see to that.
+fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    if fleet.members.iter().all(|member| member.component.path.is_none()) {
+        return;
+    }
+    let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());
+    for member in fleet.members.iter().filter(|member| !member.component.name.is_empty()) {
+        let given = member.component.path.as_deref();
+        let place = given.unwrap_or(&member.component.name).location;
+        let earlier = first.entry(member.path()).or_insert(place);
+        if *earlier != place && given.is_some() {
+            let message = format!("there are two components of the path {}", quoted(member.path()));
+            let one = Diagnostic::new(&codes::COMPONENT_REPEATED, place, message);
+            report.push(one.label(*earlier, "the first").help("give each its own path, or none"));
+        }
+    }
 }
 
 fn repeated_composites(composites: &[Composite], report: &mut Report<'_>) {
@@ -221,8 +242,11 @@ impl<'a> Unfolding<'a> {
         let index = self.fleet.members.len();
         let mut member = Member::new(composite, unit, scope, component);
         member.autowire = autowire;
-        if let Some(owner) = self.fleet.scopes[scope].owner {
-            member.set_path(format!("{}/{}", self.fleet.members[owner].path(), component.name));
+        let own = component.path.as_deref().unwrap_or(&component.name);
+        match self.fleet.scopes[scope].owner {
+            Some(owner) => member.set_path(format!("{}/{own}", self.fleet.members[owner].path())),
+            None if component.path.is_some() => member.set_path(own.to_string()),
+            None => {}
         }
         self.fleet.members.push(member);
         self.fleet.scopes[scope].members.push(index);

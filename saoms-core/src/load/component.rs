@@ -7,7 +7,7 @@ use super::vocabulary::{
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Component, Implementation, ImplementationKind, Origin};
+use crate::model::{Component, Implementation, ImplementationKind, Origin, SAOMS_NAMESPACE};
 use crate::source::Text;
 use crate::xml::Element;
 
@@ -18,6 +18,7 @@ impl Loader<'_> {
         let mut component = Component {
             origin: Origin::of(element),
             name: self.name(element),
+            path: self.path(element),
             autowire: self.boolean(element, "autowire"),
             constraining_type: self.optional(element, "constrainingType").map(Box::new),
             implementation: None,
@@ -73,6 +74,20 @@ impl Loader<'_> {
             self.missing_implementation(element, &component.name);
         }
         component
+    }
+
+    /// The path that a component of an expanded composite keeps.
+    fn path(&mut self, element: Element<'_>) -> Option<Box<Text>> {
+        let attribute = element.attribute_in(SAOMS_NAMESPACE, "path")?;
+        let path = attribute.trimmed();
+        if path.split('/').any(|name| name.is_empty() || name.contains(char::is_whitespace)) {
+            let message = format!("{} is no path of a component", quoted(&path));
+            let location = if path.is_empty() { attribute.location() } else { path.location };
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, location, message);
+            self.report(one.help("a path is names with `/` between them, as `hall/Robot001`"));
+            return None;
+        }
+        Some(Box::new(path))
     }
 
     /// `None` for an implementation of SCA, or of SAOMS, that does not exist; it is reported.

@@ -262,6 +262,9 @@ pub(super) const VARIANTS: &[(&str, &[&str])] = &[
     ("operationSelector.", &["operationSelector.jmsDefault", "operationSelector.jmsdefault"]),
 ];
 
+/// The attributes that SAOMS adds in its own namespace, each with the element that has it.
+pub(super) const OWN_ATTRIBUTES: &[(&str, &str)] = &[("component", "path")];
+
 /// The elements that SAOMS adds in its own namespace.
 pub(super) const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust"];
 

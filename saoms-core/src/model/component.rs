@@ -13,6 +13,8 @@ pub struct Component {
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
+    /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
+    pub path: Option<Box<Text>>,
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
     /// `constrainingType` (1.0).

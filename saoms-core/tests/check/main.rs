@@ -5,6 +5,7 @@
 mod assemblies;
 mod classes;
 mod corpus;
+mod expanded;
 mod files;
 mod findings;
 mod mutations;

@@ -1,0 +1,31 @@
+//! `saoms expand`: shows what is left of composites when all is resolved.
+
+use saoms_core::assembly::expanded;
+use saoms_core::diagnostic::Severity;
+use saoms_core::format::{WIDTH, format};
+use saoms_core::source::FileId;
+use saoms_core::xml;
+
+use crate::Exit;
+use crate::arguments::ExpandArguments;
+use crate::fleet::checked;
+use crate::output::{counted, eprint, print};
+
+pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
+    let outcome = match checked(&arguments.fleet, false) {
+        Ok(outcome) => outcome,
+        Err(exit) => return exit,
+    };
+    eprint(&outcome.human(Severity::Error));
+    let (Some(assembly), Some(first)) = (&outcome.assembly, outcome.first()) else {
+        eprint(&format!("\n{}: nothing to expand\n", counted(outcome.count(Severity::Error), "error")));
+        return Exit::WrongInput;
+    };
+    let text = expanded(assembly, first);
+    // In the layout of `saoms fmt`, so that what it writes needs no formatting.
+    match xml::parse(FileId(0), &text.as_str().into()).document {
+        Some(document) => print(&format(&document, WIDTH)),
+        None => print(&text),
+    }
+    Exit::Done
+}
