@@ -15,8 +15,8 @@ use super::MasterRobotKnowledge;
 #[looping(
     name = "saoms.master.AwakeAsleepMS",
     knowledge = MasterRobotKnowledge,
-    senses("pieces_per_robot", "counter", "robots", "asleep"),
-    effects("on_shift"),
+    senses("piecesPerRobot", "counter", "robots", "asleep"),
+    effects("onShift"),
     subscribes(EXCEPTIONAL_EVENT),
     publishes(ROBOT_STATE)
 )]

@@ -4,10 +4,9 @@ mod awake_asleep;
 mod crew;
 mod robot_list;
 
-use saoms_api::{Class, Component, Context, DynLoop, Failure, Loop, Loops, Properties};
+use saoms_api::{Class, Component, Context, Failure, Loops, Properties};
 
 use crate::console::Timestamp;
-use crate::messages::{EXCEPTIONAL_EVENT, ROBOT_LIST, ROBOT_STATE};
 
 pub use awake_asleep::AwakeAsleepMS;
 pub use crew::{MasterRobotKnowledge, Shift};
@@ -32,8 +31,8 @@ pub struct MasterRobotProperties {
 #[class(
     name = "saoms.MasterRobot",
     periodic,
-    subscribes(ROBOT_LIST, EXCEPTIONAL_EVENT),
-    publishes(ROBOT_STATE),
+    knowledge = MasterRobotKnowledge,
+    loops(RobotListMS, AwakeAsleepMS),
     also("unibg.saoms.MasterRobotManagingSystem")
 )]
 pub struct MasterRobot {
@@ -50,11 +49,7 @@ impl Component for MasterRobot {
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let loops: [(&str, Box<dyn DynLoop>); 2] = [
-            ("RobotListMS", Box::new(RobotListMS::new(())?)),
-            ("AwakeAsleepMS", Box::new(AwakeAsleepMS::new(())?)),
-        ];
-        self.loops = Loops::of(loops.map(|(name, instance)| (name.to_owned(), instance)));
+        self.loops = context.loops()?;
         let now = Timestamp::now(context);
         context.console(format_args!("MasterRobotManagingSystem starts at {now}"));
         self.loops.initialize(&mut self.knowledge, context)
