@@ -2,9 +2,9 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::{
-    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, NamedLoops, Phase, Publisher,
-    Record, Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, TopicDeclaration,
-    Value, Work,
+    CallError, Cause, Chance, DynLoop, Failure, Header, Loops, Message, Messages, NamedLoops, Phase,
+    PropertyValue, Publisher, Record, Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time,
+    Topic, TopicDeclaration, Value, Work,
 };
 
 /// How much a log line matters.
@@ -363,6 +363,17 @@ pub trait Host {
     /// The journal calls the loop at this place by this name.
     fn name_loop(&mut self, place: u32, name: &str) {
         let _ = (place, name);
+    }
+    /// For a host across a boundary, which constructs what it has itself: name, class and values of each of the component's loops.
+    fn chosen_loops(&mut self, visit: &mut dyn FnMut(&str, &str, &[(String, PropertyValue)])) {
+        let _ = visit;
+    }
+    /// Constructs the loop at this place of [`chosen_loops`](Host::chosen_loops).
+    ///
+    /// # Errors
+    /// It refuses its properties, or there is none.
+    fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
+        Err(Failure::new(format!("there is no loop {place}")))
     }
     /// The loop at this place acts from now on, or none.
     fn enter_loop(&mut self, place: Option<u32>);

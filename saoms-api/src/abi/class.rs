@@ -4,7 +4,7 @@ use crate::{Class, Properties};
 
 use super::component::Instance;
 use super::guard::guarded;
-use super::{Bytes, ComponentTable, LoopTable, PropertyView, Sink, Status, VERSION};
+use super::{Bytes, ComponentTable, LoopClassTable, PropertyView, Sink, Status, VERSION};
 
 /// A class: how to make components of it, and their functions.
 #[repr(C)]
@@ -60,7 +60,7 @@ pub struct PluginTable {
     /// How many there are.
     pub class_count: usize,
     /// The loops.
-    pub loops: *const LoopTable,
+    pub loops: *const LoopClassTable,
     /// How many there are.
     pub loop_count: usize,
 }
@@ -74,7 +74,7 @@ impl PluginTable {
     pub const fn new(
         metadata: &'static [u8],
         classes: &'static [ClassTable],
-        loops: &'static [LoopTable],
+        loops: &'static [LoopClassTable],
     ) -> PluginTable {
         PluginTable {
             size: size_of::<PluginTable>(),

@@ -7,9 +7,13 @@ use crate::{
     TopicKind, Work,
 };
 
+use super::data::PropertyViews;
 use super::guard::{guarded, guarded_call, guarded_value};
+use super::looping::give_loop;
 use super::service::BytesCall;
-use super::{Bytes, Inbox, MessageView, RecordView, ReportView, Sink, Status, ValueView};
+use super::{
+    Bytes, Inbox, LoopInstance, MessageView, PropertyView, RecordView, ReportView, Sink, Status, ValueView,
+};
 
 /// What a component is lent for the time of a call: the functions of its context, and what arrived.
 #[repr(C)]
@@ -80,6 +84,11 @@ pub struct HostFunctions {
     pub count: unsafe extern "C" fn(*mut c_void, Bytes, i64),
     /// 0: there is work left, 1: the work is done.
     pub vote: unsafe extern "C" fn(*mut c_void, u32),
+    /// Shows each of the component's loops: its name, its class, its values and their number. The first pointer of the visitor is the second
+    /// argument.
+    pub chosen_loops: unsafe extern "C" fn(*mut c_void, *mut c_void, LoopVisitor),
+    /// Makes the loop at this place of `chosen_loops`, of whatever library it is, and gives it away.
+    pub chosen_loop: unsafe extern "C" fn(*mut c_void, u32, *mut LoopInstance, Sink) -> Status,
     /// Names the loop at this place.
     pub name_loop: unsafe extern "C" fn(*mut c_void, u32, Bytes),
     /// The loop at this place acts from now on; `UINT32_MAX`: none.
@@ -91,6 +100,9 @@ pub struct HostFunctions {
     /// Writes that the present loop changed an entry: its name, which has to be part of the library, before, after.
     pub changed: unsafe extern "C" fn(*mut c_void, Bytes, *const ValueView, *const ValueView),
 }
+
+/// Sees the loops of a component.
+pub type LoopVisitor = unsafe extern "C" fn(*mut c_void, Bytes, Bytes, *const PropertyView, usize);
 
 /// The levels of [`HostFunctions::log`] in their order; behind them comes the console.
 pub(super) const LEVELS: [Level; 4] = [Level::Error, Level::Warning, Level::Info, Level::Debug];
@@ -287,6 +299,35 @@ unsafe extern "C" fn name_of(state: *mut c_void, sender: u32) -> Bytes {
     guarded_value(Bytes::NONE, || host.name_of(sender).map_or(Bytes::NONE, Bytes::text))
 }
 
+unsafe extern "C" fn chosen_loops(state: *mut c_void, visitor: *mut c_void, visit: LoopVisitor) {
+    // SAFETY: callers pass the state of their handle.
+    let host = unsafe { host(state) };
+    guarded_value((), || {
+        host.chosen_loops(&mut |name, class, values| {
+            let views = PropertyViews::of(values);
+            // SAFETY: the caller's own function and state; the rest is lent to this call.
+            unsafe {
+                visit(visitor, Bytes::text(name), Bytes::text(class), views.top.as_ptr(), views.top.len())
+            }
+        });
+    });
+}
+
+unsafe extern "C" fn chosen_loop(
+    state: *mut c_void,
+    place: u32,
+    given: *mut LoopInstance,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and a place for the loop.
+    unsafe {
+        guarded(error, || {
+            *given = give_loop(host(state).chosen_loop(place)?);
+            Ok(())
+        })
+    }
+}
+
 unsafe extern "C" fn name_loop(state: *mut c_void, place: u32, name: Bytes) {
     // SAFETY: callers pass the state of their handle, and lend the name.
     let (host, name) = unsafe { (host(state), name.get_text()) };
@@ -448,6 +489,8 @@ static FUNCTIONS: HostFunctions = HostFunctions {
     report,
     count,
     vote,
+    chosen_loops,
+    chosen_loop,
     name_loop,
     enter_loop,
     because,

@@ -1,16 +1,20 @@
+use std::ffi::c_void;
 use std::fmt::{self, Write as _};
+use std::mem::MaybeUninit;
 use std::time::Duration;
 
+use crate::contain::contained;
 use crate::{
-    CallError, Cause, Chance, Failure, Host, Level, NamedLoops, Phase, Record, ReportValue, ServiceCall,
-    SharedMessage, Time, TopicDeclaration, TopicKind, Work,
+    CallError, Cause, Chance, DynLoop, Failure, Host, Level, LoopRegistration, NamedLoops, Phase,
+    PropertyValue, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, TopicKind, Work,
 };
 
 use super::data::ValueView;
 use super::guard::{call_outcome, outcome};
 use super::host::{HostFunctions, LEVELS, TopicView, time};
+use super::looping::import_loop;
 use super::report::with_view;
-use super::{Bytes, HostHandle, RecordView, Sink};
+use super::{Bytes, HostHandle, LoopInstance, PropertyView, RecordView, Sink};
 
 /// The host on the other side of the boundary.
 pub(super) struct Link<'a> {
@@ -42,7 +46,7 @@ impl<'a> Link<'a> {
     fn topic(
         &self,
         topic: &TopicDeclaration<'_>,
-        ask: unsafe extern "C" fn(*mut std::ffi::c_void, *const TopicView, *mut u32, Sink) -> super::Status,
+        ask: unsafe extern "C" fn(*mut c_void, *const TopicView, *mut u32, Sink) -> super::Status,
     ) -> Result<u32, Failure> {
         let view = TopicView {
             name: Bytes::text(topic.name),
@@ -60,6 +64,17 @@ impl<'a> Link<'a> {
         outcome(status, &error).map(|()| index)
     }
 
+    /// A loop of the host, or of another library.
+    fn made_by_host(&self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
+        let (mut given, mut error) = (MaybeUninit::<LoopInstance>::uninit(), Vec::new());
+        // SAFETY: the link stands for a call that goes on; when it answers that all is well, the host has given a loop away.
+        unsafe {
+            let make = self.functions.chosen_loop;
+            outcome(make(self.handle.state, place, given.as_mut_ptr(), Sink::into(&mut error)), &error)?;
+            import_loop(given.assume_init())
+        }
+    }
+
     fn write(&mut self, level: u32, line: fmt::Arguments<'_>) {
         // SAFETY: the link stands for a call that goes on.
         if unsafe { (self.functions.listens)(self.handle.state, level) } == 0 {
@@ -71,6 +86,32 @@ impl<'a> Link<'a> {
         let _ = text.write_fmt(line);
         // SAFETY: the link stands for a call that goes on; the line is lent to it.
         unsafe { (self.functions.log)(self.handle.state, level, Bytes::lend(self.buffer)) }
+    }
+}
+
+/// A loop that the composite chose for a component.
+struct Chosen {
+    name: String,
+    class: String,
+    values: Vec<(String, PropertyValue)>,
+}
+
+/// Takes down a loop for [`Link::loops`].
+unsafe extern "C" fn see(
+    list: *mut c_void,
+    name: Bytes,
+    class: Bytes,
+    values: *const PropertyView,
+    count: usize,
+) {
+    // SAFETY: the host passes on the list of `loops`, and lends the rest.
+    unsafe {
+        let list = &mut *list.cast::<Vec<Result<Chosen, Failure>>>();
+        let read = || {
+            let (name, class) = (name.get_text()?.to_owned(), class.get_text()?.to_owned());
+            Ok(Chosen { name, class, values: PropertyView::read(values, count)? })
+        };
+        list.push(contained(read).and_then(|read| read));
     }
 }
 
@@ -182,7 +223,22 @@ impl Host for Link<'_> {
     }
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
-        Ok(Vec::new())
+        let mut chosen: Vec<Result<Chosen, Failure>> = Vec::new();
+        // SAFETY: the link stands for a call that goes on; `see` gets the list that it expects.
+        unsafe { (self.functions.chosen_loops)(self.handle.state, (&raw mut chosen).cast(), see) }
+        (0..)
+            .zip(chosen)
+            .map(|(place, chosen)| {
+                let Chosen { name, class, values } = chosen?;
+                // What is built into this library works on the structs of this library.
+                let own = LoopRegistration::linked().find(|known| known.name() == class);
+                let made = match own {
+                    Some(own) => own.construct(&values),
+                    None => self.made_by_host(place),
+                };
+                Ok((name.clone(), made.map_err(|failure| Failure::new(format!("loop `{name}`: {failure}")))?))
+            })
+            .collect()
     }
 
     fn name_loop(&mut self, place: u32, name: &str) {

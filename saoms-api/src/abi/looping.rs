@@ -1,127 +1,167 @@
 use std::ffi::c_void;
 use std::ptr;
+use std::sync::{Mutex, PoisonError};
 
 use crate::adaptation::Writable;
 use crate::contain::contained;
 use crate::{
-    Context, DynEntries, DynLoop, Failure, Knowledge, LoopClass, Phase, Properties, PropertyValue,
-    Recordable, Snapshot, Subject,
+    Context, DynEntries, DynLoop, Failure, Knowledge, LoopClass, LoopRegistration, PropertyValue, Snapshot,
 };
 
 use super::component::{Desk, call};
 use super::data::PropertyViews;
 use super::entries::{GivenEntries, Remote, RemoteKnowledge, give, with_knowledge};
-use super::guard::guarded;
+use super::guard::{guarded, guarded_value};
 use super::host::{Lent, with_handle};
 use super::{Bytes, EntriesHandle, HostHandle, PropertyView, Sink, Status};
 
 /// A function of a loop: the loop, its component's knowledge, the host, where an error goes.
 type Step = unsafe extern "C" fn(*mut c_void, *const EntriesHandle, *const HostHandle, Sink) -> Status;
 
-/// A loop: how to make one, and its functions. [`Loop`](crate::Loop) says when each is called.
+/// A loop class: how to make loops of it, and their functions.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct LoopClassTable {
+    /// The size of this table in bytes.
+    pub size: usize,
+    /// Makes a loop from the values that the composite gives: a list and its length, where the loop goes, where an error goes.
+    pub construct: unsafe extern "C" fn(*const PropertyView, usize, *mut *mut c_void, Sink) -> Status,
+    /// The functions of its loops.
+    pub looping: LoopTable,
+}
+
+/// The functions of a loop. [`Loop`](crate::Loop) says when each is called.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "named as the functions of `Loop`, which says what they mean")]
 pub struct LoopTable {
     /// The size of this table in bytes.
     pub size: usize,
-    /// Makes a loop from the values that the composite gives: a list and its length, where the loop goes, where an error goes.
-    pub construct: unsafe extern "C" fn(*const PropertyView, usize, *mut *mut c_void, Sink) -> Status,
-    /// The name of an entry that it changes, by its number from 0; empty behind the last.
-    pub effect: unsafe extern "C" fn(u32) -> Bytes,
+    /// The name of an entry that it changes, by its number from 0; empty behind the last. It stays as long as the program runs.
+    pub effect: unsafe extern "C" fn(*mut c_void, u32) -> Bytes,
     /// The entries that it adds to the knowledge; 0 where there are none.
-    pub entries: unsafe extern "C" fn(*mut EntriesHandle) -> u32,
+    pub entries: unsafe extern "C" fn(*mut c_void, *mut EntriesHandle) -> u32,
     pub initialize: Step,
     pub monitor: Step,
-    /// Analyzes, plans and executes, and writes symptom and decision to the journal. What it changed the host sees by itself.
+    /// Analyzes, plans and executes, and writes symptom and decision to the journal. What it changed, the caller sees by itself.
     pub adapt: Step,
     pub shutdown: Step,
     /// Frees the loop.
     pub destroy: unsafe extern "C" fn(*mut c_void),
 }
 
+/// A loop that is given away, with its functions.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct LoopInstance {
+    /// The loop.
+    pub instance: *mut c_void,
+    /// Its functions.
+    pub table: LoopTable,
+}
+
+impl LoopClassTable {
+    /// The table of a loop class.
+    pub const fn of<L: LoopClass>() -> LoopClassTable {
+        LoopClassTable { size: size_of::<LoopClassTable>(), construct: construct::<L>, looping: TABLE }
+    }
+}
+
+unsafe extern "C" fn construct<L: LoopClass>(
+    values: *const PropertyView,
+    count: usize,
+    instance: *mut *mut c_void,
+    error: Sink,
+) -> Status {
+    // SAFETY: the host lends the values to this call, and a place for the pointer.
+    unsafe {
+        guarded(error, || {
+            let values = PropertyView::read(values, count)?;
+            *instance = Exported::into_pointer(LoopRegistration::of::<L>().construct(&values)?);
+            Ok(())
+        })
+    }
+}
+
+/// Gives a loop of this side away.
+pub(super) fn give_loop(instance: Box<dyn DynLoop>) -> LoopInstance {
+    LoopInstance { instance: Exported::into_pointer(instance), table: TABLE }
+}
+
 /// A loop of this side as the other one holds it.
-struct Exported<L> {
-    instance: L,
+struct Exported {
+    instance: Box<dyn DynLoop>,
     desk: Desk,
     knowledge: Option<RemoteKnowledge>,
+    /// Sees nothing: what the loop changes is looked at on the side of the knowledge.
+    snapshot: Snapshot,
 }
 
-impl LoopTable {
-    /// The table of a loop.
-    pub const fn of<L: LoopClass>() -> LoopTable {
-        LoopTable {
-            size: size_of::<LoopTable>(),
-            construct: Exported::<L>::construct,
-            effect: Exported::<L>::effect,
-            entries: Exported::<L>::entries,
-            initialize: Exported::<L>::initialize,
-            monitor: Exported::<L>::monitor,
-            adapt: Exported::<L>::adapt,
-            shutdown: Exported::<L>::shutdown,
-            destroy: Exported::<L>::destroy,
-        }
+const TABLE: LoopTable = LoopTable {
+    size: size_of::<LoopTable>(),
+    effect: Exported::effect,
+    entries: Exported::entries,
+    initialize: Exported::initialize,
+    monitor: Exported::monitor,
+    adapt: Exported::adapt,
+    shutdown: Exported::shutdown,
+    destroy: Exported::destroy,
+};
+
+impl Exported {
+    fn into_pointer(instance: Box<dyn DynLoop>) -> *mut c_void {
+        let snapshot = Snapshot::blind();
+        let exported = Exported { instance, desk: Desk::default(), knowledge: None, snapshot };
+        Box::into_raw(Box::new(exported)).cast()
     }
-}
 
-impl<L: LoopClass> Exported<L> {
-    unsafe extern "C" fn construct(
-        values: *const PropertyView,
-        count: usize,
-        instance: *mut *mut c_void,
-        error: Sink,
-    ) -> Status {
-        // SAFETY: the host lends the values to this call, and a place for the pointer.
+    unsafe extern "C" fn effect(this: *mut c_void, number: u32) -> Bytes {
+        // SAFETY: `this` comes from `into_pointer` and is used by this call alone.
+        let exported = unsafe { &*this.cast::<Self>() };
+        let effects = guarded_value(&[][..], || exported.instance.effects());
+        effects.get(number as usize).map_or(Bytes::NONE, |name| Bytes::text(name))
+    }
+
+    unsafe extern "C" fn entries(this: *mut c_void, handle: *mut EntriesHandle) -> u32 {
+        // SAFETY: as in `effect`; the caller gives a place for the handle.
         unsafe {
-            guarded(error, || {
-                let values = PropertyView::read(values, count)?;
-                let made = L::new(L::Properties::from_values(&values)?)?;
-                let exported = Exported { instance: made, desk: Desk::default(), knowledge: None };
-                *instance = Box::into_raw(Box::new(exported)).cast();
-                Ok(())
-            })
+            let exported = &*this.cast::<Self>();
+            let Ok(Some(entries)) = contained(|| exported.instance.entries()) else { return 0 };
+            *handle = give(entries);
         }
-    }
-
-    unsafe extern "C" fn effect(number: u32) -> Bytes {
-        L::EFFECTS.get(number as usize).map_or(Bytes::NONE, |name| Bytes::text(name))
-    }
-
-    unsafe extern "C" fn entries(handle: *mut EntriesHandle) -> u32 {
-        let Ok(Some(entries)) = contained(|| <L as LoopClass>::entries()) else { return 0 };
-        // SAFETY: the host gives a place for the handle.
-        unsafe { *handle = give(entries) };
         1
     }
 
     /// # Safety
-    /// `this` comes from `construct` and is used by this call alone; the handles are those of the call.
+    /// `this` comes from `into_pointer` and is used by this call alone; the handles are those of the call.
     unsafe fn step(
         this: *mut c_void,
         knowledge: *const EntriesHandle,
         host: *const HostHandle,
         takes_in: bool,
-        code: impl FnOnce(&mut L, &mut L::Knowledge, &mut Context<'_>) -> Result<(), Failure>,
+        code: impl FnOnce(
+            &mut dyn DynLoop,
+            &mut Snapshot,
+            &mut dyn Knowledge,
+            &mut Context<'_>,
+        ) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         // SAFETY: as the caller promises.
         unsafe {
-            let exported = &mut *this.cast::<Self>();
-            let remote = match &mut exported.knowledge {
+            let Exported { instance, desk, knowledge: known, snapshot } = &mut *this.cast::<Self>();
+            let known = match known {
                 Some(known) => {
                     known.renew(*knowledge);
                     known
                 }
-                none => none.insert(RemoteKnowledge::new(*knowledge)?),
+                none => {
+                    let known = none.insert(RemoteKnowledge::new(*knowledge)?);
+                    let own = instance.entries().map_or(&[][..], |entries| entries.declared());
+                    known.extras_mut().permit(Writable { effects: instance.effects(), own });
+                    known
+                }
             };
-            let own = <L as LoopClass>::entries().map_or(&[][..], |entries| entries.declared());
-            remote.extras_mut().permit(Writable { effects: L::EFFECTS, own });
-            let Some(subject) = L::Knowledge::of(remote) else {
-                return Err(Failure::new(
-                    "this loop works on the struct of a component that is built with it: in a plugin, give it `type Knowledge = dyn Knowledge`",
-                ));
-            };
-            let instance = &mut exported.instance;
-            exported.desk.with(&*host, takes_in, |context| code(instance, subject, context))?
+            desk.with(&*host, takes_in, |context| code(&mut **instance, snapshot, known, context))?
         }
     }
 
@@ -131,8 +171,14 @@ impl<L: LoopClass> Exported<L> {
         host: *const HostHandle,
         error: Sink,
     ) -> Status {
-        // SAFETY: the host calls with what the table's contract says.
-        unsafe { guarded(error, || Self::step(this, knowledge, host, false, L::initialize)) }
+        // SAFETY: the caller keeps the table's contract.
+        unsafe {
+            guarded(error, || {
+                Self::step(this, knowledge, host, false, |instance, _, knowledge, context| {
+                    instance.initialize(knowledge, context)
+                })
+            })
+        }
     }
 
     unsafe extern "C" fn monitor(
@@ -142,7 +188,13 @@ impl<L: LoopClass> Exported<L> {
         error: Sink,
     ) -> Status {
         // SAFETY: as in `initialize`.
-        unsafe { guarded(error, || Self::step(this, knowledge, host, true, L::monitor)) }
+        unsafe {
+            guarded(error, || {
+                Self::step(this, knowledge, host, true, |instance, _, knowledge, context| {
+                    instance.monitor(knowledge, context)
+                })
+            })
+        }
     }
 
     unsafe extern "C" fn adapt(
@@ -154,12 +206,8 @@ impl<L: LoopClass> Exported<L> {
         // SAFETY: as in `initialize`.
         unsafe {
             guarded(error, || {
-                Self::step(this, knowledge, host, false, |instance, knowledge, context| {
-                    let Some(symptom) = instance.analyze(knowledge, context)? else { return Ok(()) };
-                    context.journal(Phase::Symptom, &symptom.record());
-                    let Some(decision) = instance.plan(symptom, knowledge, context)? else { return Ok(()) };
-                    context.journal(Phase::Decision, &decision.record());
-                    instance.execute(decision, knowledge, context)
+                Self::step(this, knowledge, host, false, |instance, snapshot, knowledge, context| {
+                    instance.adapt(knowledge, snapshot, context)
                 })
             })
         }
@@ -172,41 +220,34 @@ impl<L: LoopClass> Exported<L> {
         error: Sink,
     ) -> Status {
         // SAFETY: as in `initialize`.
-        unsafe { guarded(error, || Self::step(this, knowledge, host, false, L::shutdown)) }
+        unsafe {
+            guarded(error, || {
+                Self::step(this, knowledge, host, false, |instance, _, knowledge, context| {
+                    instance.shutdown(knowledge, context)
+                })
+            })
+        }
     }
 
     unsafe extern "C" fn destroy(this: *mut c_void) {
-        // SAFETY: the pointer is that of `construct`, given back once.
+        // SAFETY: the pointer is that of `into_pointer`, given back once.
         let _ = contained(|| drop(unsafe { Box::from_raw(this.cast::<Self>()) }));
     }
 }
 
 /// A loop class of the other side.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct ImportedLoopClass {
-    table: LoopTable,
-    effects: &'static [&'static str],
+    table: LoopClassTable,
 }
 
 impl ImportedLoopClass {
     /// A loop class by its table.
     ///
-    /// # Errors
-    /// The name of an entry is no text.
-    ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](super), for as long as the program runs.
-    pub unsafe fn new(table: LoopTable) -> Result<ImportedLoopClass, Failure> {
-        let mut effects = Vec::new();
-        for number in 0.. {
-            // SAFETY: as the caller promises; the names are constants of the library, which stays.
-            let name = unsafe { (table.effect)(number).get_text() }?;
-            if name.is_empty() {
-                break;
-            }
-            effects.push(name);
-        }
-        Ok(ImportedLoopClass { table, effects: effects.leak() })
+    pub const unsafe fn new(table: LoopClassTable) -> ImportedLoopClass {
+        ImportedLoopClass { table }
     }
 
     /// Makes a loop.
@@ -220,14 +261,46 @@ impl ImportedLoopClass {
         call(|error| unsafe {
             (self.table.construct)(views.top.as_ptr(), views.top.len(), &raw mut instance, error)
         })?;
-        Ok(Box::new(ImportedLoop { class: self.clone(), instance, lent: Lent::default() }))
+        // SAFETY: the same.
+        unsafe { import_loop(LoopInstance { instance, table: self.table.looping }) }
     }
+}
+
+/// Takes over a loop of the other side.
+///
+/// # Safety
+/// It is given away to the caller, and its functions keep the rules of the boundary for as long as the program runs.
+pub(super) unsafe fn import_loop(given: LoopInstance) -> Result<Box<dyn DynLoop>, Failure> {
+    let mut imported = ImportedLoop { given, effects: &[], lent: Lent::default() };
+    let mut effects = Vec::new();
+    for number in 0.. {
+        // SAFETY: as the caller promises; the names stay by the rules.
+        let name = unsafe { (given.table.effect)(given.instance, number).get_text() }?;
+        if name.is_empty() {
+            break;
+        }
+        effects.push(name);
+    }
+    imported.effects = kept(effects);
+    Ok(Box::new(imported))
+}
+
+/// The list as a constant. Loops of one class have the same, so the lists that are kept stay few.
+fn kept(list: Vec<&'static str>) -> &'static [&'static str] {
+    static KNOWN: Mutex<Vec<&'static [&'static str]>> = Mutex::new(Vec::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(same) = known.iter().find(|same| ***same == *list) {
+        return same;
+    }
+    let new: &'static [&'static str] = list.leak();
+    known.push(new);
+    new
 }
 
 /// A loop of the other side.
 struct ImportedLoop {
-    class: ImportedLoopClass,
-    instance: *mut c_void,
+    given: LoopInstance,
+    effects: &'static [&'static str],
     lent: Lent,
 }
 
@@ -241,7 +314,7 @@ impl ImportedLoop {
         knowledge: &mut dyn Knowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        let instance = self.instance;
+        let instance = self.given.instance;
         with_handle(context, &mut self.lent, |host| {
             with_knowledge(knowledge, |knowledge| {
                 // SAFETY: the functions keep the rules, the instance is theirs, and the handles are lent to this call.
@@ -253,14 +326,14 @@ impl ImportedLoop {
 
 impl DynLoop for ImportedLoop {
     fn effects(&self) -> &'static [&'static str] {
-        self.class.effects
+        self.effects
     }
 
     fn entries(&self) -> Option<Box<dyn DynEntries>> {
         let mut handle = EntriesHandle { state: ptr::null_mut(), functions: ptr::null() };
         // SAFETY: the functions keep the rules; what they give away is this side's.
         unsafe {
-            if (self.class.table.entries)(&raw mut handle) == 0 {
+            if (self.given.table.entries)(self.given.instance, &raw mut handle) == 0 {
                 return None;
             }
             Remote::new(handle).ok().map(|remote| Box::new(GivenEntries(remote)) as Box<dyn DynEntries>)
@@ -272,11 +345,11 @@ impl DynLoop for ImportedLoop {
         knowledge: &mut dyn Knowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        self.step(self.class.table.initialize, knowledge, context)
+        self.step(self.given.table.initialize, knowledge, context)
     }
 
     fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.step(self.class.table.monitor, knowledge, context)
+        self.step(self.given.table.monitor, knowledge, context)
     }
 
     fn adapt(
@@ -287,18 +360,18 @@ impl DynLoop for ImportedLoop {
     ) -> Result<(), Failure> {
         // When the loop decides is not seen from here, so the entries are looked at in any case.
         snapshot.take(knowledge);
-        let result = self.step(self.class.table.adapt, knowledge, context);
+        let result = self.step(self.given.table.adapt, knowledge, context);
         result.and(snapshot.tell(knowledge, context))
     }
 
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.step(self.class.table.shutdown, knowledge, context)
+        self.step(self.given.table.shutdown, knowledge, context)
     }
 }
 
 impl Drop for ImportedLoop {
     fn drop(&mut self) {
-        // SAFETY: the instance is the one that `construct` gave, and is given back once.
-        unsafe { (self.class.table.destroy)(self.instance) }
+        // SAFETY: the instance was given away to this, and is given back once.
+        unsafe { (self.given.table.destroy)(self.given.instance) }
     }
 }

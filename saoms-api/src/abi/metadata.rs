@@ -84,7 +84,7 @@ macro_rules! plugin {
             static METADATA: [u8; TEXT.length()] = TEXT.bytes();
 
             static TABLES: &[$crate::abi::ClassTable] = &[$($crate::abi::ClassTable::of::<$class>()),*];
-            static LOOP_TABLES: &[$crate::abi::LoopTable] = &[$($crate::abi::LoopTable::of::<$looping>()),*];
+            static LOOP_TABLES: &[$crate::abi::LoopClassTable] = &[$($crate::abi::LoopClassTable::of::<$looping>()),*];
             static TABLE: $crate::abi::PluginTable = $crate::abi::PluginTable::new(&METADATA, TABLES, LOOP_TABLES);
 
             #[unsafe(export_name = concat!("saoms_plugin_", env!("CARGO_CRATE_NAME")))]

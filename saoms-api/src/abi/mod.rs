@@ -33,9 +33,9 @@ pub use class::{ClassTable, PluginTable};
 pub use component::{ComponentTable, Instance};
 pub use data::{Bytes, Inbox, MAX_BYTES, MessageView, PropertyView, RecordView, Sink, Status, ValueView};
 pub use entries::{EntriesFunctions, EntriesHandle, EntryView};
-pub use host::{HostFunctions, HostHandle, TopicView};
+pub use host::{HostFunctions, HostHandle, LoopVisitor, TopicView};
 pub use import::{ImportedClass, ImportedComponent};
-pub use looping::{ImportedLoopClass, LoopTable};
+pub use looping::{ImportedLoopClass, LoopClassTable, LoopInstance, LoopTable};
 pub use metadata::{Entry, SECTION};
 pub use report::ReportView;
 

@@ -108,6 +108,7 @@ type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Fail
 /// that is linked in, and each class brings those of its own loops.
 #[derive(Clone, Copy, Debug)]
 pub struct LoopRegistration {
+    name: &'static str,
     declaration: &'static str,
     construct: Construct,
 }
@@ -116,9 +117,15 @@ impl LoopRegistration {
     /// The registration of a loop.
     pub const fn of<L: LoopClass>() -> LoopRegistration {
         LoopRegistration {
+            name: L::NAME,
             declaration: L::DECLARATION,
             construct: |values| Ok(Box::new(L::new(L::Properties::from_values(values)?)?)),
         }
+    }
+
+    /// The name that composite files use.
+    pub const fn name(&self) -> &'static str {
+        self.name
     }
 
     /// The loop's declaration, in the shape of [`crate::declaration`].

@@ -9,9 +9,15 @@ pub struct Snapshot {
     before: Vec<Value>,
     after: Vec<Value>,
     writable: Writable,
+    blind: bool,
 }
 
 impl Snapshot {
+    /// One that takes and tells nothing, where somebody else looks.
+    pub(crate) fn blind() -> Snapshot {
+        Snapshot { blind: true, ..Snapshot::default() }
+    }
+
     /// What the loop that acts next may change.
     pub(crate) fn permit(&mut self, writable: Writable) {
         self.writable = writable;
@@ -20,7 +26,9 @@ impl Snapshot {
     /// Takes the entries as they are.
     pub fn take(&mut self, knowledge: &dyn Knowledge) {
         self.before.clear();
-        knowledge.values(&mut self.before);
+        if !self.blind {
+            knowledge.values(&mut self.before);
+        }
     }
 
     /// Writes to the journal what has changed since it was taken.
@@ -28,6 +36,9 @@ impl Snapshot {
     /// # Errors
     /// An entry is an effector that the loop does not declare to change.
     pub fn tell(&mut self, knowledge: &dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        if self.blind {
+            return Ok(());
+        }
         let mut after = mem::take(&mut self.after);
         after.clear();
         knowledge.values(&mut after);

@@ -1,6 +1,6 @@
 //! What a component or a loop does behind the boundary to plugins is what it does without one.
 
-use saoms_api::abi::{ClassTable, ImportedClass, ImportedLoopClass, LoopTable};
+use saoms_api::abi::{ClassTable, ImportedClass, ImportedLoopClass, LoopClassTable};
 use saoms_api::{
     CallError, Cause, Class, Component, Context, DynComponent, DynLoop, Effector, Entries, Entry, Extras,
     Failure, Field, Header, Invocation, Knowledge, Level, Loop, LoopClass, LoopRegistration, Loops, Message,
@@ -374,7 +374,7 @@ fn a_loop_does_the_same_behind_the_boundary() {
     let expected = dimmed(LoopRegistration::of::<Dimmer>().construct(&[]).unwrap());
     assert!(expected.contains("\"isOn: yes -> no\"") && expected.contains("Ok(2)"), "{expected}");
     // SAFETY: the functions of the tables are this crate's own.
-    let imported = unsafe { ImportedLoopClass::new(LoopTable::of::<Dimmer>()) }.unwrap();
+    let imported = unsafe { ImportedLoopClass::new(LoopClassTable::of::<Dimmer>()) };
     assert_eq!(dimmed(imported.construct(&[]).unwrap()), expected);
     let panics = [("panics".to_owned(), PropertyValue::Text("true".to_owned()))];
     let text = dimmed(imported.construct(&panics).unwrap());

@@ -4,12 +4,14 @@ use std::path::Path;
 use std::{error, fmt, slice};
 
 use libloading::{Library, Symbol};
-use saoms_api::abi::{ClassTable, Entry, ImportedClass, PluginTable, VERSION};
+use saoms_api::abi::{
+    ClassTable, Entry, ImportedClass, ImportedLoopClass, LoopClassTable, PluginTable, VERSION,
+};
 
-use super::{Metadata, PluginError};
+use super::{Code, Metadata, PluginError};
 
-/// Loads a library for good and gives its classes.
-pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Vec<ImportedClass>, PluginError> {
+/// Loads a library for good.
+pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
     let unloadable = |message: String| PluginError::Unloadable {
         path: path.to_owned(),
         package: metadata.package.clone(),
@@ -48,32 +50,45 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Vec<I
             size_of::<PluginTable>()
         )));
     }
-    if table.class_count != metadata.classes.len() {
-        return Err(disagrees(format!(
-            "its code has {} classes, its metadata have {}",
-            table.class_count,
-            metadata.classes.len()
-        )));
+    let counts = [
+        ("classes", table.class_count, metadata.classes.len()),
+        ("loops", table.loop_count, metadata.loops.len()),
+    ];
+    for (what, found, expected) in counts {
+        if found != expected {
+            return Err(disagrees(format!("its code has {found} {what}, its metadata have {expected}")));
+        }
     }
     // SAFETY: the table says where its metadata are.
     if unsafe { table.metadata.get_text() }.ok() != Some(text) {
         return Err(disagrees("the texts differ".to_owned()));
     }
-    if table.class_count == 0 {
-        return Ok(Vec::new());
-    }
     // SAFETY: the table says that so many are there, and that is what the metadata say.
-    let classes = unsafe { slice::from_raw_parts(table.classes, table.class_count) };
-    let small = |class: &&ClassTable| class.size < size_of::<ClassTable>();
-    if let Some(class) = classes.iter().find(small) {
-        return Err(disagrees(format!(
-            "a table of a class has {} bytes, expected {}",
-            class.size,
-            size_of::<ClassTable>()
-        )));
+    let (classes, loops) =
+        unsafe { (list(table.classes, table.class_count), list(table.loops, table.loop_count)) };
+    let class_sizes = classes.iter().map(|class| (class.size, size_of::<ClassTable>()));
+    let loop_sizes = loops.iter().map(|one| (one.size, size_of::<LoopClassTable>()));
+    if let Some((found, expected)) = class_sizes.chain(loop_sizes).find(|(found, expected)| found < expected)
+    {
+        return Err(disagrees(format!("a table has {found} bytes, expected {expected}")));
     }
     // SAFETY: a library with metadata of this version keeps the rules of the boundary.
-    Ok(classes.iter().map(|class| unsafe { ImportedClass::new(*class) }).collect())
+    unsafe {
+        Ok(Code {
+            classes: classes.iter().map(|class| ImportedClass::new(*class)).collect(),
+            loops: loops.iter().map(|one| ImportedLoopClass::new(*one)).collect(),
+        })
+    }
+}
+
+/// # Safety
+/// So many are there, for as long as the program runs.
+unsafe fn list<T>(first: *const T, count: usize) -> &'static [T] {
+    if count == 0 {
+        return &[];
+    }
+    // SAFETY: as the caller promises.
+    unsafe { slice::from_raw_parts(first, count) }
 }
 
 /// An error with its causes: libloading's own text hides them.

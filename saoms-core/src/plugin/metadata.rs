@@ -26,6 +26,9 @@ pub struct Metadata {
     /// The declarations of its classes.
     #[serde(default)]
     pub(super) classes: Vec<Box<RawValue>>,
+    /// The declarations of its loops.
+    #[serde(default)]
+    pub(super) loops: Vec<Box<RawValue>>,
 }
 
 /// What every version has.

@@ -1,4 +1,4 @@
-//! Libraries that bring classes.
+//! Libraries that bring classes and loops.
 //!
 //! A [`Plugin`] is known by its metadata, which lie in a section of the file and are read before anything in it runs (see
 //! [`saoms_api::abi`]). Its code is loaded when the first component of its classes is constructed, and stays until the program ends.
@@ -12,23 +12,30 @@ mod search;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use saoms_api::abi::ImportedClass;
-use saoms_api::{DynComponent, Failure, PropertyValue};
+use saoms_api::abi::{ImportedClass, ImportedLoopClass};
+use saoms_api::{DynComponent, DynLoop, Failure, PropertyValue};
 
 pub use error::PluginError;
 pub use metadata::Metadata;
 pub use search::{Found, Search};
 
-use crate::registry::{Provider, Registry, RegistryError};
+use crate::registry::{LoopProvider, Provider, Registry, RegistryError};
 
-/// A library that brings classes.
+/// What a loaded library offers, in the order of its metadata.
+#[derive(Debug)]
+struct Code {
+    classes: Vec<ImportedClass>,
+    loops: Vec<ImportedLoopClass>,
+}
+
+/// A library that brings classes and loops.
 #[derive(Debug)]
 pub struct Plugin {
     path: PathBuf,
     text: String,
     metadata: Metadata,
-    /// The tables of its classes, once its code is loaded.
-    classes: OnceLock<Result<Vec<ImportedClass>, PluginError>>,
+    /// Its code, once it is loaded.
+    code: OnceLock<Result<Code, PluginError>>,
 }
 
 impl Plugin {
@@ -39,7 +46,7 @@ impl Plugin {
     pub fn open(path: &Path) -> Result<Arc<Plugin>, PluginError> {
         let text = file::read_section(path)?;
         let metadata = metadata::read(path, &text)?;
-        Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, classes: OnceLock::new() }))
+        Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, code: OnceLock::new() }))
     }
 
     /// Where it is.
@@ -52,41 +59,51 @@ impl Plugin {
         &self.metadata
     }
 
-    /// Adds its classes to a registry.
+    /// Adds its loops and classes to a registry.
     ///
     /// # Errors
-    /// As [`Registry::add`].
+    /// As [`Registry::add_loop`] and [`Registry::add`].
     pub fn register(self: &Arc<Plugin>, registry: &mut Registry) -> Result<(), RegistryError> {
+        for (place, declaration) in self.metadata.loops.iter().enumerate() {
+            let provider = Part { plugin: Arc::clone(self), place };
+            registry.add_loop_provided(declaration.get(), Arc::new(provider))?;
+        }
         for (place, declaration) in self.metadata.classes.iter().enumerate() {
-            let provider = ClassOf { plugin: Arc::clone(self), place };
+            let provider = Part { plugin: Arc::clone(self), place };
             registry.add_provided(declaration.get(), Arc::new(provider))?;
         }
         Ok(())
     }
 
     /// Loads its code, at the first call.
-    ///
-    /// # Errors
-    /// The system cannot load it, or its tables are not what its metadata say.
-    pub fn load(&self) -> Result<&[ImportedClass], PluginError> {
-        let classes = self.classes.get_or_init(|| library::load(&self.path, &self.metadata, &self.text));
-        classes.as_deref().map_err(Clone::clone)
+    fn code(&self) -> Result<&Code, Failure> {
+        let code = self.code.get_or_init(|| library::load(&self.path, &self.metadata, &self.text));
+        code.as_ref().map_err(|error| Failure::new(error.to_string()))
     }
 }
 
-/// A class of a plugin.
+/// A class or a loop of a plugin, by its place.
 #[derive(Debug)]
-struct ClassOf {
+struct Part {
     plugin: Arc<Plugin>,
     place: usize,
 }
 
-impl Provider for ClassOf {
+impl Provider for Part {
     fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
-        let classes = self.plugin.load().map_err(|error| Failure::new(error.to_string()))?;
-        // `load` gives one for each class of the metadata.
-        let class = classes.get(self.place).ok_or("the library has no such class")?;
-        class.construct(values)
+        // There is one for each of the metadata.
+        self.plugin.code()?.classes.get(self.place).ok_or("the library has no such class")?.construct(values)
+    }
+
+    fn origin(&self) -> Option<&Path> {
+        Some(self.plugin.path())
+    }
+}
+
+impl LoopProvider for Part {
+    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+        // There is one for each of the metadata.
+        self.plugin.code()?.loops.get(self.place).ok_or("the library has no such loop")?.construct(values)
     }
 
     fn origin(&self) -> Option<&Path> {

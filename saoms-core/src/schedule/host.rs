@@ -3,14 +3,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Cause, Chance, Failure, Host, Level, NamedLoops, Phase, Record, ReportValue, ServiceCall,
-    SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Value, Work,
+    CallError, Cause, Chance, DynLoop, Failure, Host, Level, NamedLoops, Phase, PropertyValue, Record,
+    ReportValue, ServiceCall, SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Value, Work,
 };
 
 use super::body::Part;
 use super::observe::{Event, Occurrence};
 use super::shared::Shared;
-use crate::assembly::{ComponentSpec, LoopSpec, TaskSettings, Wire};
+use crate::assembly::{ComponentSpec, TaskSettings, Wire};
 use crate::journal::Stamp;
 use crate::report::Sections;
 
@@ -192,18 +192,26 @@ impl Host for ComponentHost<'_> {
     }
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
+        (0..self.spec().loops.len())
+            .map(|place| Ok((self.spec().loops[place].name.clone(), self.chosen_loop(place as u32)?)))
+            .collect()
+    }
+
+    fn chosen_loops(&mut self, visit: &mut dyn FnMut(&str, &str, &[(String, PropertyValue)])) {
+        for one in &self.spec().loops {
+            visit(&one.name, one.class.name(), &one.values);
+        }
+    }
+
+    fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
         if !self.part.initializing {
             return Err(Failure::new(
                 "a component can only take its loops in `initialize`; keep what `loops` returns",
             ));
         }
-        let construct = |one: &LoopSpec| {
-            let constructed = one.class.construct(&one.values);
-            let constructed =
-                constructed.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", one.name)));
-            Ok((one.name.clone(), constructed?))
-        };
-        self.spec().loops.iter().map(construct).collect()
+        let one = self.spec().loops.get(place as usize).ok_or("there are not so many loops")?;
+        let constructed = one.class.construct(&one.values);
+        constructed.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", one.name)))
     }
 
     fn name_loop(&mut self, place: u32, name: &str) {
