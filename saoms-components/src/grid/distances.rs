@@ -44,9 +44,20 @@ struct Place {
 impl Distances {
     /// Searches the ways to a block. What `costly` marks as blocked is entered only where the way around is long.
     pub fn search(&mut self, map: &Map, to: Block, costly: &Map) {
+        let start = if map.is_free(to) { Some(to) } else { None };
+        self.search_from(map, to, start, costly);
+    }
+
+    /// The same for a block that may be blocked: the ways end beside it.
+    pub fn search_beside(&mut self, map: &Map, to: Block, costly: &Map) {
+        let start = if map.contains(to) { Some(to) } else { None };
+        self.search_from(map, to, start, costly);
+    }
+
+    fn search_from(&mut self, map: &Map, to: Block, start: Option<Block>, costly: &Map) {
         self.to = Some(to);
         self.prepare(map);
-        let Some(start) = self.place(map, to) else { return };
+        let Some(start) = start.and_then(|start| self.at(start)) else { return };
         self.costs[start.at as usize] = 0;
         self.frontier[0].push(start);
         let (mut cost, mut empty) = (0, 0);
@@ -100,9 +111,10 @@ impl Distances {
     }
 
     fn place(&self, map: &Map, block: Block) -> Option<Place> {
-        if !map.is_free(block) {
-            return None;
-        }
+        if map.is_free(block) { self.at(block) } else { None }
+    }
+
+    fn at(&self, block: Block) -> Option<Place> {
         let (x, y) = (u16::try_from(block.x).ok()?, u16::try_from(block.y).ok()?);
         Some(Place { x, y, at: (u32::from(y) + 1) * self.stride + u32::from(x) + 1 })
     }

@@ -37,6 +37,7 @@ pub trait Hardware {
     /// Stops the robot's action where it is; nothing happens when there is none.
     fn cancel(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure>;
 
-    /// Says that the robot is out of order: it stays where it is, and robots beside it collect and deposit on its block in its place.
-    fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure>;
+    /// Says that the robot is out of order: its action ends, it stays where it is, and robots beside it collect and deposit on its block in
+    /// its place. The answer is where it is.
+    fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Block, Failure>;
 }

@@ -2,10 +2,16 @@ use saoms_api::{Context, Failure};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
-use crate::messages::Collision;
+use crate::messages::{Collision, LuggageStage};
 
-use super::RobotKnowledge;
 use super::hooks::Reply;
+use super::{RobotKnowledge, Trouble};
+
+/// Hardware that fails so often one after the other to move or to deposit is broken.
+const MOST_FAILURES: u32 = 5;
+
+/// A robot tries so often to collect luggage.
+const MOST_ATTEMPTS: u32 = 3;
 
 /// How an action of the hardware stands after this execution's call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +60,14 @@ impl RobotKnowledge {
         Ok(Some((action, outcome)))
     }
 
+    /// Ends the work of the hardware for good; `false` while it cannot be reached.
+    pub(crate) fn retire(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
+        let Reply::Answer(block) = self.hooks.retire(context, self.number)? else { return Ok(false) };
+        self.block = block.unwrap_or(self.block);
+        self.next = self.block;
+        Ok(true)
+    }
+
     fn take_in(
         &mut self,
         context: &mut Context<'_>,
@@ -62,7 +76,10 @@ impl RobotKnowledge {
     ) -> Result<Outcome, Failure> {
         match progress {
             Progress::Running => Ok(Outcome::Running),
-            Progress::Done => self.done(context, action).map(|()| Outcome::Done),
+            Progress::Done => {
+                self.failures = 0;
+                self.done(context, action).map(|()| Outcome::Done)
+            }
             Progress::Failed => {
                 self.failed(context, action);
                 Ok(Outcome::Failed)
@@ -86,7 +103,7 @@ impl RobotKnowledge {
             ActionKind::Deposit => {
                 context.console(format_args!("{name} says: Luggage deposited."));
                 context.info(format_args!("deposited luggage {luggage} at {block}"));
-                self.delivered = self.job;
+                self.untold = self.job.map(|job| (job, LuggageStage::Delivered));
                 if self.job.is_some() && !self.hooks.is_wired() {
                     context.count("luggage.delivered", 1);
                 }
@@ -97,6 +114,10 @@ impl RobotKnowledge {
     }
 
     fn failed(&mut self, context: &mut Context<'_>, action: Action) {
+        self.failures += 1;
+        if self.failures == MOST_FAILURES && action.kind != ActionKind::Collect {
+            self.trouble = Some(Trouble::Hardware);
+        }
         let Action { kind, block, luggage } = action;
         match kind {
             ActionKind::Move => {
@@ -104,8 +125,14 @@ impl RobotKnowledge {
                 context.warn(format_args!("could not move to {block}"));
             }
             ActionKind::Collect => {
+                if self.failures < MOST_ATTEMPTS {
+                    context.warn(format_args!("could not collect luggage {luggage} at {block}: tries again"));
+                    return;
+                }
                 context
                     .warn(format_args!("could not collect luggage {luggage} at {block}: gives the job up"));
+                self.untold = self.job.map(|job| (job, LuggageStage::Refused));
+                self.failures = 0;
                 self.drop_job();
             }
             ActionKind::Deposit => {
@@ -115,9 +142,10 @@ impl RobotKnowledge {
     }
 
     /// The robot is free again.
-    fn drop_job(&mut self) {
+    pub(super) fn drop_job(&mut self) {
         let variables = &mut self.variables;
         (variables.busy, variables.transporter, variables.has_luggage) = (false, false, false);
+        variables.healer = false;
         self.job = None;
     }
 

@@ -108,12 +108,23 @@ impl Hooks {
         Ok(progress)
     }
 
-    /// Stops the running action. Hardware that cannot be reached any more has stopped by itself.
-    pub(crate) fn stop(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
-        if self.running.take().is_some() {
-            reply(self.hardware.cancel(context, robot))?;
+    /// Ends the work of the hardware for good; the answer is where the robot is. `None` without hardware.
+    pub(crate) fn retire(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+    ) -> Result<Reply<Option<Block>>, Failure> {
+        if !self.wired || !self.entered {
+            return Ok(Reply::Answer(None));
         }
-        Ok(())
+        let answer = reply(self.hardware.retire(context, robot))?;
+        Ok(match answer {
+            Reply::Answer(block) => {
+                self.running = None;
+                Reply::Answer(Some(block))
+            }
+            Reply::Later => Reply::Later,
+        })
     }
 }
 

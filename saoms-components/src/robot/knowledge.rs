@@ -1,9 +1,9 @@
-use saoms_api::{Context, Entries, Extras, Knowledge, Publisher, Subscription};
+use saoms_api::{Context, Entries, Extras, Failure, Knowledge, Publisher, Subscription};
 
 use crate::grid::Block;
 use crate::hardware::Action;
 use crate::messages::{
-    Collision, CriticalKind, CriticalSituation, EventLuggage, Position, Priority, RobotList,
+    Collision, CriticalKind, CriticalSituation, EventLuggage, LuggageStage, Position, Priority, RobotList,
 };
 
 use super::actions::Outcome;
@@ -56,8 +56,14 @@ pub struct RobotKnowledge {
     pub(super) collisions: Publisher<Collision>,
     /// The hardware's action that was running when this execution started, and what became of it.
     pub(super) polled: Option<(Action, Outcome)>,
-    /// What it deposited and did not tell yet.
-    pub(super) delivered: Option<Job>,
+    /// Whether it said that it would help another robot.
+    pub(super) offers_help: bool,
+    /// What is broken.
+    pub(super) trouble: Option<Trouble>,
+    /// How often the hardware failed one after the other.
+    pub(super) failures: u32,
+    /// What it delivered, or could not collect, and did not tell yet.
+    pub(super) untold: Option<(Job, LuggageStage)>,
     /// How long its battery lasts.
     pub(super) energy: Energy,
     /// Who is around it.
@@ -89,7 +95,10 @@ impl RobotKnowledge {
             hooks: Hooks::default(),
             collisions: Publisher::default(),
             polled: None,
-            delivered: None,
+            offers_help: false,
+            trouble: None,
+            failures: 0,
+            untold: None,
             energy: Energy::default(),
             traffic: Traffic::default(),
             leg: Leg::default(),
@@ -113,6 +122,21 @@ impl RobotKnowledge {
         for (header, event) in context.receive(&luggage).with_headers() {
             self.lists.requests.hear(event, header);
         }
+    }
+
+    /// Tells what became of luggage. What this robot could not collect waits again for the others.
+    pub(super) fn tell(
+        &mut self,
+        luggage: Publisher<EventLuggage>,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let Some((job, stage)) = self.untold.take() else { return Ok(()) };
+        context.send(&luggage, job.response(self.number, self.block, stage))?;
+        if stage == LuggageStage::Refused {
+            self.lists.requests.refuse(job.luggage);
+            context.send(&luggage, EventLuggage::request(job.luggage, job.from, job.to))?;
+        }
+        Ok(())
     }
 
     /// What it says about its position when it wants nothing but what it holds.
@@ -162,6 +186,17 @@ impl RobotKnowledge {
             period: self.period,
         }
     }
+}
+
+/// Why a robot cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// It broke down.
+    Breakdown,
+    /// Its hardware fails again and again.
+    Hardware,
+    /// Its battery is empty, with no charger there.
+    Battery,
 }
 
 /// The state of a robot, in the terms of the manual's table 6.27.

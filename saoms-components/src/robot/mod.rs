@@ -25,7 +25,7 @@ use crate::messages::{
 
 pub use battery::Battery;
 pub use job::Job;
-pub use knowledge::{RobotKnowledge, Variables};
+pub use knowledge::{RobotKnowledge, Trouble, Variables};
 pub use lists::{Help, Helps, Lists, Peers, Request, Requests, Rival};
 pub use properties::{Policy, RobotProperties};
 pub use routes::Routes;
@@ -116,7 +116,7 @@ impl Component for Robot {
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.knowledge.hooks.stop(context, self.knowledge.number)?;
+        self.knowledge.retire(context)?;
         self.loops.shutdown(&mut self.knowledge, context)
     }
 }

@@ -2,16 +2,21 @@ use crate::grid::{Block, Distances, MOVE, Map, UNREACHABLE};
 
 /// The area as a robot knows it, and the ways through it.
 ///
-/// Ways keep off the chargers of other robots, where somebody may stay for long. Without a map the area is open and as large as its coordinates;
-/// so is a very large map without blocked blocks, where a search would take longer than it saves.
+/// Ways keep off the chargers of other robots, where somebody may stay for long, and lead around robots that do not move any more. A way to
+/// the block of such a robot ends beside it. Without a map the area is open and as large as its coordinates; so is a very large map without
+/// blocked blocks, where a search would take longer than it saves.
 #[derive(Debug, Default)]
 pub struct Routes {
     area: Option<Area>,
+    /// Robots that do not move any more, and where they are.
+    obstacles: Vec<(u32, Block)>,
     ways: [Way; WAYS],
     /// Counts the questions.
     clock: u32,
     /// The place in `ways` of the one to the present goal.
     heading: usize,
+    /// Counts what made other ways possible or necessary.
+    changes: u32,
 }
 
 /// How many blocks a robot knows the ways to: its charger, the two ends of its job, and one to think about.
@@ -27,7 +32,10 @@ struct Way {
 
 #[derive(Debug)]
 struct Area {
+    /// The map, on which obstacles are blocked.
     map: Map,
+    /// The map without obstacles, where there are any.
+    empty: Option<Map>,
     /// The chargers of other robots, as blocked blocks of a map.
     chargers: Map,
     charge_block: Block,
@@ -42,7 +50,7 @@ impl Routes {
     pub fn learn(&mut self, map: Map, charge_block: Block) {
         let searched = !map.is_open() || map.size() <= SEARCHED;
         let chargers = Map::new(map.width(), map.height());
-        self.area = Some(Area { map, chargers, charge_block, searched });
+        self.area = Some(Area { map, empty: None, chargers, charge_block, searched });
     }
 
     /// Learns where another robot's charger is.
@@ -56,17 +64,50 @@ impl Routes {
         }
     }
 
-    /// Learns that nobody gets past a block any more.
-    pub fn learn_obstacle(&mut self, block: Block) {
-        if let Some(area) = &mut self.area
-            && area.map.is_free(block)
-        {
-            area.map.set_blocked(block);
-            self.forget_searches();
+    /// Learns that nobody gets past a robot any more.
+    pub fn learn_obstacle(&mut self, robot: u32, block: Block) {
+        if self.obstacles.contains(&(robot, block)) {
+            return;
         }
+        self.forget_obstacle(robot);
+        self.obstacles.push((robot, block));
+        if let Some(area) = &mut self.area {
+            area.empty.get_or_insert_with(|| area.map.clone());
+            area.map.set_blocked(block);
+        }
+        self.forget_searches();
+    }
+
+    /// Learns that a robot moves again.
+    pub fn forget_obstacle(&mut self, robot: u32) {
+        let known = self.obstacles.len();
+        self.obstacles.retain(|(other, _)| *other != robot);
+        if self.obstacles.len() == known {
+            return;
+        }
+        if let Some(area) = &mut self.area
+            && let Some(empty) = &area.empty
+        {
+            area.map.clone_from(empty);
+            for (_, block) in &self.obstacles {
+                area.map.set_blocked(*block);
+            }
+        }
+        self.forget_searches();
+    }
+
+    /// Whether a robot that does not move any more is on the block.
+    pub fn is_obstacle(&self, block: Block) -> bool {
+        self.obstacles.iter().any(|(_, obstacle)| *obstacle == block)
+    }
+
+    /// How often other ways became possible or necessary.
+    pub fn changes(&self) -> u32 {
+        self.changes
     }
 
     fn forget_searches(&mut self) {
+        self.changes = self.changes.wrapping_add(1);
         for way in &mut self.ways {
             way.distances.clear();
         }
@@ -77,17 +118,21 @@ impl Routes {
     pub fn is_free(&self, block: Block) -> bool {
         match &self.area {
             Some(area) => area.map.is_free(block),
-            None => block.x >= 0 && block.y >= 0,
+            None => block.x >= 0 && block.y >= 0 && !self.is_obstacle(block),
         }
     }
 
     /// How many moves lead from one block to another.
     pub fn between(&mut self, from: Block, to: Block) -> u32 {
         let place = self.way_to(to);
-        match self.cost(place, from, to) {
-            UNREACHABLE => UNREACHABLE,
-            cost => cost.div_ceil(MOVE),
-        }
+        let cost = if from != to && self.is_obstacle(from) {
+            // From beside it.
+            let beside = from.neighbours().into_iter().filter(|block| self.is_free(*block));
+            beside.map(|block| self.cost(place, block, to)).min().unwrap_or(UNREACHABLE)
+        } else {
+            self.cost(place, from, to)
+        };
+        if cost == UNREACHABLE { UNREACHABLE } else { cost.div_ceil(MOVE) }
     }
 
     /// Makes sure that [`to_goal`](Routes::to_goal) leads to this block.
@@ -105,7 +150,9 @@ impl Routes {
     fn cost(&self, place: usize, from: Block, to: Block) -> u32 {
         match &self.area {
             Some(area) if area.searched => self.ways[place].distances.of(&area.map, from),
-            _ if self.is_free(from) && self.is_free(to) => from.distance(to).saturating_mul(MOVE),
+            _ if self.is_free(from) && (self.is_free(to) || self.is_obstacle(to)) => {
+                from.distance(to).saturating_mul(MOVE)
+            }
             _ => UNREACHABLE,
         }
     }
@@ -122,10 +169,12 @@ impl Routes {
             ages.max().map_or(0, |(_, place)| place)
         };
         let place = known.unwrap_or_else(oldest);
+        let beside = self.obstacles.iter().any(|(_, obstacle)| *obstacle == to);
         let way = &mut self.ways[place];
         way.asked = self.clock;
         if known.is_none() {
-            way.distances.search(&area.map, to, &area.chargers);
+            let search = if beside { Distances::search_beside } else { Distances::search };
+            search(&mut way.distances, &area.map, to, &area.chargers);
         }
         place
     }

@@ -110,7 +110,7 @@ impl Hardware for World {
         self.referee.cancel(robot)
     }
 
-    fn retire(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+    fn retire(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
         self.referee.retire(robot)
     }
 }

@@ -180,12 +180,12 @@ impl Referee {
         Ok(())
     }
 
-    /// Stops a robot for good, until it starts again.
-    pub(super) fn retire(&mut self, robot: u32) -> Result<(), Failure> {
+    /// Stops a robot for good, until it starts again, and says where it is.
+    pub(super) fn retire(&mut self, robot: u32) -> Result<Block, Failure> {
         self.cancel(robot)?;
         let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
         body.retired = true;
-        Ok(())
+        Ok(body.block)
     }
 
     pub(super) fn is_retired(&self, robot: u32) -> bool {

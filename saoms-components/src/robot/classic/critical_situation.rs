@@ -185,8 +185,7 @@ impl CriticalSituationMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        knowledge.hooks.stop(context, knowledge.number)?;
-        knowledge.next = knowledge.block;
+        knowledge.retire(context)?;
         context.send(&self.situations, knowledge.situation(kind))?;
         context.warn(format_args!(
             "breaks down at {}: asks for help, and for human assistance",

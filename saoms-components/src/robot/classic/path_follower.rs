@@ -3,8 +3,7 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
 use crate::messages::{
-    CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION,
-    Position,
+    CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, POSITION, Position,
 };
 use crate::robot::RobotKnowledge;
 use crate::robot::actions::Outcome;
@@ -126,7 +125,7 @@ impl Loop for PathFollowerMS {
             return Ok(Some(PathSymptom::Stopped));
         }
         let polled = knowledge.poll(context)?;
-        self.tell(knowledge, context)?;
+        knowledge.tell(self.luggage, context)?;
         match polled {
             Some((_, outcome)) if outcome.is_open() => return Ok(Some(PathSymptom::Working)),
             Some((Action { kind: ActionKind::Collect | ActionKind::Deposit, .. }, _)) => return Ok(None),
@@ -173,7 +172,7 @@ impl Loop for PathFollowerMS {
             PathDecision::Announce => {}
             PathDecision::Handle(action) => {
                 knowledge.begin(context, action)?;
-                return self.tell(knowledge, context);
+                return knowledge.tell(self.luggage, context);
             }
             PathDecision::Go { to, moved } => {
                 if reach(knowledge, context, to, Block::step_x_first, moved)? {
@@ -202,13 +201,6 @@ impl PathFollowerMS {
             return Ok(());
         }
         context.send(&self.situations, knowledge.situation(CriticalKind::Idle))
-    }
-
-    /// Tells what was delivered.
-    fn tell(&self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        let Some(job) = knowledge.delivered.take() else { return Ok(()) };
-        let response = job.response(knowledge.number, knowledge.block, LuggageStage::Delivered);
-        context.send(&self.luggage, response)
     }
 }
 

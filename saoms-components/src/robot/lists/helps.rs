@@ -17,6 +17,8 @@ pub struct Help {
     pub cause: Cause,
     /// The other robots that would heal it and did not take that back.
     pub rivals: Vec<Rival>,
+    /// How many executions the battery has to last before this robot thinks about it again; 0 while it did not.
+    pub needs: u32,
 }
 
 impl fmt::Display for Help {
@@ -33,12 +35,14 @@ pub struct Helps {
     open: Vec<Help>,
     /// The one that this robot would heal: no longer on the list.
     claimed: Option<Help>,
+    /// Whom somebody heals, and when he said so: the request may arrive later than that.
+    settled: Vec<(u32, Time)>,
 }
 
 impl Helps {
     /// None, for the robot of this number.
     pub fn new(number: u32) -> Helps {
-        Helps { number, open: Vec::new(), claimed: None }
+        Helps { number, open: Vec::new(), claimed: None, settled: Vec::new() }
     }
 
     /// Takes in a request, the own ones too, or a response of another robot.
@@ -60,14 +64,24 @@ impl Helps {
         };
         self.open.iter_mut().chain(&mut self.claimed).filter(|help| help.is_of(critical)).for_each(respond);
         if matches!(message.stage, CriticalStage::Taken | CriticalStage::StandsIn) {
+            self.settled.retain(|(robot, _)| *robot != critical);
+            self.settled.push((critical, header.sent));
             self.drop(critical);
         }
     }
 
     /// A robot that asks again has another reason: what was known of the last one does not count any more.
     fn hear_request(&mut self, message: &CriticalSituation, header: Header) {
-        let help =
-            Help { situation: message.clone(), since: header.sent, cause: header.cause, rivals: Vec::new() };
+        if self.settled.iter().any(|(robot, time)| *robot == message.critical && *time > header.sent) {
+            return;
+        }
+        let help = Help {
+            situation: message.clone(),
+            since: header.sent,
+            cause: header.cause,
+            rivals: Vec::new(),
+            needs: 0,
+        };
         if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.is_of(message.critical)) {
             claimed.situation = help.situation;
         } else if let Some(known) = self.open.iter_mut().find(|known| known.is_of(message.critical)) {
@@ -115,6 +129,31 @@ impl Helps {
     /// Ends that: this robot heals the other one, or somebody else does.
     pub fn settle(&mut self) -> Option<Help> {
         self.claimed.take()
+    }
+
+    /// Would not heal it any more: it waits again where it was on the list.
+    pub fn put_back(&mut self) {
+        if let Some(help) = self.claimed.take() {
+            let place = self.open.partition_point(|open| open.since <= help.since);
+            self.open.insert(place, help);
+        }
+    }
+
+    /// The request of a robot, unless this robot would heal it.
+    pub fn get(&self, critical: u32) -> Option<&Help> {
+        self.open.iter().find(|help| help.is_of(critical))
+    }
+
+    /// Thinks about a request again when the battery lasts for so many executions.
+    pub fn postpone(&mut self, critical: u32, needs: u32) {
+        if let Some(help) = self.open.iter_mut().find(|help| help.is_of(critical)) {
+            help.needs = needs;
+        }
+    }
+
+    /// Leaves a request to others for good.
+    pub fn refuse(&mut self, critical: u32) {
+        self.open.retain(|help| !help.is_of(critical));
     }
 
     fn drop(&mut self, critical: u32) {

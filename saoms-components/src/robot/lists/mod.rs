@@ -46,6 +46,21 @@ impl Lists {
         self.active.iter().map(|robot| robot.period).max().unwrap_or(0)
     }
 
+    /// Whether another robot is active.
+    pub fn is_active(&self, robot: u32) -> bool {
+        self.active.binary_search_by_key(&robot, |known| known.robot).is_ok()
+    }
+
+    /// The other robots that sleep.
+    pub fn sleepers(&self) -> impl Iterator<Item = &RobotList> {
+        self.active.iter().filter(|robot| robot.asleep)
+    }
+
+    /// Whether another robot is awake.
+    pub fn anybody_awake(&self) -> bool {
+        self.active.iter().any(|robot| !robot.asleep)
+    }
+
     /// Takes in that a robot is active, or no longer is.
     pub fn hear_robot(&mut self, robot: &RobotList) {
         self.helps.hear_robot(robot);

@@ -61,12 +61,14 @@ pub struct Requests {
     open: Vec<Request>,
     /// The one that this robot took an interest in: no longer on the list.
     claimed: Option<Request>,
+    /// Luggage that this robot leaves to others for good.
+    refused: Vec<u32>,
 }
 
 impl Requests {
     /// None, for the robot of this number.
     pub fn new(number: u32) -> Requests {
-        Requests { number, open: Vec::new(), claimed: None }
+        Requests { number, open: Vec::new(), claimed: None, refused: Vec::new() }
     }
 
     /// Takes in a request or a response; the own responses do not count.
@@ -94,7 +96,8 @@ impl Requests {
 
     fn hear_request(&mut self, event: &EventLuggage, header: Header) {
         let mut known = self.open.iter().chain(&self.claimed);
-        if !known.any(|request| request.job.luggage == event.luggage) {
+        let refused = self.refused.contains(&event.luggage);
+        if !refused && !known.any(|request| request.job.luggage == event.luggage) {
             let job = Job { luggage: event.luggage, from: event.from, to: event.to };
             self.open.push(Request {
                 job,
@@ -154,10 +157,9 @@ impl Requests {
         }
     }
 
-    /// Takes the one at this place off the list for good.
-    pub fn remove(&mut self, place: usize) {
-        if place < self.open.len() {
-            self.open.remove(place);
-        }
+    /// Leaves luggage to others for good.
+    pub fn refuse(&mut self, luggage: u32) {
+        self.open.retain(|open| open.job.luggage != luggage);
+        self.refused.push(luggage);
     }
 }

@@ -1,6 +1,6 @@
 use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
 
-use crate::robot::RobotKnowledge;
+use crate::robot::{RobotKnowledge, Trouble};
 
 /// Uses the battery, and turns back to the charger in time.
 ///
@@ -8,7 +8,9 @@ use crate::robot::RobotKnowledge;
 /// way. What a robot finishes before its battery is that low, it finishes.
 #[derive(Debug, Default, LoopClass)]
 #[looping(name = "saoms.BatteryMS")]
-pub struct BatteryMS;
+pub struct BatteryMS {
+    charging: bool,
+}
 
 /// What the battery allows now.
 #[derive(Clone, Copy, Debug)]
@@ -74,12 +76,12 @@ impl Loop for BatteryMS {
     type Decision = BatteryDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(BatteryMS)
+        Ok(BatteryMS::default())
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hooks.has_entered() {
-            use_battery(knowledge, context);
+            self.use_battery(knowledge, context);
         }
         Ok(())
     }
@@ -89,13 +91,16 @@ impl Loop for BatteryMS {
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<Option<BatterySymptom>, Failure> {
+        if knowledge.trouble.is_some() {
+            return Ok(None);
+        }
         knowledge.energy.pace().note_action(knowledge.polled);
         let battery = knowledge.battery.percent();
         let must_charge = knowledge.energy.must_charge();
         Ok(if knowledge.is_at_charger() {
             (must_charge && knowledge.may_leave()).then_some(BatterySymptom::Charged { battery })
         } else if knowledge.battery.is_empty() {
-            (!knowledge.energy.is_stranded()).then_some(BatterySymptom::Empty)
+            Some(BatterySymptom::Empty)
         } else if must_charge || knowledge.goes_on() {
             None
         } else {
@@ -131,7 +136,7 @@ impl Loop for BatteryMS {
                 context.info(format_args!("has low battery ({battery} %): goes to charge"));
             }
             BatteryDecision::Stop => {
-                knowledge.energy.strand();
+                knowledge.trouble = Some(Trouble::Battery);
                 context.count("stranded", 1);
                 let block = knowledge.block;
                 context.log(Level::Error, format_args!("is stranded at {block}: its battery is empty"));
@@ -142,20 +147,24 @@ impl Loop for BatteryMS {
     }
 }
 
-/// Takes what an execution needs, or gives what it gains.
-fn use_battery(knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
-    if !knowledge.is_at_charger() {
-        knowledge.variables.in_charge = false;
-        return knowledge.battery.drain();
+impl BatteryMS {
+    /// Takes what an execution needs, or gives what it gains.
+    fn use_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
+        if !knowledge.is_at_charger() {
+            self.charging = false;
+            knowledge.variables.in_charge = false;
+            return knowledge.battery.drain();
+        }
+        let charging = !knowledge.battery.is_full();
+        let charged = std::mem::replace(&mut self.charging, charging);
+        if charging && !charged {
+            context.info(format_args!("charges (battery {} %)", knowledge.battery));
+        }
+        if charging {
+            knowledge.battery.charge();
+        } else if charged {
+            context.info(format_args!("is fully charged"));
+        }
+        knowledge.variables.in_charge = charging || knowledge.variables.asleep;
     }
-    let charging = !knowledge.battery.is_full();
-    if charging && !knowledge.variables.in_charge {
-        context.info(format_args!("charges (battery {} %)", knowledge.battery));
-    }
-    if charging {
-        knowledge.battery.charge();
-    } else if knowledge.variables.in_charge {
-        context.info(format_args!("is fully charged"));
-    }
-    knowledge.variables.in_charge = charging;
 }

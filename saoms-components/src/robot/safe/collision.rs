@@ -134,7 +134,7 @@ impl RobotKnowledge {
         lists.lost.retain(|robot| {
             let peer = lists.peers.get(*robot).filter(|peer| peer.priority == IMMOVABLE);
             if let Some(peer) = peer {
-                routes.learn_obstacle(peer.block);
+                routes.learn_obstacle(*robot, peer.block);
             }
             peer.is_none()
         });

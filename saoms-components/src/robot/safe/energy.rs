@@ -19,7 +19,6 @@ const YIELD_FROM: u32 = 15;
 #[derive(Debug)]
 pub(crate) struct Energy {
     must_charge: bool,
-    stranded: bool,
     pace: Pace,
     /// Executions that are kept back now: less than usual on a way that takes nearly the whole battery.
     reserve: u32,
@@ -29,7 +28,7 @@ pub(crate) struct Energy {
 
 impl Default for Energy {
     fn default() -> Energy {
-        Energy { must_charge: false, stranded: false, pace: Pace::default(), reserve: RESERVE, returns: 0 }
+        Energy { must_charge: false, pace: Pace::default(), reserve: RESERVE, returns: 0 }
     }
 }
 
@@ -47,12 +46,7 @@ pub(super) enum Means {
 impl Energy {
     /// Whether the robot has to go to its charger now, or to stay there.
     pub(super) fn must_charge(&self) -> bool {
-        self.must_charge || self.stranded
-    }
-
-    /// Whether the robot stopped because its battery is empty.
-    pub(super) fn is_stranded(&self) -> bool {
-        self.stranded
+        self.must_charge
     }
 
     /// The robot goes to its charger.
@@ -64,11 +58,6 @@ impl Energy {
     /// The robot may leave its charger.
     pub(super) fn may_go(&mut self) {
         self.must_charge = false;
-    }
-
-    /// The robot stops for good.
-    pub(super) fn strand(&mut self) {
-        self.stranded = true;
     }
 
     /// What the robot learns about its speed.

@@ -70,12 +70,7 @@ pub enum EventLuggageDecision {
         needs: u32,
     },
     /// Leave it to others: it is out of reach.
-    Refuse {
-        /// The request's place on the list.
-        place: usize,
-        /// What there is to bring.
-        job: Job,
-    },
+    Refuse(Job),
     /// Bring it.
     Take(Job),
     /// Take the interest back.
@@ -113,7 +108,7 @@ impl Recordable for EventLuggageDecision {
             EventLuggageDecision::Postpone { needs, .. } => {
                 record!("charges first: that takes {needs} executions", needs)
             }
-            EventLuggageDecision::Refuse { job: Job { luggage, .. }, .. } => {
+            EventLuggageDecision::Refuse(Job { luggage, .. }) => {
                 record!("leaves luggage {luggage} to others: its battery never lasts for that", luggage)
             }
             EventLuggageDecision::Take(Job { luggage, from, to }) => {
@@ -157,13 +152,17 @@ impl Loop for EventLuggageMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<EventLuggageSymptom>, Failure> {
-        if knowledge.variables.busy || knowledge.hooks.running().is_some() {
+        let variables = &knowledge.variables;
+        if variables.busy || variables.critical || knowledge.hooks.running().is_some() {
             return Ok(None);
         }
         if knowledge.variables.transporter {
             return Ok(self.look_at_claimed(knowledge));
         }
-        if knowledge.energy.must_charge() {
+        if knowledge.energy.must_charge() || knowledge.variables.asleep || knowledge.relieved {
+            return Ok(None);
+        }
+        if knowledge.offers_help {
             return Ok(None);
         }
         knowledge.keep_usual_reserve();
@@ -182,7 +181,7 @@ impl Loop for EventLuggageMS {
             EventLuggageSymptom::Waiting { place, job, .. } => match knowledge.means(&job) {
                 Means::Enough => EventLuggageDecision::TakeInterest { place, job },
                 Means::Needs(needs) => EventLuggageDecision::Postpone { place, needs },
-                Means::Never => EventLuggageDecision::Refuse { place, job },
+                Means::Never => EventLuggageDecision::Refuse(job),
             },
             EventLuggageSymptom::Alone(job) => EventLuggageDecision::Take(job),
             EventLuggageSymptom::Beaten { job, .. } => EventLuggageDecision::Release(job),
@@ -209,10 +208,10 @@ impl Loop for EventLuggageMS {
                 knowledge.lists.requests.open_mut()[place].needs = needs;
                 return Ok(());
             }
-            EventLuggageDecision::Refuse { place, job } => {
-                knowledge.lists.requests.remove(place);
+            EventLuggageDecision::Refuse(job) => {
+                knowledge.lists.requests.refuse(job.luggage);
                 self.warn(&job, knowledge, context);
-                return Ok(());
+                (job, LuggageStage::Refused)
             }
             EventLuggageDecision::Take(job) => {
                 knowledge.lists.requests.settle();

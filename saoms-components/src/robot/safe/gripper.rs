@@ -20,6 +20,8 @@ pub enum GripperSymptom {
     AtDestination(Job),
     /// What was deposited is not told yet.
     Deposited(Job),
+    /// What could not be collected is not told yet.
+    Failed(Job),
 }
 
 /// What to do about it.
@@ -31,6 +33,8 @@ pub enum GripperDecision {
     Deposit(Job),
     /// Tell that the luggage is delivered.
     Tell(Job),
+    /// Leave it to others.
+    Return(Job),
 }
 
 impl Recordable for GripperSymptom {
@@ -45,6 +49,9 @@ impl Recordable for GripperSymptom {
             GripperSymptom::Deposited(Job { luggage, .. }) => {
                 record!("has deposited luggage {luggage}", luggage)
             }
+            GripperSymptom::Failed(Job { luggage, from, .. }) => {
+                record!("cannot collect luggage {luggage} at {from}", luggage, from)
+            }
         }
     }
 }
@@ -56,6 +63,9 @@ impl Recordable for GripperDecision {
             GripperDecision::Deposit(Job { luggage, .. }) => record!("deposits luggage {luggage}", luggage),
             GripperDecision::Tell(Job { luggage, .. }) => {
                 record!("tells that luggage {luggage} is delivered", luggage)
+            }
+            GripperDecision::Return(Job { luggage, .. }) => {
+                record!("leaves luggage {luggage} to others", luggage)
             }
         }
     }
@@ -92,10 +102,15 @@ impl Loop for GripperMS {
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<Option<GripperSymptom>, Failure> {
-        if let Some(job) = knowledge.delivered {
-            return Ok(Some(GripperSymptom::Deposited(job)));
+        if let Some((job, stage)) = knowledge.untold {
+            let delivered = stage == LuggageStage::Delivered;
+            return Ok(Some(if delivered {
+                GripperSymptom::Deposited(job)
+            } else {
+                GripperSymptom::Failed(job)
+            }));
         }
-        if knowledge.hooks.running().is_some() {
+        if knowledge.hooks.running().is_some() || knowledge.variables.critical {
             return Ok(None);
         }
         let has_luggage = knowledge.variables.has_luggage;
@@ -113,6 +128,7 @@ impl Loop for GripperMS {
             GripperSymptom::AtLuggage(job) => GripperDecision::Collect(job),
             GripperSymptom::AtDestination(job) => GripperDecision::Deposit(job),
             GripperSymptom::Deposited(job) => GripperDecision::Tell(job),
+            GripperSymptom::Failed(job) => GripperDecision::Return(job),
         }))
     }
 
@@ -122,25 +138,23 @@ impl Loop for GripperMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        let block = knowledge.block;
-        match decision {
-            GripperDecision::Collect(job) => {
-                knowledge.begin(context, Action::collect(job.luggage, block))?;
-            }
-            GripperDecision::Deposit(job) => {
-                knowledge.begin(context, Action::deposit(job.luggage, block))?;
-            }
-            GripperDecision::Tell(_) => {}
+        let action = match decision {
+            GripperDecision::Collect(job) => Some(Action::collect(job.luggage, job.from)),
+            GripperDecision::Deposit(job) => Some(Action::deposit(job.luggage, job.to)),
+            GripperDecision::Tell(_) | GripperDecision::Return(_) => None,
+        };
+        if let Some(action) = action {
+            knowledge.begin(context, action)?;
         }
-        let Some(job) = knowledge.delivered.take() else { return Ok(()) };
-        context.send(&self.luggage, job.response(knowledge.number, block, LuggageStage::Delivered))
+        knowledge.tell(self.luggage, context)
     }
 }
 
 impl RobotKnowledge {
     /// The job, if the robot stands where it leads next, with enough left in its battery to work there.
     pub(super) fn job_here(&mut self) -> Option<Job> {
-        let stands = self.next == self.block && self.destination() == Some(self.block);
+        let destination = self.destination()?;
+        let stands = self.next == self.block && self.reaches(destination, self.block);
         self.job.filter(|_| stands && self.may_handle())
     }
 }

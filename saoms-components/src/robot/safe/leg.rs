@@ -38,18 +38,24 @@ impl Leg {
 }
 
 impl RobotKnowledge {
+    /// Whether the gripper reaches a block from another one: it is the same, or beside it and held by a robot that does not move any more.
+    pub(super) fn reaches(&self, block: Block, from: Block) -> bool {
+        from == block || (from.distance(block) == 1 && self.routes.is_obstacle(block))
+    }
+
     /// Decides where to go from now on, and how urgently.
     pub(super) fn set_leg(&mut self, now: Time) {
         let (goal, urgency) = if self.energy.must_charge() {
             (Some(self.charge_block), Urgency::Energy)
         } else if let Some(destination) = self.destination() {
             (Some(destination), Urgency::Job)
-        } else if self.variables.transporter {
+        } else if self.variables.transporter || self.offers_help {
             (None, Urgency::None)
         } else {
             (Some(self.charge_block), Urgency::Home)
         };
-        let arrived = goal.is_none_or(|goal| goal == self.next);
+        let arrived = goal.is_none_or(|goal| goal == self.next)
+            || (urgency == Urgency::Job && goal.is_some_and(|goal| self.reaches(goal, self.next)));
         let urgency = if arrived { Urgency::None } else { urgency };
         if (goal, urgency) != (self.leg.goal, self.leg.urgency) {
             self.leg = Leg { goal, urgency, since: now };
@@ -57,7 +63,9 @@ impl RobotKnowledge {
         if let Some(goal) = goal {
             self.routes.head_for(goal);
         }
-        self.variables.ready_to_go_under_charge = self.energy.must_charge();
-        self.variables.reaching_charge = urgency == Urgency::Energy;
+        let homeward = self.energy.must_charge() || self.relieved;
+        self.variables.ready_to_go_under_charge = homeward;
+        self.variables.reaching_charge =
+            homeward && goal == Some(self.charge_block) && urgency != Urgency::None;
     }
 }

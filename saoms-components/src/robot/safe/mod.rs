@@ -1,6 +1,8 @@
 //! The loops of a robot that neither collides nor runs out of battery, whatever the periods of the others.
 //!
 //! - *Energy*: it takes only jobs for which the battery lasts to the end and back to the charger, and turns back in time. See [`BatteryMS`].
+//! - *Rest*: it sleeps where it is not needed, until it is awaked. See [`RobotMS`].
+//! - *Emergencies*: when it breaks, another robot takes over its job. See [`CriticalSituationMS`].
 //! - *Jobs*: it takes an interest in the luggage that suits it best and says so; it takes the job once no other robot that is interested is
 //!   closer. See [`EventLuggageMS`].
 //! - *Right of way*: it says which block it wants, and goes there once nobody else holds or wants it. Where robots meet, the one with the
@@ -8,6 +10,7 @@
 
 mod battery;
 mod collision;
+mod critical;
 mod energy;
 mod event_luggage;
 mod gripper;
@@ -15,16 +18,19 @@ mod leg;
 mod pace;
 mod path_follower;
 mod robot_list;
+mod robot_state;
 mod traffic;
 
 use saoms_api::{DynLoop, Failure, Loop, Loops};
 
 pub use battery::BatteryMS;
 pub use collision::CollisionMS;
+pub use critical::CriticalSituationMS;
 pub use event_luggage::EventLuggageMS;
 pub use gripper::GripperMS;
 pub use path_follower::PathFollowerMS;
 pub use robot_list::RobotListMS;
+pub use robot_state::RobotMS;
 
 pub(super) use energy::Energy;
 pub(super) use leg::Leg;
@@ -32,9 +38,11 @@ pub(super) use traffic::Traffic;
 
 /// These loops in their order.
 pub(super) fn loops() -> Result<Loops, Failure> {
-    let loops: [(&str, Box<dyn DynLoop>); 6] = [
+    let loops: [(&str, Box<dyn DynLoop>); 8] = [
+        ("RobotMS", Box::new(RobotMS::new(())?)),
         ("BatteryMS", Box::new(BatteryMS::new(())?)),
         ("RobotListMS", Box::new(RobotListMS::new(())?)),
+        ("CriticalSituationMS", Box::new(CriticalSituationMS::new(())?)),
         ("GripperMS", Box::new(GripperMS::new(())?)),
         ("EventLuggageMS", Box::new(EventLuggageMS::new(())?)),
         ("CollisionMS", Box::new(CollisionMS::new(())?)),

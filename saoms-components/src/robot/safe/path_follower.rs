@@ -107,10 +107,9 @@ impl Loop for PathFollowerMS {
     ) -> Result<Option<PathSymptom>, Failure> {
         let block = knowledge.block;
         if knowledge.is_bound() {
-            let said = self
-                .said
-                .as_ref()
-                .is_some_and(|said| (said.block, said.wanted, said.priority) == (block, block, IMMOVABLE));
+            let said = self.said.as_ref().is_some_and(|said| {
+                (said.block, said.next, said.wanted, said.priority) == (block, block, block, IMMOVABLE)
+            });
             return Ok((!said).then_some(PathSymptom::Bound { block }));
         }
         knowledge.set_leg(context.now());
@@ -164,6 +163,11 @@ impl Loop for PathFollowerMS {
         }
         self.say_if_news(context, position)
     }
+
+    fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        // The robot stays where it is, and nobody else gets past it.
+        self.say_if_news(context, Position { priority: IMMOVABLE, ..knowledge.position() })
+    }
 }
 
 impl PathFollowerMS {
@@ -212,6 +216,6 @@ fn want(knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Position {
 impl RobotKnowledge {
     /// Whether the robot works with luggage, or cannot move any more.
     fn is_bound(&self) -> bool {
-        self.hooks.is_handling() || self.energy.is_stranded()
+        self.hooks.is_handling() || self.variables.critical
     }
 }

@@ -22,6 +22,7 @@ const BATTERY_STEP: f64 = 5.0;
 pub struct RobotListSymptom {
     battery: f64,
     in_charge: bool,
+    critical: bool,
 }
 
 /// To say so.
@@ -32,6 +33,7 @@ impl Recordable for RobotListSymptom {
     fn record(&self) -> Record {
         let battery = self.battery;
         match self.in_charge {
+            _ if self.critical => record!("is out of order, and asked for help"),
             true => record!("is in charge with {battery} %, which the others do not know", battery),
             false => record!("has {battery} % left, which the others do not know", battery),
         }
@@ -68,7 +70,13 @@ impl Loop for RobotListMS {
         for robot in context.receive(&self.robots_heard) {
             knowledge.lists.hear_robot(robot);
             knowledge.routes.learn_charger(robot.charger);
-            if robot.is_out_of_battery() {
+            if robot.robot == knowledge.number {
+                continue;
+            }
+            knowledge.lists.lost.retain(|lost| *lost != robot.robot);
+            if robot.active {
+                knowledge.routes.forget_obstacle(robot.robot);
+            } else {
                 knowledge.lists.lost.push(robot.robot);
             }
         }
@@ -84,9 +92,12 @@ impl Loop for RobotListMS {
         let news = self.said.as_ref().is_none_or(|said| {
             said.in_charge != in_charge
                 || (said.battery - battery).abs() >= BATTERY_STEP
-                || (knowledge.energy.is_stranded() && said.battery > 0.0)
+                || said.asleep != knowledge.variables.asleep
+                || said.charger != knowledge.charge_block
+                || knowledge.variables.critical
         });
-        Ok(news.then_some(RobotListSymptom { battery, in_charge }))
+        let critical = knowledge.variables.critical;
+        Ok(news.then_some(RobotListSymptom { battery, in_charge, critical }))
     }
 
     fn plan(
@@ -104,7 +115,8 @@ impl Loop for RobotListMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        let robot = knowledge.robot(true);
+        knowledge.shut_down = knowledge.variables.critical;
+        let robot = knowledge.robot(!knowledge.shut_down);
         self.said = Some(robot.clone());
         context.send(&self.robots, robot)
     }

@@ -1,0 +1,201 @@
+use saoms_api::{
+    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
+};
+
+use crate::messages::{ROBOT_STATE, RobotState};
+use crate::robot::RobotKnowledge;
+
+/// Awakes the robot and lets it sleep, as others ask.
+///
+/// A robot that is sent to sleep finishes its job, goes to its charger and takes no jobs until it is awaked. It goes on to listen and to make
+/// way. It awakes by itself where a robot needs help and no other robot is awake.
+#[derive(Debug, Default, LoopClass)]
+#[looping(name = "saoms.RobotMS")]
+pub struct RobotMS {
+    states: Subscription<RobotState>,
+    called: Option<(RobotState, Cause)>,
+}
+
+/// Why to be awake, or asleep.
+#[derive(Clone, Copy, Debug)]
+pub enum RobotSymptom {
+    /// Somebody awakes the robot, perhaps in place of another one.
+    Awaked {
+        /// The robot to stand in for; 0 where it is for none.
+        emulate: u32,
+    },
+    /// Somebody sends the robot to its charger.
+    SentToSleep,
+    /// A robot needs help, and nobody is awake.
+    NobodyAwake {
+        /// The robot.
+        critical: u32,
+    },
+    /// The robot was sent to sleep, and is at its charger.
+    AtRest,
+}
+
+/// What to do about it.
+#[derive(Clone, Copy, Debug)]
+pub enum RobotDecision {
+    /// Be awake, perhaps in place of another robot.
+    Awake {
+        /// The robot to stand in for; 0 where it is for none.
+        emulate: u32,
+    },
+    /// Stay awake.
+    StayAwake,
+    /// Finish the job, then sleep.
+    Finish,
+    /// Sleep.
+    Sleep,
+}
+
+impl Recordable for RobotSymptom {
+    fn record(&self) -> Record {
+        match *self {
+            RobotSymptom::Awaked { emulate: 0 } => record!("is awaked"),
+            RobotSymptom::Awaked { emulate } => record!("is awaked in place of robot {emulate}", emulate),
+            RobotSymptom::SentToSleep => record!("is sent to sleep"),
+            RobotSymptom::NobodyAwake { critical } => {
+                record!("robot {critical} needs help, and no robot is awake", critical)
+            }
+            RobotSymptom::AtRest => record!("is at its charger and was sent to sleep"),
+        }
+    }
+}
+
+impl Recordable for RobotDecision {
+    fn record(&self) -> Record {
+        match *self {
+            RobotDecision::Awake { emulate: 0 } => record!("awakes"),
+            RobotDecision::Awake { emulate } => record!("awakes and stands in for robot {emulate}", emulate),
+            RobotDecision::StayAwake => record!("is awake already"),
+            RobotDecision::Finish => record!("finishes its job, then sleeps"),
+            RobotDecision::Sleep => record!("sleeps"),
+        }
+    }
+}
+
+impl Loop for RobotMS {
+    type Properties = ();
+    type Knowledge = RobotKnowledge;
+    type Symptom = RobotSymptom;
+    type Decision = RobotDecision;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(RobotMS::default())
+    }
+
+    fn initialize(
+        &mut self,
+        _knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.states = context.subscribe(&ROBOT_STATE)?;
+        Ok(())
+    }
+
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let mut mine = context.receive(&self.states).with_headers();
+        if let Some((header, state)) = mine.rfind(|(_, state)| state.robot == knowledge.number) {
+            self.called = Some((state.clone(), header.cause));
+        }
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<Option<RobotSymptom>, Failure> {
+        if knowledge.variables.critical {
+            return Ok(None);
+        }
+        if let Some((state, cause)) = self.called.take() {
+            context.because(cause);
+            let symptom = RobotSymptom::Awaked { emulate: state.emulate };
+            return Ok(Some(if state.awake { symptom } else { RobotSymptom::SentToSleep }));
+        }
+        if knowledge.variables.asleep {
+            return Ok(knowledge.has_to_help().map(|(critical, cause)| {
+                context.because(cause);
+                RobotSymptom::NobodyAwake { critical }
+            }));
+        }
+        let rests = knowledge.relieved && knowledge.is_free() && knowledge.is_at_charger();
+        Ok(rests.then_some(RobotSymptom::AtRest))
+    }
+
+    fn plan(
+        &mut self,
+        symptom: RobotSymptom,
+        knowledge: &mut RobotKnowledge,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<RobotDecision>, Failure> {
+        let asleep = knowledge.variables.asleep;
+        Ok(match symptom {
+            RobotSymptom::Awaked { emulate } if asleep || knowledge.relieved => {
+                Some(RobotDecision::Awake { emulate })
+            }
+            RobotSymptom::Awaked { .. } => Some(RobotDecision::StayAwake),
+            RobotSymptom::NobodyAwake { critical } => Some(RobotDecision::Awake { emulate: critical }),
+            RobotSymptom::SentToSleep => (!asleep).then_some(RobotDecision::Finish),
+            RobotSymptom::AtRest => Some(RobotDecision::Sleep),
+        })
+    }
+
+    fn execute(
+        &mut self,
+        decision: RobotDecision,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        match decision {
+            RobotDecision::Awake { emulate } => {
+                (knowledge.variables.asleep, knowledge.relieved) = (false, false);
+                knowledge.stands_in_for = Some(emulate).filter(|emulate| *emulate > 0);
+                context.info(format_args!("awakes"));
+            }
+            RobotDecision::StayAwake => {}
+            RobotDecision::Finish => knowledge.relieved = true,
+            RobotDecision::Sleep => {
+                (knowledge.variables.asleep, knowledge.relieved) = (true, false);
+                context.info(format_args!("sleeps"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl RobotKnowledge {
+    /// Whether the robot has no job and would take none.
+    pub(super) fn is_free(&self) -> bool {
+        !self.variables.busy && !self.variables.transporter && !self.offers_help
+    }
+
+    /// The robot that needs help, if this one is the first to awake where nobody is awake.
+    fn has_to_help(&self) -> Option<(u32, Cause)> {
+        let request = self.lists.helps.open().iter().find(|request| self.is_to_be_helped(request))?;
+        let first = self.lists.sleepers().all(|other| self.number < other.robot);
+        let first = first && !self.lists.anybody_awake();
+        first.then_some((request.situation.critical, request.cause))
+    }
+}
+
+/// Where others learn who has to be awake.
+#[derive(Debug, Default)]
+pub(super) struct Caller {
+    states: Publisher<RobotState>,
+}
+
+impl Caller {
+    pub(super) fn new(context: &mut Context<'_>) -> Result<Caller, Failure> {
+        Ok(Caller { states: context.publish(&ROBOT_STATE)? })
+    }
+
+    /// Awakes a robot in place of another one.
+    pub(super) fn awake(&self, context: &mut Context<'_>, robot: u32, emulate: u32) -> Result<(), Failure> {
+        context.send(&self.states, RobotState { robot, awake: true, emulate })
+    }
+}

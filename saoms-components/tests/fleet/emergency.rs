@@ -1,0 +1,171 @@
+//! Robots that break, at every moment of their work: no luggage is lost or delivered twice, and nobody collides.
+
+use std::time::Duration;
+
+use saoms_api::{Chance, Class, Component, Context, Failure, Properties, Publisher};
+use saoms_components::environment::Environment;
+use saoms_components::master::MasterEnvironment;
+use saoms_components::messages::{FAULT, Fault, FaultKind};
+use saoms_components::robot::Robot;
+use saoms_components::world::World;
+
+use crate::host::Fleet;
+
+/// Breaks robots: each value is a time in milliseconds and a robot's number.
+#[derive(Class)]
+#[class(name = "test.Fate", periodic, publishes(FAULT))]
+struct Fate {
+    strokes: Vec<(u64, u32)>,
+    faults: Publisher<Fault>,
+}
+
+#[derive(Properties)]
+struct FateProperties {
+    strokes: Vec<String>,
+}
+
+impl Component for Fate {
+    type Properties = FateProperties;
+
+    fn new(properties: FateProperties) -> Result<Self, Failure> {
+        let strokes = properties.strokes.iter().flat_map(|stroke| stroke.split(';')).map(|stroke| {
+            let (time, robot) = stroke.split_once(' ').unwrap();
+            (time.parse().unwrap(), robot.parse().unwrap())
+        });
+        Ok(Fate { strokes: strokes.collect(), faults: Publisher::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.faults = context.publish(&FAULT)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let now = context.now().as_nanos() / 1_000_000;
+        for (_, robot) in self.strokes.extract_if(.., |(time, _)| *time <= now) {
+            context.send(&self.faults, Fault { robot, kind: FaultKind::Breakdown })?;
+        }
+        Ok(())
+    }
+}
+
+/// A small fleet, some of whose robots break.
+struct Emergency<'a> {
+    robots: u32,
+    /// Those that start asleep.
+    asleep: &'a [u32],
+    scenario: &'a str,
+    /// When which robot breaks, in milliseconds.
+    strokes: Vec<(u64, u32)>,
+    lateness: f64,
+    move_time: u64,
+    handling_time: u64,
+    seed: u64,
+}
+
+const TWO: &str = "at 500ms luggage (3,1) to (3,6); at 500ms luggage (6,4) to (1,4)";
+
+impl Default for Emergency<'_> {
+    fn default() -> Self {
+        Emergency {
+            robots: 3,
+            asleep: &[],
+            scenario: TWO,
+            strokes: Vec::new(),
+            lateness: 0.0,
+            move_time: 0,
+            handling_time: 0,
+            seed: 0,
+        }
+    }
+}
+
+impl Emergency<'_> {
+    fn fleet(&self) -> Fleet {
+        let (zero, fast) = (Duration::ZERO, Duration::from_millis(20));
+        let mut fleet = Fleet::new(self.seed, self.lateness);
+        let mut chance = Chance::for_component(self.seed, "emergency");
+        let millis = |time: u64| format!("{time}ms");
+        let (moving, handling) = (millis(self.move_time), millis(self.handling_time));
+        let times = [("moveTime", &*moving), ("handlingTime", &*handling), ("width", "8"), ("height", "8")];
+        let world = fleet.add::<World>("World", fast, zero, &times, &[]);
+        fleet.add::<MasterEnvironment>("MasterEnvironment", fast, zero, &[], &[]);
+        fleet.add::<Environment>("Environment", fast, zero, &[("scenario", self.scenario)], &[]);
+        let strokes: Vec<String> =
+            self.strokes.iter().map(|(time, robot)| format!("{time} {robot}")).collect();
+        if !strokes.is_empty() {
+            fleet.add::<Fate>("Fate", fast, zero, &[("strokes", &strokes.join(";"))], &[]);
+        }
+        for robot in 1..=self.robots {
+            let late = self.lateness > 0.0;
+            let period = Duration::from_millis(if late { chance.range(50..=150) } else { 100 });
+            let delay = Duration::from_millis(if late { chance.below(100) } else { 0 });
+            let id = format!("Robot{robot:03}");
+            let asleep = self.asleep.contains(&robot).to_string();
+            let properties = [("ID", &*id), ("asleep", &asleep), ("discharge", "0.5")];
+            fleet.add::<Robot>(&id, period, delay, &properties, &[("world", world, "hardware")]);
+        }
+        fleet.initialize().unwrap();
+        fleet
+    }
+
+    /// Runs it, and checks that all is delivered once.
+    fn check(&self) -> Fleet {
+        let mut fleet = self.fleet();
+        let done = fleet.run(Duration::from_secs(300));
+        let tail = fleet.log[fleet.log.len().saturating_sub(40)..].join("\n");
+        let context = format!(
+            "strokes {:?}, lateness {}, seed {}, {}: {:?}\n{tail}",
+            self.strokes,
+            self.lateness,
+            self.seed,
+            fleet.time(),
+            fleet.counts
+        );
+        assert!(done, "not finished: {context}");
+        for count in ["collisions.vertex", "collisions.swap", "stranded"] {
+            assert_eq!(fleet.count(count), 0, "{count}: {context}");
+        }
+        assert_eq!(fleet.count("luggage.delivered"), fleet.count("luggage.requested"), "{context}");
+        fleet
+    }
+}
+
+/// With messages that arrive at once, and late; with hardware that takes no time, and some.
+fn variants() -> impl Iterator<Item = Emergency<'static>> {
+    [(0.0, 0, 0), (0.99, 0, 0), (0.9, 170, 230)].into_iter().zip(0..).map(
+        |((lateness, move_time, handling_time), seed)| Emergency {
+            lateness,
+            move_time,
+            handling_time,
+            seed,
+            ..Emergency::default()
+        },
+    )
+}
+
+#[test]
+fn a_robot_breaks_at_any_moment_and_another_one_takes_over() {
+    for variant in variants() {
+        let slow = 1 + variant.move_time / 60;
+        for (moment, robot) in (0..60).flat_map(|moment| [(moment, 1 + moment as u32 % 3)]) {
+            let strokes = vec![(moment * 50 * slow, robot)];
+            let fleet = Emergency { strokes, ..variant }.check();
+            assert!(fleet.count("assistance") <= 1);
+        }
+    }
+}
+
+#[test]
+fn the_healer_breaks_as_well() {
+    for variant in variants() {
+        let slow = 1 + variant.move_time / 60;
+        for (moment, later) in
+            (10..30).step_by(3).flat_map(|moment| (0..9).map(move |later| (moment, later * 5 + moment % 5)))
+        {
+            let moment = moment * 100 * slow;
+            let strokes = vec![(moment, 1), (moment + later * 50 * slow, 2)];
+            Emergency { strokes, ..variant }.check();
+        }
+    }
+}
