@@ -10,8 +10,10 @@ use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
 use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
 use saoms_core::report::RunReport;
-use saoms_core::schedule::{Events, Quiet, Settings};
+use saoms_core::schedule::{Events, Settings};
 use saoms_core::source::Sources;
+
+use crate::run::{Log, Run};
 
 /// A fleet under test: one or several composites, and values for their properties.
 #[derive(Clone, Debug, Default)]
@@ -80,11 +82,13 @@ impl Fleet {
     ///
     /// # Panics
     /// With all diagnostics when the composites have errors, and with the component's words when one does not start.
-    pub fn run(&self, seed: u64, limit: Duration) -> RunReport {
-        self.run_with(seed, limit, Arc::new(Quiet))
+    pub fn run(&self, seed: u64, limit: Duration) -> Run {
+        let log = Arc::new(Log::default());
+        let report = self.run_with(seed, limit, Arc::clone(&log) as Arc<dyn Events>);
+        Run::new(report, &log)
     }
 
-    /// The same, and tells what happens meanwhile.
+    /// The same, and tells somebody else what happens meanwhile.
     ///
     /// # Panics
     /// As [`run`](Fleet::run).

@@ -14,13 +14,31 @@
 //!       </component>
 //!     </composite>"#);
 //! assert_eq!(fleet.diagnostics(), "");
-//! let report = fleet.set("period", "50").run(7, Duration::from_secs(10));
-//! assert_eq!(report.components[0].executions, 200);
+//! let run = fleet.set("period", "50").run(7, Duration::from_secs(10));
+//! assert_eq!(run.components[0].executions, 200);
+//! ```
+//!
+//! A test holds a fleet to how it adapts itself by the [journal](saoms_core::journal) of a run: what each loop saw, decided and did, when, and
+//! what came from what.
+//!
+//! ```
+//! use std::time::Duration;
+//! use saoms_testkit::Fleet;
+//!
+//! let run = Fleet::of_file("../composites/hall.composite").run(7, Duration::from_secs(60));
+//! let robot = run.journal().of("Robot7");
+//! let collects = robot.decisions().with("collects luggage 1").last().unwrap();
+//! let (reasons, _) = run.journal().reasons(collects);
+//! assert_eq!(reasons[0].text(), "is at (3,1), where luggage 1 is");
+//! assert_eq!(run.journal().of("Robot7").changes("hasLuggage").len(), 2);
+//! assert_eq!(run.log_of("Robot7")[0], "takes luggage 1 from (3,1) to (3,10)");
 //! ```
 //!
 //! The components that ship are linked in; a crate with its own links them by naming it: `use my_robot as _;`.
 
 mod fleet;
+mod run;
 
 pub use fleet::Fleet;
+pub use run::Run;
 use saoms_components as _;

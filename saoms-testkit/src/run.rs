@@ -1,0 +1,74 @@
+use std::fmt::Write;
+use std::ops::Deref;
+use std::sync::{Mutex, PoisonError};
+
+use saoms_api::Level;
+use saoms_core::journal::Journal;
+use saoms_core::report::RunReport;
+use saoms_core::schedule::{Event, Events};
+
+/// A run that has ended: its report, its journal and its log.
+///
+/// What is asked of a run directly is asked of its [report](RunReport).
+#[derive(Clone, Debug)]
+pub struct Run {
+    report: RunReport,
+    log: Vec<Event>,
+}
+
+impl Run {
+    pub(crate) fn new(report: RunReport, log: &Log) -> Run {
+        Run { report, log: std::mem::take(&mut log.events()) }
+    }
+
+    /// What the loops saw, decided and did.
+    pub fn journal(&self) -> &Journal {
+        &self.report.journal
+    }
+
+    /// What components wrote to the log, and what else happened to them, such as failures; starts and proper ends aside. One line for each:
+    /// `[1.100 s] Robot7: takes luggage 1 from (3,1) to (3,10)`.
+    pub fn log(&self) -> String {
+        self.log.iter().fold(String::new(), |mut text, event| {
+            let _ = writeln!(text, "{event}");
+            text
+        })
+    }
+
+    /// The lines of one component, by its path, without time and name.
+    pub fn log_of(&self, component: &str) -> Vec<String> {
+        let own = self.log.iter().filter(|event| event.component.as_deref() == Some(component));
+        own.map(|event| event.what.to_string()).collect()
+    }
+
+    /// The report alone.
+    pub fn into_report(self) -> RunReport {
+        self.report
+    }
+}
+
+impl Deref for Run {
+    type Target = RunReport;
+
+    fn deref(&self) -> &RunReport {
+        &self.report
+    }
+}
+
+/// Remembers what happens.
+#[derive(Debug, Default)]
+pub(crate) struct Log(Mutex<Vec<Event>>);
+
+impl Log {
+    fn events(&self) -> std::sync::MutexGuard<'_, Vec<Event>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Events for Log {
+    fn event(&self, event: &Event) {
+        if event.what.level() <= Level::Info {
+            self.events().push(event.clone());
+        }
+    }
+}
