@@ -145,7 +145,7 @@ fn composites_in_composites_run_and_call_all_targets_of_a_reference() {
     let fleet = Fleet::of_file(&path);
     assert_eq!(fleet.diagnostics(), "");
     let report = fleet.run(1, Duration::from_secs(1));
-    let lamps = serde_json::to_value(&report).unwrap()["lamps"].clone();
+    let lamps = serde_json::to_value(&*report).unwrap()["lamps"].clone();
     assert_eq!(lamps, serde_json::json!({"up-a": 10, "up-b": 10, "down-a": 10, "down-b": 10}));
     runs_the_same(&fleet);
     runs_the_same(&fleet.set("pace", "20"));
