@@ -5,21 +5,18 @@ use std::sync::Arc;
 
 use super::fleet::{Fleet, Kind};
 use super::report::{Report, escaped, list, replacing};
-use crate::assembly::TaskProperties;
+use super::slots::Slots;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, ImplementationKind, Part};
 use crate::registry::{
-    Class, LoopDeclaration, PropertyDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration,
-    TopicDeclaration,
+    Class, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration, TopicDeclaration,
 };
 use crate::source::Text;
 
 /// A class of the fleet, with its declaration at hand; where components of it have loops, together with these.
 pub(super) struct ClassIndex<'r> {
     pub(super) class: &'r Arc<Class>,
-    /// Its properties, those of tasks behind its own.
-    pub(super) properties: Vec<Slot<'r>>,
-    by_name: HashMap<&'r str, usize>,
+    pub(super) slots: Slots<'r>,
     /// What it offers, what the host serves for it included.
     pub(super) services: Vec<&'r ServiceDeclaration>,
     /// Those of its loops included, like its topics.
@@ -28,56 +25,13 @@ pub(super) struct ClassIndex<'r> {
     pub(super) subscribes: Vec<&'r TopicDeclaration>,
 }
 
-/// A property that components of a class can be given.
-///
-/// A class can declare a property that tasks have as well, as robots do with `ID`; then one value serves both and the
-/// stricter rule counts.
-pub(super) struct Slot<'r> {
-    pub(super) own: Option<&'r PropertyDeclaration>,
-    pub(super) task: Option<&'r PropertyDeclaration>,
-}
-
-impl<'r> Slot<'r> {
-    pub(super) fn declarations(&self) -> impl Iterator<Item = &'r PropertyDeclaration> {
-        self.own.into_iter().chain(self.task)
-    }
-
-    pub(super) fn is_required(&self) -> bool {
-        self.declarations().any(|declaration| declaration.required)
-    }
-
-    /// The declaration that people are told of.
-    pub(super) fn main(&self) -> Option<&'r PropertyDeclaration> {
-        self.own.or(self.task)
-    }
-}
-
 impl<'r> ClassIndex<'r> {
     fn new(class: &'r Arc<Class>) -> Self {
         let declaration = class.declaration();
-        let own = declaration.properties.iter().map(|own| Slot { own: Some(own), task: None });
-        let mut properties: Vec<Slot<'r>> = own.collect();
-        let mut by_name: HashMap<&str, usize> = declaration
-            .properties
-            .iter()
-            .enumerate()
-            .map(|(place, own)| (own.name.as_str(), place))
-            .collect();
-        let task = if declaration.is_periodic() { TaskProperties::declarations() } else { &[] };
-        for task in task {
-            match by_name.get(task.name.as_str()) {
-                Some(&place) => properties[place].task = Some(task),
-                None => {
-                    by_name.insert(&task.name, properties.len());
-                    properties.push(Slot { own: None, task: Some(task) });
-                }
-            }
-        }
         let services = declaration.offers().collect();
         Self {
             class,
-            properties,
-            by_name,
+            slots: Slots::of_class(class),
             services,
             references: declaration.references.iter().collect(),
             publishes: declaration.publishes.iter().collect(),
@@ -99,16 +53,6 @@ impl<'r> ClassIndex<'r> {
             }
         }
         all
-    }
-
-    /// The place of the property of this name.
-    pub(super) fn property(&self, name: &str) -> Option<usize> {
-        self.by_name.get(name).copied()
-    }
-
-    /// The names of all properties, in order.
-    pub(super) fn property_names(&self) -> impl Iterator<Item = &'r str> + Clone {
-        self.properties.iter().filter_map(|slot| slot.main()).map(|declaration| declaration.name.as_str())
     }
 
     /// Whether the topics it declares are any.

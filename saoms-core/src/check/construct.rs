@@ -2,22 +2,34 @@
 
 use super::classes::ClassIndex;
 use super::findings::{Subject, diagnostic};
+use super::loops::Resolved;
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use saoms_api::contain::contained;
+use saoms_api::{Failure, contain::contained};
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
-///
-/// What it finds is shown at the values that it is about, any other judgement at the component's name.
-pub(super) fn check(subject: Subject<'_>, class: &ClassIndex<'_>, report: &mut Report<'_>) {
-    let constructed = contained(|| class.class.construct(subject.values).map(drop));
-    let Err(failure) = constructed.and_then(|result| result) else { return };
-    let help = format!(
-        "{} says what its properties mean",
-        quoted(&format!("saoms components {}", class.class.name()))
-    );
+pub(super) fn component(subject: Subject<'_>, class: &ClassIndex<'_>, report: &mut Report<'_>) {
+    judge(|| class.class.construct(subject.values).map(drop), subject, class.class.name(), report);
+}
+
+/// The same for a loop that the composite says something about.
+pub(super) fn looping(one: &Resolved<'_>, report: &mut Report<'_>) {
+    let Some(subject) = one.subject() else { return };
+    let class = &one.spec.class;
+    judge(|| class.construct(subject.values).map(drop), subject, class.name(), report);
+}
+
+/// What a constructor finds is shown at the values that it is about, any other judgement at the name.
+fn judge(
+    construct: impl FnOnce() -> Result<(), Failure>,
+    subject: Subject<'_>,
+    class: &str,
+    report: &mut Report<'_>,
+) {
+    let Err(failure) = contained(construct).and_then(|result| result) else { return };
+    let help = format!("{} says what its properties mean", quoted(&format!("saoms components {class}")));
     if failure.findings().is_empty() {
-        let message = format!("component {}: {failure}", quoted(subject.name));
+        let message = format!("{} {}: {failure}", subject.what, quoted(subject.name));
         report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help));
         return;
     }

@@ -7,9 +7,11 @@ use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::source::Location;
 
-/// A component, for findings about it.
+/// A component, or a loop of one, for findings about it.
 #[derive(Clone, Copy)]
 pub(super) struct Subject<'a> {
+    /// `component` or `loop`.
+    pub(super) what: &'static str,
     pub(super) name: &'a str,
     /// Where its name is.
     pub(super) at: Location,
@@ -34,7 +36,7 @@ pub(super) fn diagnostic<'s>(
         return None;
     }
     let place = located(finding.place(), about, report);
-    let message = format!("component {}: {finding}", quoted(about.name));
+    let message = format!("{} {}: {finding}", about.what, quoted(about.name));
     let mut one = Diagnostic::new(code, place.at, message).severity(severity);
     for (other, text) in finding.labels() {
         let at = located(other, subject(other), report).at;

@@ -23,6 +23,7 @@ mod raw;
 mod rename;
 mod report;
 mod setting;
+mod slots;
 mod target;
 mod task;
 #[cfg(test)]
@@ -35,7 +36,7 @@ mod wires;
 
 use saoms_api::PropertyValue;
 
-use crate::assembly::{Assembly, ComponentSpec, LoopSpec, Target, TaskSettings, Wire};
+use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
 use crate::diagnostic::Diagnostics;
 use crate::model::Contribution;
 use crate::registry::Registry;
@@ -46,7 +47,7 @@ use findings::Subject;
 use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
-use properties::{Checked, Written};
+use properties::{Checked, Giver, Written};
 pub(crate) use rename::topic_renames;
 use report::Report;
 pub use setting::Setting;
@@ -84,7 +85,7 @@ pub fn check(
     let mut parameters = Parameters::of(&fleet, &options.settings, report);
     let mut classes = classes::resolve(&mut fleet, registry, options.assume_classes, report);
     let checked = properties(&fleet, &classes, &mut parameters, report);
-    let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, report);
+    let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
     let resolved = components(&fleet, &classes, checked, loops, report);
     contracts::check(&fleet, &classes, report);
@@ -93,7 +94,8 @@ pub fn check(
     saoms_api::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
         if let (Kind::Class(class), Some(resolved)) = (member.kind, resolved) {
-            construct::check(resolved.subject(member), &classes[class], report);
+            construct::component(resolved.subject(member), &classes[class], report);
+            resolved.loops.iter().for_each(|one| construct::looping(one, report));
         }
     }
     if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
@@ -106,13 +108,19 @@ struct Resolved<'r> {
     /// Where the composite gives them.
     written: Vec<Written<'r>>,
     task: Option<TaskSettings>,
-    loops: Vec<LoopSpec>,
+    loops: Vec<loops::Resolved<'r>>,
 }
 
 impl Resolved<'_> {
     fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
         let name = &member.component.name;
-        Subject { name: name.as_str(), at: name.location, values: &self.values, written: &self.written }
+        Subject {
+            what: "component",
+            name: name.as_str(),
+            at: name.location,
+            values: &self.values,
+            written: &self.written,
+        }
     }
 }
 
@@ -127,7 +135,13 @@ fn properties<'a>(
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
         if let Kind::Class(index) = member.kind {
-            all.push(Some(properties::check(member, &classes[index], parameters, &mut values, report)));
+            all.push(Some(properties::check(
+                &Giver::component(member),
+                &classes[index].slots,
+                parameters,
+                &mut values,
+                report,
+            )));
             continue;
         }
         properties::repeated(member.component, report);
@@ -150,7 +164,7 @@ fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
     checked: Vec<Option<Checked>>,
-    loops: Vec<Option<Vec<LoopSpec>>>,
+    loops: Vec<Option<Vec<loops::Resolved<'a>>>>,
     report: &mut Report<'_>,
 ) -> Vec<Option<Resolved<'a>>> {
     let mut unique = unique::Unique::default();
@@ -169,10 +183,11 @@ fn components<'f, 'a>(
         let task = task.and_then(|task| task.settings);
         let sound = checked.is_sound && is_periodic == task.is_some();
         all.push(loops.filter(|_| sound).map(|loops| {
-            let mut values = checked.values(class, |slot| slot.own);
-            let absent = class.class.presets().iter().filter(|(name, _)| checked.get(class, name).is_none());
+            let mut values = checked.values(&class.slots, |slot| slot.own);
+            let absent =
+                class.class.presets().iter().filter(|(name, _)| checked.get(&class.slots, name).is_none());
             values.extend(absent.cloned());
-            Resolved { values, written: checked.places(class), task, loops }
+            Resolved { values, written: checked.places(&class.slots), task, loops }
         }));
     }
     all
@@ -219,7 +234,7 @@ fn assemble(
             values,
             task,
             references: references.collect(),
-            loops,
+            loops: loops.into_iter().map(|one| one.spec).collect(),
         });
     }
     Some(Assembly { components })

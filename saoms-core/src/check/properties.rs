@@ -4,15 +4,15 @@ use std::collections::HashMap;
 
 use saoms_api::PropertyValue;
 
-use super::classes::{ClassIndex, Slot};
 use super::fleet::{Member, Unit};
 use super::parameters::{Found, Parameters};
 use super::raw::Piece;
 use super::report::Report;
+use super::slots::{Slot, Slots};
 use super::values::{Path, Use, Values};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::model::{Component, Part, Property};
+use crate::model::{Component, Loop, Origin, Part, Property};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
 
@@ -64,13 +64,13 @@ pub(super) struct Checked {
 
 impl Checked {
     /// What is given for the property of this name.
-    pub(super) fn get(&self, class: &ClassIndex<'_>, name: &str) -> Option<&Given> {
-        self.given[class.property(name)?].as_ref()
+    pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<&Given> {
+        self.given[slots.place(name)?].as_ref()
     }
 
     /// Where the class's own properties are given.
-    pub(super) fn places<'r>(&self, class: &ClassIndex<'r>) -> Vec<Written<'r>> {
-        let slots = class.properties.iter().zip(&self.given);
+    pub(super) fn places<'r>(&self, slots: &Slots<'r>) -> Vec<Written<'r>> {
+        let slots = slots.all.iter().zip(&self.given);
         let places = slots.filter_map(|(slot, given)| {
             let (property, given) = (&slot.own?.name, given.as_ref()?);
             Some(Written { property, first: given.place, more: given.more.clone(), source: given.source })
@@ -81,38 +81,59 @@ impl Checked {
     /// The values of those properties that `of` finds a declaration for.
     pub(super) fn values<'r>(
         &self,
-        class: &ClassIndex<'r>,
+        slots: &Slots<'r>,
         of: impl Fn(&Slot<'r>) -> Option<&'r PropertyDeclaration>,
     ) -> Vec<(String, PropertyValue)> {
-        let slots = class.properties.iter().zip(&self.given);
+        let slots = slots.all.iter().zip(&self.given);
         let values =
             slots.filter_map(|(slot, given)| Some((of(slot)?.name.clone(), given.as_ref()?.value.clone())));
         values.collect()
     }
 }
 
-/// Checks the properties of one component of the class.
+/// Who gives values to properties: a component, or what it says about one of its loops.
+pub(super) struct Giver<'m, 'a> {
+    what: &'static str,
+    name: &'a Text,
+    origin: Origin,
+    properties: &'a [Property],
+    /// The component.
+    member: &'m Member<'a>,
+}
+
+impl<'m, 'a> Giver<'m, 'a> {
+    pub(super) fn component(member: &'m Member<'a>) -> Self {
+        let component = member.component;
+        let (name, properties) = (&component.name, &component.properties);
+        Self { what: "component", name, origin: component.origin, properties, member }
+    }
+
+    pub(super) fn looping(one: &'a Loop, member: &'m Member<'a>) -> Self {
+        Self { what: "loop", name: &one.name, origin: one.origin, properties: &one.properties, member }
+    }
+}
+
+/// Checks the properties that somebody gives to a component of a class, or to a loop.
 pub(super) fn check<'a>(
-    member: &Member<'a>,
-    class: &ClassIndex<'_>,
+    giver: &Giver<'_, 'a>,
+    slots: &Slots<'_>,
     parameters: &mut Parameters<'a>,
     values: &mut Values,
     report: &mut Report<'_>,
 ) -> Checked {
-    let component = member.component;
-    let mut given: Vec<Option<Given>> =
-        std::iter::repeat_with(|| None).take(class.properties.len()).collect();
-    let mut first: Vec<Option<&Property>> = vec![None; class.properties.len()];
+    let member = giver.member;
+    let mut given: Vec<Option<Given>> = std::iter::repeat_with(|| None).take(slots.all.len()).collect();
+    let mut first: Vec<Option<&Property>> = vec![None; slots.all.len()];
     // Those whose `source` is right, and has no value.
     let mut unset: Vec<&Text> = Vec::new();
     let mut is_sound = true;
-    for property in &component.properties {
+    for property in giver.properties {
         if property.name.is_empty() {
             is_sound = false;
             continue;
         }
-        let Some(place) = class.property(&property.name) else {
-            report_unknown(property, class, report);
+        let Some(place) = slots.place(&property.name) else {
+            report_unknown(property, slots, report);
             if let Some(source) = property.source() {
                 let _ = parameters.resolve(member.unit, source, report);
             }
@@ -125,26 +146,26 @@ pub(super) fn check<'a>(
             continue;
         }
         first[place] = Some(property);
-        let slot = &class.properties[place];
+        let slot = &slots.all[place];
         match value(member, property, slot, parameters, values, report) {
             Ok(None) => unset.push(&property.name),
             Ok(value) => given[place] = value,
             Err(()) => is_sound = false,
         }
     }
-    for (place, slot) in class.properties.iter().enumerate() {
+    for (place, slot) in slots.all.iter().enumerate() {
         let Some(declaration) = slot.main() else { continue };
         if given[place].is_some() || !slot.is_required() {
             continue;
         }
         let name = declaration.name.as_str();
-        if class.class.presets().iter().any(|(preset, _)| preset == name) {
+        if slots.preset(name).is_some() {
             continue;
         }
         is_sound = false;
         // What is given wrongly is reported already.
         match first[place] {
-            None => report_missing(member, declaration, class, report),
+            None => report_missing(giver, declaration, slots, report),
             Some(property) if unset.contains(&&property.name) => {
                 let message = format!("the property {} has no value: its source has none", quoted(name));
                 let at = property.source().map_or(property.tag(), |source| source.location);
@@ -182,13 +203,13 @@ fn value<'a>(
     Ok(Some(Given { value: value.ok_or(())?, place, more, source: used.source }))
 }
 
-fn report_unknown(property: &Property, class: &ClassIndex<'_>, report: &mut Report<'_>) {
+fn report_unknown(property: &Property, slots: &Slots<'_>, report: &mut Report<'_>) {
     let (name, at) = (&property.name, property.name.location);
-    let of = quoted(class.class.name());
-    let is_task = !class.class.declaration().is_periodic()
-        && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
-    let message = format!("class {of} has no property {}", quoted(name));
-    let known = ("its properties are", class.property_names());
+    let of = quoted(slots.name);
+    let is_task =
+        slots.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
+    let message = format!("{} {of} has no property {}", slots.what, quoted(name));
+    let known = ("its properties are", slots.names());
     let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
     report.push(match is_task {
         true => one.help(format!("{of} is passive: it is never executed and has no task properties")),
@@ -197,33 +218,34 @@ fn report_unknown(property: &Property, class: &ClassIndex<'_>, report: &mut Repo
 }
 
 fn report_missing(
-    member: &Member<'_>,
+    giver: &Giver<'_, '_>,
     declaration: &PropertyDeclaration,
-    class: &ClassIndex<'_>,
+    slots: &Slots<'_>,
     report: &mut Report<'_>,
 ) {
-    let component = member.component;
     let name = declaration.name.as_str();
-    let element = component.origin.element(&member.composite.document);
+    let document = &giver.member.composite.document;
+    let element = giver.origin.element(document);
     let is_meant = |given: &Property| {
-        given.name.is_empty()
-            || class.property(&given.name).is_none() && nearest(&given.name, [name]).is_some()
+        given.name.is_empty() || slots.place(&given.name).is_none() && nearest(&given.name, [name]).is_some()
     };
     let is_property = |child: &str| child != "property" && nearest(child, ["property"]).is_some();
-    if component.properties.iter().any(is_meant)
+    if giver.properties.iter().any(is_meant)
         || element.children().any(|child| is_property(child.local_name()))
     {
         // It is there, misspelt, and that is reported.
         return;
     }
-    let tag = element.prefix().map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
-    let who = match component.name.is_empty() {
-        true => "the component".to_owned(),
-        false => format!("component {}", quoted(&component.name)),
+    // That of SCA, in which the properties of loops are as well.
+    let prefix = giver.member.component.origin.element(document).prefix();
+    let tag = prefix.map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
+    let who = match giver.name.is_empty() {
+        true => format!("the {}", giver.what),
+        false => format!("{} {}", giver.what, quoted(giver.name)),
     };
     let message = format!("{who} lacks the property {}", quoted(name));
     report.push(
-        Diagnostic::new(&codes::PROPERTY_MISSING, component.name.location, message)
+        Diagnostic::new(&codes::PROPERTY_MISSING, giver.name.location, message)
             .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),
     );
 }

@@ -30,7 +30,7 @@ pub(super) fn check(
     report: &mut Report<'_>,
 ) -> Task {
     let text = |name: &str| {
-        checked.get(class, name).and_then(|given| given.text()).filter(|text| !text.trim().is_empty())
+        checked.get(&class.slots, name).and_then(|given| given.text()).filter(|text| !text.trim().is_empty())
     };
     if let Some(url) = text("url") {
         check_url(&url, report);
@@ -52,11 +52,12 @@ fn settings(
     renames: &[(String, String)],
     report: &mut Report<'_>,
 ) -> Option<TaskSettings> {
-    let mut values = checked.values(class, |slot| slot.task);
-    for (name, value) in class.class.presets() {
+    let mut values = checked.values(&class.slots, |slot| slot.task);
+    for (name, value) in class.slots.presets {
         if class
-            .property(name)
-            .is_some_and(|place| class.properties[place].task.is_some() && checked.given[place].is_none())
+            .slots
+            .place(name)
+            .is_some_and(|place| class.slots.all[place].task.is_some() && checked.given[place].is_none())
         {
             values.push((name.clone(), value.clone()));
         }
@@ -143,7 +144,7 @@ fn renames(
 
 /// Reports a component that has topics and must not use them.
 fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, report: &mut Report<'_>) {
-    let Some(given) = checked.get(class, "useJMS") else { return };
+    let Some(given) = checked.get(&class.slots, "useJMS") else { return };
     if !class.has_topics() || bool::from_value(&given.value) != Ok(false) {
         return;
     }
@@ -169,7 +170,7 @@ fn combinations(
     settings: &TaskSettings,
     report: &mut Report<'_>,
 ) {
-    let place = |name: &str| checked.get(class, name).map(|given| given.place);
+    let place = |name: &str| checked.get(&class.slots, name).map(|given| given.place);
     if let Some(deadline) = settings.deadline
         && deadline > settings.period
     {
@@ -201,7 +202,7 @@ fn combinations(
 fn credentials(checked: &Checked, class: &ClassIndex<'_>, settings: &TaskSettings, report: &mut Report<'_>) {
     let is_empty =
         |value: &PropertyValue| matches!(value, PropertyValue::Text(text) if text.trim().is_empty());
-    let given = |name: &str| checked.get(class, name).filter(|given| !is_empty(&given.value));
+    let given = |name: &str| checked.get(&class.slots, name).filter(|given| !is_empty(&given.value));
     let (user, password) = (given("user"), given("password"));
     let fault = match (user, password) {
         (Some(user), None) => Some((user, "`user` is given without `password`", "give both, or neither")),

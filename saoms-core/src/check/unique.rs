@@ -43,7 +43,7 @@ impl<'a> Unique<'a> {
         report: &mut Report<'_>,
     ) {
         let component = member.path();
-        for (slot, given) in class.properties.iter().zip(&checked.given) {
+        for (slot, given) in class.slots.all.iter().zip(&checked.given) {
             let Some(declaration) = slot.main() else { continue };
             let word = declaration.unique.as_deref();
             let is_task_id = slot.task.is_some_and(|task| task.name == ID);
@@ -52,10 +52,7 @@ impl<'a> Unique<'a> {
             }
             let (value, place) = match given {
                 Some(given) => (Some(&given.value), given.place),
-                None => {
-                    let preset = class.class.presets().iter().find(|(name, _)| *name == declaration.name);
-                    (preset.map(|(_, value)| value), member.component.name.location)
-                }
+                None => (class.slots.preset(&declaration.name), member.component.name.location),
             };
             let Some(value) = value.and_then(|value| canonical(value, declaration)) else { continue };
             let seen = Seen { component, place, is_declared: word };

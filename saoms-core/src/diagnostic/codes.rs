@@ -1,7 +1,7 @@
 //! The table of every kind of diagnostic.
 //!
 //! A code never changes its meaning and is never used again. `S0` is files and XML, `S1` the SCA vocabulary, `S2`
-//! names and wiring, `S3` classes and properties, `S4` tasks and topics. `S5` is what rules of crates of components find
+//! names and wiring, `S3` classes and properties, `S4` tasks, topics and loops. `S5` is what rules of crates of components find
 //! (see [`FleetRule`](saoms_api::FleetRule)); each of them declares its own code.
 
 use saoms_api::Severity::{Error, Warning};
@@ -125,4 +125,14 @@ codes! {
     DEADLINE = "S4007" Warning "deadline": "A deadline is behind the next execution.";
     RESTART_UNUSED = "S4008" Warning "restart-unused": "A setting of restarts has no effect, since there are none.";
     TOPIC_MISMATCH = "S4009" Error "topic-mismatch": "Two components use one topic for different messages, or in different ways.";
+    // S45: the loops of components.
+    UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A loop is named that the component does not have.";
+    LOOP_REPEATED = "S4502" Error "loop-repeated": "One loop of a component is given twice.";
+    LOOP_CONTRADICTION = "S4503" Error "loop-contradiction": "What is said about a loop contradicts itself.";
+    LOOP_ORDER = "S4504" Error "loop-order": "The order of loops goes in a circle, or refers to a loop that is removed.";
+    LOOP_KNOWLEDGE = "S4505" Error "loop-knowledge": "A loop works on a knowledge that the component does not have.";
+    UNKNOWN_ENTRY = "S4506" Error "unknown-entry": "A loop senses or effects an entry that the component does not have.";
+    EFFECTOR_CLASH = "S4507" Error "effector-clash": "Two loops of a component change one effector.";
+    ENTRY_REPEATED = "S4508" Error "entry-repeated": "A loop adds an entry that is there already.";
+    LOOP_REFERENCE = "S4509" Error "loop-reference": "A loop has a reference of the same name as another one of the component, with another interface.";
 }

@@ -45,7 +45,10 @@ impl Loader<'_> {
         let location = attribute.name_span().in_file(element.document().file());
         let meant = nearest(name, free.iter().copied()).or_else(|| nearest(name, kind.names(self.version)));
         // The schema of SCA 1.0 lets any attribute pass; tools put some of their own there.
-        let passes = meant.is_none() && attribute.namespace().is_empty() && !self.version.is_1_1();
+        let passes = meant.is_none()
+            && attribute.namespace().is_empty()
+            && !self.version.is_1_1()
+            && element.namespace() != SAOMS_NAMESPACE;
         let severity = if passes { Severity::Warning } else { Severity::Error };
         if self.diagnostics.skip(&codes::UNKNOWN_ATTRIBUTE, severity, location) {
             return;

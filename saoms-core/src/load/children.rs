@@ -142,6 +142,9 @@ impl Loader<'_> {
         if self.diagnostics.skip(&codes::UNKNOWN_ELEMENT, Severity::Error, location) {
             return;
         }
+        if name == "loop" {
+            return self.loop_without_namespace(element);
+        }
         let message = format!("{} is in no namespace", quoted(name));
         let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, location, message);
         if vocabulary::is_known(name)
@@ -160,7 +163,7 @@ impl Loader<'_> {
 }
 
 /// The edits that give an element another name, in its end tag too.
-fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -> Vec<Edit> {
+pub(super) fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -> Vec<Edit> {
     let whole = prefix.map_or_else(|| name.to_owned(), |prefix| format!("{prefix}:{name}"));
     let file = element.document().file();
     let spans = [Some(element.name_span()), element.end_name_span()];

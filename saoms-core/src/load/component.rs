@@ -25,6 +25,7 @@ impl Loader<'_> {
             properties: Vec::new(),
             services: Vec::new(),
             references: Vec::new(),
+            loops: Vec::new(),
             policy: self.policy(element),
         };
         let mut has_faulty = false;
@@ -58,6 +59,11 @@ impl Loader<'_> {
                         }
                     }
                 }
+                (Family::Own, "loop") => {
+                    let one = self.looping(child);
+                    component.loops.push(one);
+                }
+                (Family::Sca, "loop") => self.loop_without_namespace(child),
                 (Family::Foreign, _) => {}
                 (Family::Nobody, name) => has_faulty |= name.starts_with("implementation"),
                 (_, name) => {

@@ -11,6 +11,7 @@ mod composite;
 mod contract;
 mod encoding;
 mod extension;
+mod looping;
 mod missing;
 mod named;
 mod property;

@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostics;
 use crate::model::Composite;
 use crate::source::{Sources, Span, Text};
 
-/// Reads the files that properties of the composite's components name with `file`, each of at most `max_size` bytes. A name is a path,
+/// Reads the files that properties of the composite's components and their loops name with `file`, each of at most `max_size` bytes. A name is a path,
 /// relative to the folder of the composite.
 ///
 /// What the file holds, without white space at its ends, is the value; its place is in that file. A file that cannot be read is
@@ -23,7 +23,11 @@ pub fn read_values(
     let folder = own.parent().map(Path::to_owned).unwrap_or_default();
     // Many components may share a file.
     let mut known: HashMap<PathBuf, Text> = HashMap::new();
-    for property in composite.components.iter_mut().flat_map(|component| &mut component.properties) {
+    let properties = composite.components.iter_mut().flat_map(|component| {
+        let of_loops = component.loops.iter_mut().flat_map(|one| &mut one.properties);
+        component.properties.iter_mut().chain(of_loops)
+    });
+    for property in properties {
         let Some(details) = property.details.as_mut() else { continue };
         let Some(file) = &details.file else { continue };
         let path = folder.join(file.as_str());

@@ -98,6 +98,13 @@ pub(super) static COMPONENT: Kind = Kind {
     ],
 };
 
+/// Of SAOMS, not of SCA.
+pub(super) static LOOP: Kind = Kind {
+    name: "loop",
+    attributes: &[known("name"), known("class"), known("before"), known("after"), known("remove")],
+    children: &["property", "documentation"],
+};
+
 const CONTRACT: &[&str] = &[
     "interface.",
     "binding.",
@@ -266,7 +273,7 @@ pub(super) const VARIANTS: &[(&str, &[&str])] = &[
 pub(super) const OWN_ATTRIBUTES: &[(&str, &str)] = &[("component", "path")];
 
 /// The elements that SAOMS adds in its own namespace.
-pub(super) const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust"];
+pub(super) const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust", "loop"];
 
 /// The elements that `kind` can hold, all variants by name.
 pub(super) fn children(kind: &Kind) -> impl Iterator<Item = &'static str> {

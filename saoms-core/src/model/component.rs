@@ -3,7 +3,7 @@
 use smol_str::SmolStr;
 
 use super::origin::parts;
-use super::{Origin, Policy, Property, Reference, Service};
+use super::{Loop, Origin, Policy, Property, Reference, Service};
 use crate::source::{Located, Text};
 
 /// A component: a configured use of an implementation.
@@ -27,6 +27,8 @@ pub struct Component {
     pub services: Vec<Service>,
     /// Its references in order.
     pub references: Vec<Reference>,
+    /// What it says about its loops, in order.
+    pub loops: Vec<Loop>,
     /// Intents and policy sets.
     pub policy: Policy,
 }

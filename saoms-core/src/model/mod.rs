@@ -9,6 +9,7 @@ mod component;
 mod composite;
 mod contract;
 mod contribution;
+mod looping;
 mod origin;
 mod policy;
 mod property;
@@ -20,6 +21,7 @@ pub use contract::{
     Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
 };
 pub use contribution::{Contribution, Link, Missing, Naming};
+pub use looping::Loop;
 pub use origin::{Origin, Part};
 pub use policy::Policy;
 pub use property::{Property, PropertyDetails, PropertyValue};

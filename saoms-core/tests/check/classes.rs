@@ -28,6 +28,7 @@ pub(crate) fn registry() -> Registry {
     for one in all {
         registry.add(one).unwrap();
     }
+    crate::loop_classes::add(&mut registry);
     registry
 }
 

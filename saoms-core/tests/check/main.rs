@@ -8,6 +8,8 @@ mod corpus;
 mod expanded;
 mod files;
 mod findings;
+mod loop_classes;
+mod loops;
 mod mutations;
 mod names;
 mod nested;

@@ -31,6 +31,7 @@ behind the code. `--format json` gives the same as data, with each suggestion as
 | `S20` | names, composite properties, services, references and wires |
 | `S30` | classes and properties |
 | `S40` | tasks and topics |
+| `S45` | the loops of components |
 
 The table of codes is `saoms-core/src/diagnostic/codes.rs`. The examples are the files in `saoms-core/tests/check/examples`;
 the classes that they name are those of the tests beside them. This page is generated from both.

@@ -1,0 +1,192 @@
+//! The list of a component's loops: those of its class, some of them removed, replaced or moved, and those that are added.
+
+use std::collections::HashMap;
+
+use saoms_api::PropertyValue;
+
+use super::{Planned, order};
+use crate::check::classes::ClassIndex;
+use crate::check::fleet::Member;
+use crate::check::properties::Checked;
+use crate::check::report::{Report, escaped, list, replacing};
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{Loop, Part};
+use crate::registry::Registry;
+use crate::source::Text;
+
+/// The loops of a component in their order, and whether nothing about them is wrong.
+pub(super) fn plan<'a>(
+    member: &Member<'a>,
+    class: &ClassIndex<'a>,
+    checked: &Checked,
+    registry: &'a Registry,
+    report: &mut Report<'_>,
+) -> (Vec<Planned<'a>>, bool) {
+    let (mut loops, mut is_sound) = by_default(member, class, checked, registry, report);
+    let elements = &member.component.loops;
+    let Some(first) = elements.first() else { return (loops, is_sound) };
+    if class.class.declaration().knowledge.is_none() {
+        let message = format!("class {} has no loops", quoted(class.class.name()));
+        let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, first.tag(), message);
+        report.push(one.help("loops work on the knowledge of a component, and this one declares none"));
+        return (loops, false);
+    }
+    let mut named: HashMap<&str, &Loop> = HashMap::new();
+    let mut removed: HashMap<&str, &Loop> = HashMap::new();
+    let mut taken: Vec<&Loop> = Vec::with_capacity(elements.len());
+    for one in elements {
+        if one.name.is_empty() {
+            is_sound = false;
+        } else if let Some(first) = named.get(one.name.as_str()) {
+            let message = format!("the loop {} is given twice", quoted(&one.name));
+            report.push(
+                Diagnostic::new(&codes::LOOP_REPEATED, one.name.location, message)
+                    .label(first.name.location, "first here")
+                    .help("say all about a loop in one element; two loops of one class need two names"),
+            );
+            is_sound = false;
+        } else {
+            named.insert(&one.name, one);
+            taken.push(one);
+        }
+    }
+    // Those that come anew can be meant by others, wherever they stand.
+    let added = taken.iter().filter(|one| one.class.is_some()).map(|one| one.name.as_str());
+    let mut names: Vec<&str> = loops.iter().map(|one| one.name).collect();
+    for name in added {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    for one in &taken {
+        is_sound &= fits_together(one, report);
+        let known = loops.iter().position(|known| known.name == one.name.as_str());
+        let class = one.class.as_ref().map(|class| {
+            let found = registry.get_loop(class);
+            if found.is_none() {
+                report.push(unknown_class(class, registry));
+                is_sound = false;
+            }
+            found
+        });
+        match (known, class) {
+            (Some(place), _) if one.is_removal() => {
+                removed.insert(&one.name, one);
+                loops.remove(place);
+            }
+            (Some(place), class) => {
+                loops[place].element = Some(one);
+                if let Some(class) = class {
+                    loops[place].class = class;
+                }
+            }
+            (None, Some(class)) if !one.is_removal() => {
+                loops.push(Planned { name: &one.name, class, element: Some(one) });
+            }
+            (None, _) => {
+                report_unknown(&one.name, member, &names, one.is_removal(), report);
+                is_sound = false;
+            }
+        }
+    }
+    is_sound &= order::sort(&mut loops, &taken, &removed, member, &names, report);
+    (loops, is_sound)
+}
+
+/// The loops that a component has unless the composite says otherwise.
+fn by_default<'a>(
+    member: &Member<'a>,
+    class: &ClassIndex<'a>,
+    checked: &Checked,
+    registry: &'a Registry,
+    report: &mut Report<'_>,
+) -> (Vec<Planned<'a>>, bool) {
+    let declaration = class.class.declaration();
+    let value = declaration.loops.property.as_ref().and_then(|property| {
+        let given = checked.get(&class.slots, property).map(|given| &given.value);
+        match given.or_else(|| class.slots.preset(property)) {
+            Some(PropertyValue::Text(text)) => Some(text.trim()),
+            _ => declaration.property(property)?.default.as_deref(),
+        }
+    });
+    let mut is_sound = true;
+    let mut loops = Vec::new();
+    for name in declaration.loops.of(value) {
+        match registry.get_loop(name) {
+            Some(class) => {
+                let name = class.declaration().short_name();
+                loops.push(Planned { name, class: Some(class), element: None });
+            }
+            None => {
+                let (class, name) = (quoted(class.class.name()), quoted(name));
+                let message = format!("class {class} has the loop {name}, and no such loop is registered");
+                let at = member.component.name.location;
+                report.push(Diagnostic::new(&codes::UNKNOWN_CLASS, at, message));
+                is_sound = false;
+            }
+        }
+    }
+    (loops, is_sound)
+}
+
+/// What one element says has to make sense: one that is removed cannot be anything else, and nothing stands at two places.
+fn fits_together(one: &Loop, report: &mut Report<'_>) -> bool {
+    let contradiction = |at, message: String, other, what: &str| {
+        Diagnostic::new(&codes::LOOP_CONTRADICTION, at, message).label(other, what)
+    };
+    if let Some(remove) = one.remove.filter(|remove| remove.value) {
+        let attributes = [("class", &one.class), ("before", &one.before), ("after", &one.after)];
+        let mut further = attributes
+            .into_iter()
+            .filter_map(|(name, value)| Some((format!("`{name}`"), value.as_ref()?.location)))
+            .chain(one.properties.first().map(|property| ("properties".to_owned(), property.tag())));
+        let Some((what, at)) = further.next() else { return true };
+        let message = format!("the loop {} is removed, and {what} given", quoted(&one.name));
+        let one = contradiction(at, message, remove.location, "removed here");
+        report.push(one.help("what is removed has no class, no place and no properties"));
+        return false;
+    }
+    if let (Some(before), Some(after)) = (&one.before, &one.after) {
+        let message = format!("the loop {} is given two places", quoted(&one.name));
+        let one = contradiction(after.location, message, before.location, "the other one");
+        report.push(one.help("a loop stands directly before another, or directly after another: keep one"));
+        return false;
+    }
+    true
+}
+
+/// Reports a name that is none of a component's loops.
+pub(super) fn report_unknown(
+    name: &Text,
+    member: &Member<'_>,
+    names: &[&str],
+    is_removal: bool,
+    report: &mut Report<'_>,
+) {
+    let component = quoted(&member.component.name);
+    let message = format!("component {component} has no loop {}", quoted(name));
+    let known = ("its loops are", names.iter().copied());
+    let one = report.unknown(&codes::UNKNOWN_LOOP, name.location, message, name, known);
+    let one = if names.is_empty() { one.help("it has none") } else { one };
+    report.push(if is_removal { one } else { one.help("to add a loop, say which: `class=\"...\"`") });
+}
+
+fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
+    const SHOWN: usize = 6;
+    let message = format!("there is no loop class {}", quoted(class));
+    let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
+    for meant in registry.nearest_loops(class) {
+        one = one.suggest(replacing(class, meant), class.location, escaped(meant));
+    }
+    if registry.get(class).is_some() {
+        one = one.help("it is a class of components");
+    }
+    let names = registry.loops().map(|one| one.name());
+    one.help(match registry.loops().len() {
+        0 => "no loop is linked into this program".to_owned(),
+        1..=SHOWN => format!("the loops linked into this program are {}", list(names)),
+        count => {
+            format!("looked among the {count} loops linked into this program; `saoms components` lists them")
+        }
+    })
+}

@@ -1,0 +1,103 @@
+//! The order of a component's loops.
+//!
+//! Those that are not moved keep the order of the class, added ones behind them in document order. A loop that is moved stands directly
+//! before or after another, which may be moved as well: such loops hang on each other like the nodes of a tree, whose roots are the loops
+//! that are not moved. What hangs on no root hangs on itself, in a circle.
+
+use std::collections::HashMap;
+
+use super::{Planned, list};
+use crate::check::fleet::Member;
+use crate::check::report::Report;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::Loop;
+use crate::source::Text;
+
+/// Brings the loops into the order that the elements ask for; `false` where they ask for none that is possible.
+pub(super) fn sort<'a>(
+    loops: &mut Vec<Planned<'a>>,
+    elements: &[&'a Loop],
+    removed: &HashMap<&str, &Loop>,
+    member: &Member<'_>,
+    names: &[&str],
+    report: &mut Report<'_>,
+) -> bool {
+    let mut is_sound = true;
+    // By the loop they stand at: the moved loops before it, and those after it, in document order.
+    let mut beside: HashMap<&str, [Vec<&str>; 2]> = HashMap::new();
+    let mut moved: HashMap<&str, &Text> = HashMap::new();
+    for one in elements {
+        let (place, target) = match (&one.before, &one.after) {
+            (Some(before), None) => (0, before),
+            (None, Some(after)) => (1, after),
+            _ => continue,
+        };
+        if let Some(removal) = removed.get(target.as_str()) {
+            let message =
+                format!("the loop {} stands beside {}, which is removed", quoted(&one.name), quoted(target));
+            let one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message);
+            let one = one.label(removal.name.location, "removed here");
+            report.push(one.help("let it stand beside another loop, or keep that one"));
+            is_sound = false;
+        } else if !loops.iter().any(|known| known.name == target.as_str()) {
+            // One that is given and wrong is reported already.
+            if !elements.iter().any(|one| one.name == target.as_str()) {
+                list::report_unknown(target, member, names, true, report);
+            }
+            is_sound = false;
+        } else {
+            beside.entry(target).or_default()[place].push(&one.name);
+            moved.insert(&one.name, target);
+        }
+    }
+    if moved.is_empty() {
+        return is_sound;
+    }
+    let mut order: Vec<&str> = Vec::with_capacity(loops.len());
+    for one in loops.iter().filter(|one| !moved.contains_key(one.name)) {
+        put(one.name, &beside, &mut order);
+    }
+    let stuck: Vec<&&Loop> = elements
+        .iter()
+        .filter(|one| moved.contains_key(one.name.as_str()) && !order.contains(&one.name.as_str()))
+        .collect();
+    if let Some((last, others)) = stuck.split_last() {
+        let target = moved[last.name.as_str()];
+        let message = match others {
+            [] => format!("the loop {} stands beside itself", quoted(&last.name)),
+            _ => {
+                let names: Vec<String> = stuck.iter().map(|one| quoted(&one.name)).collect();
+                format!("the order of the loops {} goes in a circle", names.join(", "))
+            }
+        };
+        let mut one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message)
+            .help("let one of them stand beside a loop that is not moved");
+        for other in others {
+            let target = moved[other.name.as_str()];
+            one = one
+                .label(target.location, format!("{} stands beside {}", quoted(&other.name), quoted(target)));
+        }
+        report.push(one);
+        return false;
+    }
+    let place = |one: &Planned<'_>| order.iter().position(|name| *name == one.name);
+    loops.sort_by_key(place);
+    is_sound
+}
+
+/// Puts a loop with all that hang on it.
+fn put<'n>(name: &'n str, beside: &HashMap<&str, [Vec<&'n str>; 2]>, order: &mut Vec<&'n str>) {
+    let none = [Vec::new(), Vec::new()];
+    let mut open = vec![(name, false)];
+    while let Some((name, is_done)) = open.pop() {
+        let [before, after] = beside.get(name).unwrap_or(&none);
+        if is_done {
+            order.push(name);
+            continue;
+        }
+        // From the last to the first: what is put on the stack last comes first.
+        open.extend(after.iter().rev().map(|one| (*one, false)));
+        open.push((name, true));
+        open.extend(before.iter().rev().map(|one| (*one, false)));
+    }
+}

@@ -1,0 +1,142 @@
+//! Whether the loops of a component can work together, said at the very places.
+
+use super::Planned;
+use crate::check::classes::ClassIndex;
+use crate::check::fleet::Member;
+use crate::check::report::{Report, list};
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::registry::{LoopDeclaration, Team, TeamFault};
+use crate::source::Location;
+
+/// Checks the loops of a component against each other; `false` where they do not fit.
+pub(super) fn check(
+    member: &Member<'_>,
+    class: &ClassIndex<'_>,
+    loops: &[Planned<'_>],
+    report: &mut Report<'_>,
+) -> bool {
+    // What the class declares has been checked when it was registered.
+    if member.component.loops.is_empty() {
+        return true;
+    }
+    let declarations: Vec<&LoopDeclaration> =
+        loops.iter().filter_map(|one| Some(one.class?.declaration())).collect();
+    if declarations.len() < loops.len() {
+        return false;
+    }
+    let team = Team::of(class.class.declaration(), declarations);
+    let faults = team.faults();
+    let teller = Teller { member, class, loops, entries: team.entries() };
+    for fault in &faults {
+        report.push(teller.diagnostic(fault));
+    }
+    faults.is_empty()
+}
+
+struct Teller<'t, 'a> {
+    member: &'t Member<'a>,
+    class: &'t ClassIndex<'a>,
+    loops: &'t [Planned<'a>],
+    entries: Vec<&'t str>,
+}
+
+impl Teller<'_, '_> {
+    /// Where the composite says which loop it is: at the class where it gives one, else at the name.
+    fn place(&self, at: usize) -> Option<Location> {
+        let element = self.loops[at].element?;
+        Some(element.class.as_ref().map_or(element.name.location, |class| class.location))
+    }
+
+    fn place_or_component(&self, at: usize) -> Location {
+        self.place(at).unwrap_or(self.member.component.name.location)
+    }
+
+    fn name(&self, at: usize) -> String {
+        quoted(self.loops[at].name)
+    }
+
+    fn diagnostic(&self, fault: &TeamFault<'_>) -> Diagnostic {
+        match *fault {
+            TeamFault::Knowledge { at } => self.knowledge(at),
+            TeamFault::UnknownEntry { at, entry, verb } => {
+                let message = format!(
+                    "the loop {} {verb} {}, and component {} has no such entry",
+                    self.name(at),
+                    quoted(entry),
+                    quoted(&self.member.component.name)
+                );
+                let one = Diagnostic::new(&codes::UNKNOWN_ENTRY, self.place_or_component(at), message);
+                one.help(match crate::diagnostic::nearest(entry, self.entries.iter().copied()) {
+                    Some(near) => {
+                        format!("there is {}: is the loop made for another component?", quoted(near))
+                    }
+                    None => format!("the entries are {}", list(self.entries.iter().copied())),
+                })
+            }
+            TeamFault::EntryTaken { at, entry, by } => {
+                let (name, entry) = (self.name(at), quoted(entry));
+                let message = format!("the loop {name} adds the entry {entry}, which is there already");
+                let one = Diagnostic::new(&codes::ENTRY_REPEATED, self.place_or_component(at), message);
+                self.other(one, by, "adds it as well", "it")
+            }
+            TeamFault::Clash { at, entry, with } => self.clash(at, entry, with),
+            TeamFault::Reference { at, reference, with } => {
+                let message = format!(
+                    "the loop {} has the reference {} with another interface",
+                    self.name(at),
+                    quoted(reference)
+                );
+                let one = Diagnostic::new(&codes::LOOP_REFERENCE, self.place_or_component(at), message);
+                self.other(one, with, "has it as well", "the reference")
+            }
+        }
+    }
+
+    fn knowledge(&self, at: usize) -> Diagnostic {
+        let wanted = self.loops[at].class.and_then(|class| class.declaration().knowledge.as_deref());
+        let known = self.class.class.declaration().knowledge.as_ref().map_or("", |known| &known.name);
+        let message = format!(
+            "the loop {} works on the knowledge {}, and component {} has {}",
+            self.name(at),
+            quoted(wanted.unwrap_or_default()),
+            quoted(&self.member.component.name),
+            quoted(known)
+        );
+        let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, self.place_or_component(at), message);
+        one.help("it is made for components of another class")
+    }
+
+    /// Says which other loop has it, or that the class has.
+    fn other(&self, one: Diagnostic, by: Option<usize>, what: &str, it: &str) -> Diagnostic {
+        let class = quoted(self.class.class.name());
+        match by.map(|by| (self.place(by), self.name(by))) {
+            Some((Some(place), name)) => one.label(place, format!("{name} {what}")).help("keep one of them"),
+            Some((None, name)) => one.help(format!("the loop {name} of class {class} {what}")),
+            None => one.help(format!("class {class} has {it} itself")),
+        }
+    }
+
+    /// The fault is that of the loop which the composite brings: of two such loops, the one that stands later in the file.
+    fn clash(&self, later: usize, entry: &str, earlier: usize) -> Diagnostic {
+        let (at, with) = match (self.place(later), self.place(earlier)) {
+            (Some(later_at), Some(earlier_at)) if later_at.span.start < earlier_at.span.start => {
+                (earlier, later)
+            }
+            (None, Some(_)) => (earlier, later),
+            _ => (later, earlier),
+        };
+        let (name, other) = (self.name(at), self.name(with));
+        let message = format!("the loops {other} and {name} both effect {}", quoted(entry));
+        let mut one = Diagnostic::new(&codes::EFFECTOR_CLASH, self.place_or_component(at), message)
+            .at(format!("effects {}", quoted(entry)));
+        one = match self.place(with) {
+            Some(place) => one.label(place, format!("effects {} as well", quoted(entry))),
+            None => one.help(format!("{other} is a loop of class {}", quoted(self.class.class.name()))),
+        };
+        let bare = self.loops[with].name;
+        one.help(format!(
+            "{} is an effector, which one loop alone may change: replace {other}, with `name=\"{bare}\"`, or remove it, with `<saoms:loop name=\"{bare}\" remove=\"true\"/>`",
+            quoted(entry)
+        ))
+    }
+}

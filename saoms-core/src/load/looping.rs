@@ -1,0 +1,72 @@
+//! Loops of components, in the namespace of SAOMS.
+
+use super::Loader;
+use super::children::{Family, renaming};
+use super::vocabulary::{COMPONENT_PROPERTY, LOOP};
+use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
+use crate::model::{Loop, Origin, SAOMS_NAMESPACE};
+use crate::source::{Location, Span};
+use crate::xml::Element;
+
+impl Loader<'_> {
+    pub(super) fn looping(&mut self, element: Element<'_>) -> Loop {
+        self.check_attributes(element, &LOOP);
+        self.no_text(element);
+        let mut properties = Vec::new();
+        for child in element.children() {
+            let family = self.family(child);
+            match (family, child.local_name()) {
+                (Family::Sca, "property") => properties.push(self.property(child, &COMPONENT_PROPERTY)),
+                (Family::Own, "property") => self.property_of_sca(child),
+                (Family::Sca, "documentation") | (Family::Foreign | Family::Nobody, _) => {}
+                _ => self.unexpected(child, &LOOP, family),
+            }
+        }
+        Loop {
+            origin: Origin::of(element),
+            name: self.name(element),
+            class: self.optional(element, "class"),
+            before: self.optional(element, "before"),
+            after: self.optional(element, "after"),
+            remove: self.boolean(element, "remove"),
+            properties,
+        }
+    }
+
+    /// Properties are of SCA, also in a loop.
+    fn property_of_sca(&mut self, element: Element<'_>) {
+        let prefix = element.document().root().prefix();
+        let whole = prefix.map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
+        let message = format!("{} is in the namespace of SAOMS", quoted(element.name()));
+        let description = format!("replace {} with {}", quoted(element.name()), quoted(&whole));
+        let one = Diagnostic::new(&codes::MISPLACED_ELEMENT, element.name_location(), message);
+        let one = one.help("the properties of a loop are written as those of a component, as SCA has them");
+        self.report(one.suggest_edits(description, renaming(element, prefix, "property")));
+    }
+
+    /// Reports a `loop` that is not in the namespace of SAOMS, with what puts it there.
+    pub(super) fn loop_without_namespace(&mut self, element: Element<'_>) {
+        let root = element.document().root();
+        let file = element.document().file();
+        let message = format!(
+            "{} is an element of SAOMS: it has to be in the namespace `{SAOMS_NAMESPACE}`",
+            quoted(element.name())
+        );
+        let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        let bound =
+            root.namespace_declarations().find(|one| one.value() == SAOMS_NAMESPACE && one.name() != "xmlns");
+        let mut edits = renaming(element, Some(bound.map_or("saoms", |one| one.local_name())), "loop");
+        if bound.is_none() {
+            let end = Span::empty(root.name_span().end);
+            let binding = format!(" xmlns:saoms=\"{SAOMS_NAMESPACE}\"");
+            edits.insert(0, Edit { location: Location { file, span: end }, replacement: binding });
+        }
+        let prefix = bound.map_or("saoms", |one| one.local_name());
+        let help = format!(
+            "write `<{prefix}:loop .../>`, and `xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
+        );
+        let description =
+            format!("replace {} with {}", quoted(element.name()), quoted(&format!("{prefix}:loop")));
+        self.report(one.help(help).suggest_edits(description, edits));
+    }
+}
