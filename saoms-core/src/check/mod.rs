@@ -33,6 +33,7 @@ mod unfold;
 mod unique;
 mod values;
 mod wires;
+mod written;
 
 use saoms_api::PropertyValue;
 
@@ -88,6 +89,7 @@ pub fn check(
     let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
     let resolved = components(&fleet, &classes, checked, loops, report);
+    written::check(&fleet, report);
     contracts::check(&fleet, &classes, report);
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);

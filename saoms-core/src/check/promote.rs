@@ -3,11 +3,12 @@
 use std::collections::{HashMap, HashSet};
 
 use super::classes::ClassIndex;
+use super::contracts::of_class;
 use super::fleet::{Fleet, Unit};
 use super::report::{Report, list};
 use super::target::Uri;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Part, Reference};
+use crate::model::{Multiplicity, Part, Reference};
 use crate::source::{Location, Text};
 
 /// A reference of a component, by its name.
@@ -65,6 +66,7 @@ pub(super) fn check<'f>(
                 .iter()
                 .filter_map(|promote| find(promote, Side::Reference, unit, fleet, classes, report));
             let found: Vec<Place<'f>> = found.collect();
+            found.iter().for_each(|inner| may_be_promoted(*inner, reference, fleet, classes, report));
             match owner {
                 Some(owner) => {
                     for inner in found {
@@ -81,6 +83,53 @@ pub(super) fn check<'f>(
         }
     }
     promoted
+}
+
+/// Checks that a composite's reference may promote one of a component: multiplicity, and what must not be overridden.
+fn may_be_promoted(
+    (member, name): Place<'_>,
+    by: &Reference,
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
+    report: &mut Report<'_>,
+) {
+    let own = fleet.members[member].component.reference(name);
+    let class = fleet.class_of(member, classes);
+    let declared = class.and_then(|class| class.references.iter().find(|declared| declared.name == name));
+    let given = own.and_then(|own| own.multiplicity.as_ref()).map(|given| given.value);
+    let inner = match declared {
+        Some(declared) => given.unwrap_or(of_class(declared)),
+        None => fleet.multiplicity_of((member, name)),
+    };
+    let component = quoted(&fleet.members[member].component.name);
+    if let Some(fixed) =
+        own.and_then(|own| own.non_overridable()).filter(|fixed| fixed.value && !inner.is_many())
+    {
+        let message = format!("reference {} of component {component} must not be overridden", quoted(name));
+        let at = if by.name.is_empty() { by.tag() } else { by.name.location };
+        report.push(
+            Diagnostic::new(&codes::PROMOTED_FIXED, at, message)
+                .label(fixed.location, "said here")
+                .help("do not promote it, or leave `nonOverridable` out"),
+        );
+    }
+    let Some(outer) = &by.multiplicity else { return };
+    // One that has a target already needs none from outside.
+    let has_target = own.is_some_and(|own| !own.targets.is_empty());
+    if outer.value.narrows(inner) || has_target && outer.value.is_many() <= inner.is_many() {
+        return;
+    }
+    let message = format!(
+        "{} promotes reference {} of component {component}, which takes {}: {} does not narrow it",
+        quoted(&by.name),
+        quoted(name),
+        quoted(inner.name()),
+        quoted(outer.value.name())
+    );
+    let one = Diagnostic::new(&codes::PROMOTED_MULTIPLICITY, outer.location, message);
+    let narrower: Vec<&str> =
+        Multiplicity::ALL.into_iter().filter(|one| one.narrows(inner)).map(Multiplicity::name).collect();
+    report.push(one.help(format!("it can be {}", list(narrower))));
 }
 
 fn unwired(reference: &Reference, report: &mut Report<'_>) {

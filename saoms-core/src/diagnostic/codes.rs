@@ -100,6 +100,13 @@ codes! {
     INCLUDED_TWICE = "S2033" Error "included-twice" ("ASM60031"): "A composite is included twice in one composite.";
     INCLUDE_LOCAL = "S2034" Error "include-local" ("ASM60041"): "A composite that is `local` is included in one that is not.";
     FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites come to more components than a fleet can have.";
+    PROMOTED_MULTIPLICITY = "S2036" Error "promoted-multiplicity" ("ASM60011"): "A composite's reference allows numbers of targets that a reference it promotes does not.";
+    PROMOTED_FIXED = "S2037" Error "promoted-fixed" ("ASM50042"): "A reference for one target that must not be overridden is promoted.";
+    WIRED_BY_IMPLEMENTATION = "S2038" Error "wired-by-implementation" ("ASM50013"): "A reference that its implementation wires has a target. In SCA 1.0 files a warning.";
+    TYPE_AND_ELEMENT = "S2039" Error "type-and-element": "A property has both a type and an element.";
+    BINDING_REPEATED = "S2040" Error "binding-repeated" ("ASM90002"): "A service or a reference has two bindings of one name.";
+    SERVICE_BINDING_URI = "S2041" Error "service-binding-uri" ("ASM90005"): "A service's binding of SCA has a URI.";
+    COMPOSITE_VALUE_TYPE = "S2042" Error "composite-value-type" ("ASM50027"): "The value of a composite's property is not of its type.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";

@@ -1,0 +1,134 @@
+//! Rules on what is written, whatever implements the components: nothing here asks a class.
+
+use std::collections::HashMap;
+
+use super::fleet::Fleet;
+use super::report::Report;
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::model::{Binding, Part, Property, Reference, Service, Version};
+use crate::source::{Location, Text};
+
+/// Checks the properties, services and references of every composite and component.
+pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    for composite in fleet.units.iter().flat_map(|unit| &unit.composites) {
+        for property in &composite.properties {
+            type_and_element(property, "ASM60040", report);
+            value_type(property, report);
+        }
+        composite
+            .services
+            .iter()
+            .for_each(|service| bindings("service", &service.name, &service.bindings, report));
+        for reference in &composite.references {
+            bindings("reference", &reference.name, &reference.bindings, report);
+        }
+    }
+    for member in &fleet.members {
+        let component = member.component;
+        component.properties.iter().for_each(|property| type_and_element(property, "ASM50035", report));
+        component.services.iter().for_each(|one| service(one, member.composite.version, report));
+        component.references.iter().for_each(|one| reference(one, member.composite.version, report));
+    }
+}
+
+fn service(service: &Service, version: Version, report: &mut Report<'_>) {
+    bindings("service", &service.name, &service.bindings, report);
+    // In SCA 1.0 it is where the service can be reached from outside.
+    let of_sca = service.bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+    for binding in of_sca.filter(|_| version.is_1_1()) {
+        if let Some(uri) = &binding.uri {
+            let message = format!("`binding.sca` of service {} has a `uri`", quoted(&service.name));
+            let one = Diagnostic::new(&codes::SERVICE_BINDING_URI, at(uri, binding.tag()), message);
+            report.push(one.help("remove it: a service is where its component is, and references name that"));
+        }
+    }
+}
+
+fn reference(reference: &Reference, version: Version, report: &mut Report<'_>) {
+    bindings("reference", &reference.name, &reference.bindings, report);
+    if reference.wired_by_impl().is_some_and(|wired| wired.value)
+        && let Some(target) = reference.targets.first()
+    {
+        let message =
+            format!("reference {} is wired by its implementation, and has a target", quoted(&reference.name));
+        let severity = if version.is_1_1() { Severity::Error } else { Severity::Warning };
+        let mut one = Diagnostic::new(&codes::WIRED_BY_IMPLEMENTATION, target.location, message)
+            .severity(severity)
+            .help("remove the target, or `wiredByImpl`");
+        if let Some(wired) = reference.wired_by_impl() {
+            one = one.label(wired.location, "said here");
+        }
+        report.push(one);
+    }
+}
+
+/// A place for a text that may be empty.
+fn at(text: &Text, otherwise: Location) -> Location {
+    if text.is_empty() { otherwise } else { text.location }
+}
+
+fn bindings(what: &str, name: &Text, bindings: &[Binding], report: &mut Report<'_>) {
+    let mut first: HashMap<&str, Location> = HashMap::new();
+    for given in bindings.iter().filter_map(|binding| binding.name.as_deref()) {
+        let Some(earlier) = first.insert(given, given.location) else { continue };
+        let message = format!("{what} {} has two bindings {}", quoted(name), quoted(given));
+        let one = Diagnostic::new(&codes::BINDING_REPEATED, at(given, earlier), message);
+        report.push(one.label(earlier, "the first").help("give each its own name"));
+    }
+}
+
+fn type_and_element(property: &Property, rule: &'static str, report: &mut Report<'_>) {
+    if let (Some(of), Some(element)) = (property.r#type(), property.element()) {
+        let message = format!("the property {} has both a `type` and an `element`", quoted(&property.name));
+        let one = Diagnostic::new(&codes::TYPE_AND_ELEMENT, at(element, property.tag()), message);
+        report.push(one.rule(rule).label(at(of, property.tag()), "the other one").help("remove one of them"));
+    }
+}
+
+/// The types of XML Schema whose values are checked: the name, what is expected, and whether a text is one.
+type SimpleType = (&'static str, &'static str, fn(&str) -> bool);
+
+const SIMPLE_TYPES: &[SimpleType] = &[
+    ("boolean", "`true` or `false`", |text| matches!(text, "true" | "false" | "1" | "0")),
+    ("int", "a whole number of 32 bits", |text| whole(text).is_some_and(|it| i32::try_from(it).is_ok())),
+    ("integer", "a whole number", |text| is_digits(text.trim_start_matches(['+', '-']))),
+    ("long", "a whole number of 64 bits", |text| whole(text).is_some_and(|it| i64::try_from(it).is_ok())),
+    ("short", "a whole number of 16 bits", |text| whole(text).is_some_and(|it| i16::try_from(it).is_ok())),
+    ("byte", "a whole number of 8 bits", |text| whole(text).is_some_and(|it| i8::try_from(it).is_ok())),
+    ("nonNegativeInteger", "a whole number, not negative", |text| is_digits(text.trim_start_matches('+'))),
+    ("double", "a number", is_float),
+    ("float", "a number", is_float),
+    ("decimal", "a decimal number", |text| is_float(text) && !text.contains(['e', 'E', 'N', 'I'])),
+];
+
+fn whole(text: &str) -> Option<i128> {
+    text.parse().ok()
+}
+
+fn is_digits(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+fn is_float(text: &str) -> bool {
+    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    matches!(text, "INF" | "-INF" | "NaN") || text.chars().all(is_number) && text.parse::<f64>().is_ok()
+}
+
+/// Checks the values of a composite's property against its type, where that is a simple one of XML Schema.
+fn value_type(property: &Property, report: &mut Report<'_>) {
+    let Some(of) = property.r#type() else { return };
+    let local = of.rsplit(':').next().unwrap_or(of);
+    let Some((_, expected, is_one)) = SIMPLE_TYPES.iter().find(|(name, ..)| *name == local) else { return };
+    let wrong = |code: &'static Code, value: &Text| {
+        let message = format!(
+            "the property {} is of the type {}: found {}, expected {expected}",
+            quoted(&property.name),
+            quoted(of),
+            quoted(value)
+        );
+        Diagnostic::new(code, value.location, message).label(of.location, "the type")
+    };
+    for value in property.simple_values().filter(|value| !value.is_empty() && !is_one(value)) {
+        report.push(wrong(&codes::COMPOSITE_VALUE_TYPE, value).help("change the value, or the type"));
+    }
+}
