@@ -212,7 +212,7 @@ pub struct Variables {
     #[entry]
     pub has_luggage: bool,
     /// It stops for this period.
-    #[entry]
+    #[entry(effector)]
     pub stop_a_period: bool,
     /// It goes to its charger after its present job.
     #[entry]

@@ -43,6 +43,29 @@ use hooks::{Hooks, Reply};
     publishes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, COLLISION, ROBOT_STATE, CRITICAL_SITUATION),
     subscribes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, ROBOT_STATE, CRITICAL_SITUATION, FAULT),
     reference("world": Hardware, optional),
+    knowledge = RobotKnowledge,
+    loops(
+        property = "policy",
+        safe(
+            safe::RobotMS,
+            safe::BatteryMS,
+            safe::RobotListMS,
+            safe::CriticalSituationMS,
+            safe::GripperMS,
+            safe::EventLuggageMS,
+            safe::CollisionMS,
+            safe::PathFollowerMS,
+        ),
+        classic(
+            classic::RobotMS,
+            classic::BatteryMS,
+            classic::RobotListMS,
+            classic::CriticalSituationMS,
+            classic::EventLuggageMS,
+            classic::CollisionMS,
+            classic::PathFollowerMS,
+        )
+    ),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
     also("robot.Robot002", number = 2),
@@ -57,7 +80,6 @@ use hooks::{Hooks, Reply};
 )]
 pub struct Robot {
     knowledge: RobotKnowledge,
-    policy: Policy,
     loops: Loops,
 }
 
@@ -72,14 +94,11 @@ impl Component for Robot {
         let mut knowledge = RobotKnowledge::new(name, number, charge_block, battery);
         knowledge.variables.asleep = properties.asleep;
         knowledge.variables.in_charge = properties.asleep;
-        Ok(Robot { knowledge, policy: properties.policy, loops: Loops::default() })
+        Ok(Robot { knowledge, loops: Loops::default() })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.loops = match self.policy {
-            Policy::Safe => safe::loops()?,
-            Policy::Classic => classic::loops()?,
-        };
+        self.loops = context.loops()?;
         self.knowledge.hooks = Hooks::new(context)?;
         self.knowledge.collisions = context.publish(&COLLISION)?;
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);

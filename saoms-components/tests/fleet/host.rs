@@ -6,9 +6,9 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Cause, Chance, Class, Context, DynComponent, Failure, Host, Invocation, Level, NamedLoops,
-    Phase, PropertyValue, Record, Registration, ReportValue, ServiceCall, SharedMessage, Time,
-    TopicDeclaration, TopicKind, Work,
+    CallError, Cause, Chance, Class, Context, DynComponent, Failure, Host, Invocation, Level,
+    LoopRegistration, NamedLoops, Phase, PropertyValue, Record, Registration, ReportValue, ServiceCall,
+    SharedMessage, Time, TopicDeclaration, TopicKind, Work,
 };
 
 /// A fleet in virtual time.
@@ -44,6 +44,8 @@ struct Topic {
 
 /// What the host knows about a component.
 struct Seat {
+    loops: &'static [LoopRegistration],
+    is_classic: bool,
     name: String,
     period: Duration,
     execution: u64,
@@ -88,7 +90,9 @@ impl Fleet {
             .iter()
             .map(|(name, value)| ((*name).to_owned(), PropertyValue::Text((*value).to_owned())))
             .collect();
-        let component = Registration::of::<C>().construct(&values).unwrap();
+        let registration = Registration::of::<C>();
+        let component = registration.construct(&values).unwrap();
+        let is_classic = values.contains(&("policy".to_owned(), "classic".into()));
         let index = self.components.len();
         self.components.push(Some(component));
         let references = references
@@ -106,6 +110,8 @@ impl Fleet {
             outbox: Vec::new(),
             travelling: Vec::new(),
             vote: None,
+            loops: registration.loops(),
+            is_classic,
         });
         if period > Duration::ZERO {
             self.schedule(Time::START + delay, Due::Execution(index));
@@ -333,8 +339,15 @@ impl Host for View<'_> {
         result
     }
 
+    /// Those of the robots' policy; all others have one list.
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
-        Ok(Vec::new())
+        let seat = self.seat();
+        let name = |one: &LoopRegistration| {
+            one.declaration().split("\"loop\":\"").nth(1).unwrap().split('"').next().unwrap().to_owned()
+        };
+        let fits = |one: &&LoopRegistration| name(one).starts_with("saoms.classic.") == seat.is_classic;
+        let short = |name: String| name.rsplit('.').next().unwrap().to_owned();
+        seat.loops.iter().filter(fits).map(|one| Ok((short(name(one)), one.construct(&[])?))).collect()
     }
 
     fn enter_loop(&mut self, _place: Option<u32>) {}

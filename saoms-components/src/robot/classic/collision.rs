@@ -6,7 +6,7 @@ use crate::robot::RobotKnowledge;
 
 /// Stops for a period when another robot announced the same next block and has the lower number (listing 6.11).
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.CollisionMS")]
+#[looping(name = "saoms.classic.CollisionMS", senses("next"), effects("stopAPeriod"))]
 pub struct CollisionMS {
     positions: Subscription<Position>,
 }

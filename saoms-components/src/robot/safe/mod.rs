@@ -21,8 +21,6 @@ mod robot_list;
 mod robot_state;
 mod traffic;
 
-use saoms_api::{DynLoop, Failure, Loop, Loops};
-
 pub use battery::BatteryMS;
 pub use collision::CollisionMS;
 pub use critical::CriticalSituationMS;
@@ -35,18 +33,3 @@ pub use robot_state::RobotMS;
 pub(super) use energy::Energy;
 pub(super) use leg::Leg;
 pub(super) use traffic::Traffic;
-
-/// These loops in their order.
-pub(super) fn loops() -> Result<Loops, Failure> {
-    let loops: [(&str, Box<dyn DynLoop>); 8] = [
-        ("RobotMS", Box::new(RobotMS::new(())?)),
-        ("BatteryMS", Box::new(BatteryMS::new(())?)),
-        ("RobotListMS", Box::new(RobotListMS::new(())?)),
-        ("CriticalSituationMS", Box::new(CriticalSituationMS::new(())?)),
-        ("GripperMS", Box::new(GripperMS::new(())?)),
-        ("EventLuggageMS", Box::new(EventLuggageMS::new(())?)),
-        ("CollisionMS", Box::new(CollisionMS::new(())?)),
-        ("PathFollowerMS", Box::new(PathFollowerMS::new(())?)),
-    ];
-    Ok(Loops::of(loops.map(|(name, instance)| (name.to_owned(), instance))))
-}
