@@ -2,10 +2,12 @@
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, outside test functions")]
 
+mod figures;
 mod fleet;
 mod master;
 mod run;
 mod scenario1;
 mod scenario2;
 mod scenario3;
+mod situations;
 mod story;

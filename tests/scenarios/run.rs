@@ -11,7 +11,7 @@ use saoms_testkit::Fleet;
 
 /// A run that is over.
 pub(crate) struct Run {
-    report: RunReport,
+    pub(crate) report: RunReport,
     /// What was said, in order.
     lines: Vec<Line>,
 }
@@ -48,6 +48,7 @@ impl Events for Listener {
 /// One execution of a robot.
 pub(crate) struct Execution<'a> {
     pub(crate) number: u64,
+    pub(crate) time: Time,
     /// Its lines of the console after the first, without the robot's name.
     pub(crate) said: Vec<&'a str>,
     /// Its lines of the log.
@@ -86,7 +87,7 @@ impl Run {
         for line in self.lines.iter().filter(|line| &*line.component == robot) {
             if let Some(rest) = line.text.strip_prefix("Execution ") {
                 let number = rest.split(' ').next().unwrap().parse().unwrap();
-                executions.push(Execution { number, said: Vec::new(), log: Vec::new() });
+                executions.push(Execution { number, time: line.time, said: Vec::new(), log: Vec::new() });
             } else if let Some(execution) = executions.last_mut() {
                 let text = line.text.strip_prefix(robot).unwrap_or(&line.text).trim_start_matches([' ', ':']);
                 let to = if line.log { &mut execution.log } else { &mut execution.said };

@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 
-/// What both robots do until all luggage is delivered, in this scenario and, after a landing, in the next one.
+/// What both robots do in this scenario and, after a landing, in the next one.
 pub(crate) const FIRST: &str = "\
 8: claims (1,5) to (10,5), 100.0
 14: arrives, 92.0
@@ -15,6 +15,9 @@ pub(crate) const FIRST: &str = "\
 40: collects, 40.0
 50: arrives, 20.0
 51: deposits, 18.0
+52: goes under charge, 16.0
+64: is in charge, 0.0
+74: is charged, 100.0
 ";
 pub(crate) const SECOND: &str = "\
 6: claims (3,1) to (3,10), 100.0
@@ -29,10 +32,15 @@ pub(crate) const SECOND: &str = "\
 46: arrives, 24.0
 47: deposits, 22.0
 48: goes under charge, 20.0
+55: is in charge, 6.0
+65: is charged, would heal 2, 100.0
+66: heals and is awake, 100.0
+67: would heal 1, 100.0
+68: heals and awakes another, 100.0
 ";
 
 #[test]
-fn the_robots_share_the_luggage() {
+fn the_robots_share_the_luggage_and_heal_each_other() {
     let run = Run::of("scenario2.composite", 200);
     assert_eq!(run.story("Robot001"), FIRST);
     assert_eq!(run.story("Robot002"), SECOND);

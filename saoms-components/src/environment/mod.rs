@@ -173,6 +173,7 @@ impl Environment {
                 context.info(format_args!("{event}"));
                 context.send(&self.events, event.into())
             }
+            Some(Event::End) => Ok(()),
             Some(Event::Breakdown(robot)) => {
                 let fault = Fault::breakdown(robot);
                 context.console(format_args!("Environment: Test{test}: New event: {fault}."));

@@ -22,6 +22,8 @@ pub enum Event {
     Exceptional(ExceptionalEvent),
     /// The robot of this number breaks down.
     Breakdown(u32),
+    /// Nothing: the scenario lasts until then.
+    End,
 }
 
 /// Plays a scenario: gives its events at their times, what is left to chance drawn.
@@ -109,5 +111,6 @@ fn draw(happening: &Happening, chance: &mut Chance, area: Option<&Map>) -> Optio
         Happening::Landing(pieces) => exceptional(ExceptionalKind::Landing, pieces.draw(chance)),
         Happening::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),
         Happening::Breakdown(robot) => Some(Event::Breakdown(robot.value.draw(chance))),
+        Happening::End => Some(Event::End),
     }
 }

@@ -39,7 +39,7 @@ fn a_scenario_happens_in_the_order_of_its_times() {
         then 500 luggage(10,8)to(1,8)
         at 3s landing 4; at 3s takeoff 2
         at 9s breakdown Robot002\r
-        then 0 breakdown 3
+        then 0 breakdown 3; at 9.5s end
     ";
     let expected = [
         (3000, exceptional(ExceptionalKind::Landing, 4)),
@@ -49,6 +49,7 @@ fn a_scenario_happens_in_the_order_of_its_times() {
         (7500, luggage((10, 8), (1, 8))),
         (9000, Event::Breakdown(2)),
         (9000, Event::Breakdown(3)),
+        (9500, Event::End),
     ];
     assert_eq!(played(text, 1, None, 10_000), expected);
     assert!(Scenario::read::<&str>(&[]).unwrap().lines().is_empty());

@@ -5,13 +5,13 @@ use super::{Happening, Written};
 use crate::grid::Block;
 use crate::text::TextFault;
 
-const KINDS: [&str; 4] = ["luggage", "landing", "takeoff", "breakdown"];
+const KINDS: [&str; 5] = ["luggage", "landing", "takeoff", "breakdown", "end"];
 const BLOCK: &str = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
 const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
 
 /// Reads what happens.
 pub(super) fn read(words: &mut Words<'_>) -> Result<Happening, TextFault> {
-    Ok(match words.one_of(&KINDS, "`luggage`, `landing`, `takeoff` or `breakdown`")? {
+    Ok(match words.one_of(&KINDS, "`luggage`, `landing`, `takeoff`, `breakdown` or `end`")? {
         "luggage" => {
             let from = spot(words)?;
             words.one_of(&["to"], "`to` and the block to bring it to")?;
@@ -19,6 +19,7 @@ pub(super) fn read(words: &mut Words<'_>) -> Result<Happening, TextFault> {
         }
         "landing" => Happening::Landing(drawn(words, pieces)?),
         "takeoff" => Happening::Takeoff(drawn(words, pieces)?),
+        "end" => Happening::End,
         _ => {
             let first = words.peek().unwrap_or_default();
             let value = drawn(words, robot)?;

@@ -63,6 +63,8 @@ pub enum Happening {
     Takeoff(Drawn<u32>),
     /// A robot breaks down: its number, or the name whose last digits are its number.
     Breakdown(Written<Drawn<u32>>),
+    /// Nothing, but the run goes on until then.
+    End,
 }
 
 /// What a scenario says, and the bytes of the text that say it.

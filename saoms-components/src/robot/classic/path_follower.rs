@@ -47,6 +47,8 @@ pub enum PathSymptom {
 /// What to do.
 #[derive(Clone, Copy, Debug)]
 pub enum PathDecision {
+    /// Stand still for this period.
+    Stop,
     /// Say again where it goes.
     Announce,
     /// Work the gripper.
@@ -82,6 +84,7 @@ impl Recordable for PathSymptom {
 impl Recordable for PathDecision {
     fn record(&self) -> Record {
         match *self {
+            PathDecision::Stop => record!("stands still"),
             PathDecision::Announce => record!("says again where it goes"),
             PathDecision::Handle(Action { kind: ActionKind::Collect, luggage, .. }) => {
                 record!("collects luggage {luggage}", luggage)
@@ -121,7 +124,7 @@ impl Loop for PathFollowerMS {
         if knowledge.shut_down {
             return Ok(None);
         }
-        if std::mem::take(&mut knowledge.variables.stop_a_period) {
+        if knowledge.variables.stop_a_period {
             return Ok(Some(PathSymptom::Stopped));
         }
         let polled = knowledge.poll(context)?;
@@ -150,7 +153,7 @@ impl Loop for PathFollowerMS {
         _context: &mut Context<'_>,
     ) -> Result<Option<PathDecision>, Failure> {
         Ok(match symptom {
-            PathSymptom::Stopped => Some(PathDecision::Announce),
+            PathSymptom::Stopped => Some(PathDecision::Stop),
             PathSymptom::Working => (knowledge.next != knowledge.block).then_some(PathDecision::Announce),
             PathSymptom::AtDestination(block) => knowledge.job.map(|job| {
                 let has_luggage = knowledge.variables.has_luggage;
@@ -169,6 +172,7 @@ impl Loop for PathFollowerMS {
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         match decision {
+            PathDecision::Stop => knowledge.variables.stop_a_period = false,
             PathDecision::Announce => {}
             PathDecision::Handle(action) => {
                 knowledge.begin(context, action)?;
