@@ -80,6 +80,11 @@ impl SharedMessage {
         self.0.header
     }
 
+    /// For hosts: whether it was shared as a value. Bytes that came from elsewhere are to be checked before they are passed on.
+    pub fn is_value(&self) -> bool {
+        self.0.payload.is_value()
+    }
+
     /// Its key on a state topic, if the message type has one.
     pub fn key(&self) -> Option<u64> {
         self.0.key
@@ -124,6 +129,9 @@ impl fmt::Debug for SharedMessage {
 /// The value of a message, whatever its type.
 trait Payload: Any + Send + Sync {
     fn encode(&self, bytes: &mut Vec<u8>);
+
+    /// Whether there is a value of a Rust type, not bytes alone.
+    fn is_value(&self) -> bool;
 }
 
 /// A value of this build of the program.
@@ -133,6 +141,10 @@ impl<M: Message> Payload for Typed<M> {
     fn encode(&self, bytes: &mut Vec<u8>) {
         cdr::encode_into(&self.0, bytes);
     }
+
+    fn is_value(&self) -> bool {
+        true
+    }
 }
 
 /// A value that is there as bytes alone.
@@ -141,6 +153,10 @@ struct Arrived;
 impl Payload for Arrived {
     fn encode(&self, bytes: &mut Vec<u8>) {
         bytes.clear();
+    }
+
+    fn is_value(&self) -> bool {
+        false
     }
 }
 

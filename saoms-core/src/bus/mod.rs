@@ -75,6 +75,11 @@ impl Bus {
         self.user(name, declared, by)
     }
 
+    /// The schema of the topic's messages, as text.
+    pub fn schema(&self, topic: TopicId) -> &str {
+        self.topics[topic.0 as usize].schema()
+    }
+
     /// Takes a publisher off the topic. Retained messages stay.
     pub fn unpublish(&mut self, topic: TopicId) {
         self.topics[topic.0 as usize].users -= 1;

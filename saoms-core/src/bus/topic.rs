@@ -57,6 +57,10 @@ impl Topic {
         }
     }
 
+    pub(super) fn schema(&self) -> &str {
+        &self.schema
+    }
+
     fn kind(&self) -> TopicKind {
         match self.store {
             Store::State(_) => TopicKind::State,

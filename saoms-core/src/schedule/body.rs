@@ -7,6 +7,7 @@ use super::host::ComponentHost;
 use super::shared::Shared;
 use crate::bus::{Subscription, TopicId};
 use crate::journal::Recorder;
+use crate::schema::Schema;
 use saoms_api::contain::contained;
 
 /// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for others.
@@ -22,6 +23,8 @@ pub(super) struct Part {
     pub(super) index: u32,
     pub(super) name: Arc<str>,
     pub(super) publishers: Vec<TopicId>,
+    /// Of topics on which bytes were sent.
+    pub(super) schemas: Vec<(TopicId, Arc<Schema>)>,
     pub(super) subscriptions: Vec<Subscription>,
     /// Subscriptions of a failed instance, for the one that takes its place.
     pub(super) kept: Vec<Subscription>,
@@ -56,6 +59,7 @@ impl Body {
             index,
             name,
             publishers: Vec::new(),
+            schemas: Vec::new(),
             subscriptions: Vec::new(),
             kept: Vec::new(),
             outbox: Vec::new(),

@@ -11,8 +11,11 @@ use super::body::Part;
 use super::observe::{Event, Occurrence};
 use super::shared::Shared;
 use crate::assembly::{ComponentSpec, TaskSettings, Wire};
+use crate::bus::TopicId;
 use crate::journal::Stamp;
+use crate::registry::{ClassDeclaration, LoopDeclaration, TopicDeclaration as DeclaredTopic};
 use crate::report::Sections;
+use crate::schema::Schema;
 
 /// What the scheduler gives to a component while its code runs.
 pub(super) struct ComponentHost<'a> {
@@ -35,7 +38,8 @@ impl ComponentHost<'_> {
     }
 
     /// Checks that the component may take a topic now, and gives its task settings.
-    fn may_use(&self, topic: &str, verb: &str) -> Result<Option<&TaskSettings>, Failure> {
+    fn may_use(&self, topic: &str, use_as: Use) -> Result<Option<&TaskSettings>, Failure> {
+        let verb = use_as.verb();
         if !self.part.initializing {
             return Err(Failure::new(format!(
                 "topic `{topic}`: a component can only {verb} in `initialize`; keep what it returns"
@@ -48,7 +52,70 @@ impl ComponentHost<'_> {
                 self.part.name
             )));
         }
+        // The checker and the pictures of a fleet know what is declared, and nothing else.
+        let spec = self.spec();
+        let of_class = use_as.declared(spec.class.declaration());
+        let of_loops = spec.loops.iter().flat_map(|one| use_as.declared_of_loop(one.class.declaration()));
+        if !of_class.iter().chain(of_loops).any(|declared| declared.name == topic) {
+            return Err(Failure::new(format!(
+                "topic `{topic}`: neither class `{}` nor a loop of component `{}` declares that it {verb}s it: write `{verb}s(...)` in its `#[class(...)]` or `#[looping(...)]`",
+                spec.class.name(),
+                self.part.name
+            )));
+        }
         Ok(task)
+    }
+
+    /// Checks a message that came as bytes alone, from a plugin, before others get it.
+    #[cold]
+    fn check(&mut self, topic: TopicId, message: &SharedMessage) -> Result<(), Failure> {
+        let known =
+            self.part.schemas.iter().find(|(known, _)| *known == topic).map(|(_, schema)| Arc::clone(schema));
+        let schema = match known {
+            Some(schema) => schema,
+            None => {
+                let text = self.shared.lock().bus.schema(topic).to_owned();
+                let schema = Schema::parse(&text)
+                    .map_err(|error| Failure::new(format!("the schema of a topic: {error}")))?;
+                let schema = Arc::new(schema);
+                self.part.schemas.push((topic, Arc::clone(&schema)));
+                schema
+            }
+        };
+        schema.check(message.bytes()).map_err(|error| {
+            let name = self.shared.lock().bus.name(topic).to_string();
+            Failure::new(format!("topic `{name}`: it sends what is no message `{}`: {error}", schema.name()))
+        })
+    }
+}
+
+/// What a component wants of a topic.
+#[derive(Clone, Copy)]
+enum Use {
+    Publish,
+    Subscribe,
+}
+
+impl Use {
+    const fn verb(self) -> &'static str {
+        match self {
+            Use::Publish => "publish",
+            Use::Subscribe => "subscribe",
+        }
+    }
+
+    fn declared(self, class: &ClassDeclaration) -> &[DeclaredTopic] {
+        match self {
+            Use::Publish => &class.publishes,
+            Use::Subscribe => &class.subscribes,
+        }
+    }
+
+    fn declared_of_loop(self, one: &LoopDeclaration) -> &[DeclaredTopic] {
+        match self {
+            Use::Publish => &one.publishes,
+            Use::Subscribe => &one.subscribes,
+        }
     }
 }
 
@@ -105,7 +172,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
-        let task = self.may_use(topic.name, "publish")?;
+        let task = self.may_use(topic.name, Use::Publish)?;
         let name = renamed(task, topic.name);
         let observed = self.shared.events.wants_topic(name, topic);
         let bus = &mut self.shared.lock().bus;
@@ -120,7 +187,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
-        let Some(task) = self.may_use(topic.name, "subscribe")? else {
+        let Some(task) = self.may_use(topic.name, Use::Subscribe)? else {
             return Err(Failure::new(format!(
                 "topic `{}`: a passive component has no periods in which it could receive, and cannot subscribe",
                 topic.name
@@ -150,9 +217,12 @@ impl Host for ComponentHost<'_> {
 
     #[inline]
     fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {
-        match self.part.publishers.get(publisher as usize) {
+        match self.part.publishers.get(publisher as usize).copied() {
             Some(topic) => {
-                self.part.outbox.push((*topic, message));
+                if !message.is_value() {
+                    self.check(topic, &message)?;
+                }
+                self.part.outbox.push((topic, message));
                 self.part.recorder.acted();
                 Ok(())
             }

@@ -171,12 +171,12 @@ fn a_program_that_listens_slowly_does_not_make_a_component_look_stuck() {
     impl saoms_core::schedule::Events for Slow {
         fn event(&self, _: &saoms_core::schedule::Event) {
             if self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) == 0 {
-                std::thread::sleep(std::time::Duration::from_millis(300));
+                std::thread::sleep(std::time::Duration::from_millis(1500));
             }
         }
     }
     let settings = saoms_core::schedule::Settings {
-        virtual_watchdog: std::time::Duration::from_millis(30),
+        virtual_watchdog: std::time::Duration::from_secs(1),
         ..simulated(70_000)
     };
     let assembly = crate::fleet::assembly("A actor period=1 each=[log a]");

@@ -75,9 +75,11 @@ impl Component for Gate {
     }
 }
 
+const FIRST: Topic<Request> = Topic::event("FIRST");
+
 /// Passes messages on, and has no opinion.
 #[derive(Class)]
-#[class(name = "relay", periodic, publishes(REQUESTS), subscribes(REQUESTS))]
+#[class(name = "relay", periodic, publishes(REQUESTS), subscribes(FIRST))]
 struct Relay {
     requests: Publisher<Request>,
     heard: Subscription<Request>,
@@ -91,7 +93,7 @@ impl Component for Relay {
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.heard = context.subscribe(&Topic::<Request>::event("FIRST"))?;
+        self.heard = context.subscribe(&FIRST)?;
         self.requests = context.publish(&REQUESTS)?;
         Ok(())
     }
