@@ -92,6 +92,7 @@ fn chance_draws_within_the_ends_and_by_the_seed_alone() {
                 assert!((1000..=2100).contains(&(at - last)) || (0..=400).contains(&(at - last)), "{at}");
                 last = *at;
             }
+            Event::End => unreachable!("no line says so"),
             Event::Breakdown(robot) => assert!((1..=3).contains(robot) && (30_000..=60_100).contains(at)),
             Event::Exceptional(event) => assert!((2..=8).contains(&event.pieces)),
         }
