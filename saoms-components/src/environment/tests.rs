@@ -117,7 +117,7 @@ fn luggage_for_which_there_is_no_block_does_not_happen() {
 
 #[test]
 fn every_wrong_line_says_where_and_why() {
-    let kinds = "`luggage`, `landing`, `takeoff` or `breakdown`";
+    let kinds = "`luggage`, `landing`, `takeoff`, `breakdown` or `end`";
     let block = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
     let robot = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
     let time = "a time such as `6s` or `500ms`";
