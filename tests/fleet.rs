@@ -133,9 +133,8 @@ fn two_robots_cannot_start_on_one_block() {
         r#"class="robot.Robot002"/>"#,
         r#"class="robot.Robot002"/><property name="chargeY">1</property>"#,
     );
-    let failed = std::panic::catch_unwind(|| Fleet::of_text(same).run(1, HOUR)).unwrap_err();
-    let words = failed.downcast_ref::<String>().unwrap();
-    assert!(words.contains("robot 2 starts at (0,1), where robot 1 is already"), "{words}");
+    let found = Fleet::of_text(same).diagnostics();
+    assert!(found.contains("error S5003") && found.contains("robots 1 and 2 both start at (0,1)"), "{found}");
 }
 
 #[test]

@@ -13,5 +13,6 @@ pub mod manual;
 pub mod master;
 pub mod messages;
 pub mod robot;
+mod rules;
 pub mod text;
 pub mod world;

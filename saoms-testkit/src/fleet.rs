@@ -78,6 +78,12 @@ impl Fleet {
         }
     }
 
+    /// The same as people see it, each with a picture of its place.
+    pub fn shown(&self) -> String {
+        let (_, sources, diagnostics, _) = self.checked();
+        human(&diagnostics, &sources, false)
+    }
+
     /// Runs the fleet in virtual time, until it ends by itself or the time is over. Same seed, same run.
     ///
     /// # Panics

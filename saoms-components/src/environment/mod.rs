@@ -19,6 +19,7 @@ use crate::messages::{
 use player::Player;
 
 pub use player::Event;
+pub(crate) use scenario::blocks;
 pub use scenario::{Drawn, Happening, Line, Scenario, Spot, Written};
 
 /// What a composite says about the environment.

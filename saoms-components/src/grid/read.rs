@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use super::{Block, Map};
 use crate::text::{TextFault, bytes};
@@ -70,6 +71,16 @@ impl Map {
             }
         }
         if faults.is_empty() { Ok(map) } else { Err(faults) }
+    }
+
+    /// Where a block stands in the text of a map that [`read`](Map::read) reads.
+    pub(crate) fn written(text: &str, block: Block) -> Option<Range<usize>> {
+        let mut header = Header::default();
+        let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        let mut rows = lines.skip_while(|line| header.take(line).unwrap_or(true));
+        let row = rows.nth(usize::try_from(block.y).ok()?)?;
+        let (start, sign) = row.char_indices().nth(usize::try_from(block.x).ok()?)?;
+        Some(bytes(text, &row[start..start + sign.len_utf8()]))
     }
 
     fn read_row<'a>(

@@ -15,12 +15,12 @@ pub struct WorldProperties {
     #[property(default = 11, range = 1..=8192, unit = "blocks")]
     pub(super) height: u32,
     /// The map as text: one line a row, `.` for a free block, `@` for a blocked one. The header of a MovingAI map may stand before the rows.
-    pub(super) map: Option<String>,
+    pub(crate) map: Option<String>,
     /// Blocks where no robot can go, such as `(3,4)`, in addition to those of the map.
-    pub(super) blocked: Vec<String>,
+    pub(crate) blocked: Vec<String>,
     /// How long a robot moves from one block to the next.
     #[property(default = "0ms", range = "0ms"..="1h")]
-    pub(super) move_time: Duration,
+    pub(crate) move_time: Duration,
     /// How long a robot collects or deposits luggage.
     #[property(default = "0ms", range = "0ms"..="1h")]
     pub(super) handling_time: Duration,

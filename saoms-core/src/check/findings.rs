@@ -36,7 +36,11 @@ pub(super) fn diagnostic<'s>(
         return None;
     }
     let place = located(finding.place(), about, report);
-    let message = format!("{} {}: {finding}", about.what, quoted(about.name));
+    // What a rule says is about the fleet; what a constructor says, about one component.
+    let message = match finding.place().component_index() {
+        Some(_) => finding.message().to_owned(),
+        None => format!("{} {}: {finding}", about.what, quoted(about.name)),
+    };
     let mut one = Diagnostic::new(code, place.at, message).severity(severity);
     for (other, text) in finding.labels() {
         let at = located(other, subject(other), report).at;

@@ -22,6 +22,7 @@ mod properties;
 mod raw;
 mod rename;
 mod report;
+mod rules;
 mod setting;
 mod slots;
 mod target;
@@ -100,6 +101,7 @@ pub fn check(
             resolved.loops.iter().for_each(|one| construct::looping(one, report));
         }
     }
+    rules::check(&fleet, &classes, &resolved, &wiring, registry.rules(), report);
     if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
 }
 

@@ -10,8 +10,15 @@ use crate::source::{FileId, Location, Sources};
 ///
 /// `version` is that of the program. Paths become URIs: relative ones stay relative to where the program ran.
 pub fn sarif(diagnostics: &[Diagnostic], sources: &Sources, version: &str) -> Value {
-    let rules: Vec<Value> = codes::ALL.iter().map(|code| rule(code)).collect();
-    let results: Vec<Value> = diagnostics.iter().map(|one| result(one, sources)).collect();
+    let mut codes: Vec<&Code> = codes::ALL.to_vec();
+    // Those of crates of components are known by what they found.
+    for one in diagnostics {
+        if !codes.iter().any(|code| code.id == one.code.id) {
+            codes.push(one.code);
+        }
+    }
+    let rules: Vec<Value> = codes.iter().map(|code| rule(code)).collect();
+    let results: Vec<Value> = diagnostics.iter().map(|one| result(one, &codes, sources)).collect();
     json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
@@ -39,7 +46,7 @@ fn rule(code: &Code) -> Value {
     rule
 }
 
-fn result(one: &Diagnostic, sources: &Sources) -> Value {
+fn result(one: &Diagnostic, codes: &[&Code], sources: &Sources) -> Value {
     let suggested = one.suggestions.iter().map(|suggestion| &suggestion.description);
     let lines = [&one.message].into_iter().chain(suggested).chain(&one.help);
     let text = lines.map(String::as_str).collect::<Vec<_>>().join("\n");
@@ -49,7 +56,7 @@ fn result(one: &Diagnostic, sources: &Sources) -> Value {
         "message": message(&text),
         "locations": [{ "physicalLocation": place(one.location, sources) }],
     });
-    if let Some(index) = codes::ALL.iter().position(|code| code.id == one.code.id) {
+    if let Some(index) = codes.iter().position(|code| code.id == one.code.id) {
         result["ruleIndex"] = index.into();
     }
     if let Some(sca) = one.rule {

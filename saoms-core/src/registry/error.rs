@@ -26,6 +26,13 @@ pub enum RegistryError {
         /// The version of the declaration.
         found: u32,
     },
+    /// A rule has the code of another one.
+    CodeTaken {
+        /// The code.
+        code: &'static str,
+        /// The name of the rule.
+        rule: &'static str,
+    },
     /// A name stands for another class already.
     NameTaken {
         /// The name.
@@ -53,6 +60,9 @@ impl fmt::Display for RegistryError {
                 out,
                 "class `{class}` was built for contract {found}, this program has contract {CONTRACT}: build both from one version"
             ),
+            Self::CodeTaken { code, rule } => {
+                write!(out, "the code {code} of rule `{rule}` stands for another diagnostic already")
+            }
             Self::NameTaken { name, first, second } if first == second => {
                 write!(out, "class `{name}` is registered twice")
             }

@@ -16,7 +16,7 @@ mod validate;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use saoms_api::{LoopRegistration, Registration};
+use saoms_api::{FleetRule, LoopRegistration, Registration};
 
 pub use class::{Class, Provider};
 pub use declaration::{
@@ -29,7 +29,7 @@ pub use looping::{
 };
 pub use team::{Team, TeamFault};
 
-use crate::diagnostic::nearest_few;
+use crate::diagnostic::{codes, nearest_few};
 
 /// How many names are offered in place of an unknown one.
 const OFFERED: usize = 3;
@@ -64,6 +64,7 @@ const OFFERED: usize = 3;
 pub struct Registry {
     classes: BTreeMap<String, Arc<Class>>,
     loops: BTreeMap<String, Arc<LoopClass>>,
+    rules: Vec<&'static FleetRule>,
 }
 
 impl Registry {
@@ -72,10 +73,10 @@ impl Registry {
         Self::default()
     }
 
-    /// The classes and loops that are linked into this program.
+    /// The classes, loops and rules that are linked into this program.
     ///
     /// # Errors
-    /// As [`Registry::add`] and [`Registry::add_loop`].
+    /// As [`Registry::add`], [`Registry::add_loop`] and [`Registry::add_rule`].
     pub fn linked() -> Result<Self, RegistryError> {
         let mut all: Vec<&Registration> = Registration::linked().collect();
         // The linker's order would decide which of two faults is reported.
@@ -85,7 +86,27 @@ impl Registry {
         loops.sort_unstable_by_key(|registration| registration.declaration());
         loops.into_iter().try_for_each(|registration| registry.add_loop(*registration))?;
         all.into_iter().try_for_each(|registration| registry.add(*registration))?;
+        FleetRule::linked().try_for_each(|rule| registry.add_rule(rule))?;
         Ok(registry)
+    }
+
+    /// Adds a rule over whole fleets.
+    ///
+    /// # Errors
+    /// Its code is that of another rule, or of the checker itself.
+    pub fn add_rule(&mut self, rule: &'static FleetRule) -> Result<(), RegistryError> {
+        let id = rule.code.id;
+        let of_checker = codes::ALL.iter().any(|code| code.id == id);
+        match self.rules.binary_search_by_key(&id, |known| known.code.id) {
+            Err(place) if !of_checker => self.rules.insert(place, rule),
+            _ => return Err(RegistryError::CodeTaken { code: id, rule: rule.code.name }),
+        }
+        Ok(())
+    }
+
+    /// The rules over whole fleets, by their codes.
+    pub fn rules(&self) -> &[&'static FleetRule] {
+        &self.rules
     }
 
     /// Adds a class under all its names, and the loops that it has. After an error the registry is as it was before.

@@ -32,9 +32,11 @@ behind the code. `--format json` gives the same as data, with each suggestion as
 | `S30` | classes and properties |
 | `S40` | tasks and topics |
 | `S45` | the loops of components |
+| `S50` | the fleet as a whole, by rules of crates of components |
 
 The table of codes is `saoms-core/src/diagnostic/codes.rs`. The examples are the files in `saoms-core/tests/check/examples`;
-the classes that they name are those of the tests beside them. This page is generated from both.
+the classes that they name are those of the tests beside them. The rules of `S50` are in `saoms-components/src/rules`, their examples in
+`tests/rules`. This page is generated from all of these.
 ";
 
 #[test]
@@ -51,6 +53,12 @@ fn every_diagnostic_is_documented_with_an_example() {
         }
     }
     assert!(faults.is_empty(), "{faults}");
+    // What follows is of crates of components, which the core does not know: `tests/rules.rs` writes it.
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/diagnostics.md");
+    let present = fs::read_to_string(path).unwrap_or_default();
+    if let Some(rules) = present.find("\n## S5") {
+        page += &present[rules..];
+    }
     expect_file!["../../../docs/diagnostics.md"].assert_eq(&page);
 }
 

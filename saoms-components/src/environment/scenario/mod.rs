@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use saoms_api::Finding;
 
+pub(crate) use draw::blocks;
 pub use draw::{Drawn, Spot};
 
 /// What happens, and when.

@@ -1,0 +1,32 @@
+//! Chargers where no robot can be.
+
+use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+
+use super::map::areas;
+use super::robots::robots;
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5002",
+        name: "charger-place",
+        meaning: "The charger of a robot is outside the map of its world, or on a blocked block.",
+        severity: Severity::Error,
+        rule: None,
+    },
+    check,
+};
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let areas = areas(fleet);
+    let mut findings = Vec::new();
+    for robot in robots(fleet) {
+        let Some(area) = areas.iter().find(|area| Some(area.index) == robot.world) else { continue };
+        let Some(problem) = area.problem(robot.charger) else { continue };
+        let message = format!("the charger of robot {} is at {}, {problem}", robot.number, robot.charger);
+        let finding = Finding::new(robot.charger_place(fleet), message);
+        let help =
+            "give it a free block: `chargeX` is its column, `chargeY` its row, by default the robot's number";
+        findings.push(area.explain(finding.help(help), robot.charger));
+    }
+    findings
+}

@@ -1,0 +1,62 @@
+//! Luggage from or to a block where no robot can be.
+
+use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+
+use super::map::{Area, Luggage, area, luggage};
+use crate::environment::{Spot, Written, blocks};
+use crate::messages::AREA;
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5001",
+        name: "luggage-place",
+        meaning: "A scenario has luggage at a block where no robot can be: outside the map, or blocked.",
+        severity: Severity::Error,
+        rule: None,
+    },
+    check,
+};
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let area = area(fleet);
+    let is_said = fleet
+        .components()
+        .iter()
+        .any(|component| component.has_broker || component.publishes.contains(&AREA.name()));
+    let mut findings = Vec::new();
+    for piece in luggage(fleet) {
+        for spot in [&piece.from, &piece.to] {
+            match &area {
+                Some(area) => findings.extend(judge(area, &piece, spot)),
+                None if spot.value == Spot::Anywhere && !is_said => {
+                    let message = "`random` needs an area to draw from, and nothing in the fleet says one";
+                    let help = "add a `saoms.World`, or write two corners such as `(1,0)..(10,10)`";
+                    findings.push(Finding::new(piece.place(spot), message).help(help));
+                }
+                None => {}
+            }
+        }
+    }
+    findings
+}
+
+fn judge(area: &Area, piece: &Luggage, spot: &Written<Spot>) -> Option<Finding> {
+    let place = piece.place(spot);
+    if let Some(block) = spot.value.block() {
+        let problem = area.problem(block)?;
+        let finding = Finding::new(place, format!("luggage cannot be at {block}: it is {problem}"));
+        return Some(area.explain(finding.help("robots collect and deposit luggage on free blocks"), block));
+    }
+    let (first, last) = spot.value.corners(Some(&area.map))?;
+    if !blocks(first, last, Some(&area.map)).any(|block| area.map.is_free(block)) {
+        let message = format!("there is no free block from {first} to {last}, so no luggage can be there");
+        return Some(Finding::new(place, message).help("choose blocks of the map that are not blocked"));
+    }
+    let (x, y) = (area.map.width() - 1, area.map.height() - 1);
+    let beyond = !area.map.contains(last);
+    beyond.then(|| {
+        let message =
+            format!("the blocks from {first} to {last} reach beyond the map, which ends at ({x},{y})");
+        Finding::new(place, message).severity(Severity::Warning).help("only blocks of the map are drawn")
+    })
+}

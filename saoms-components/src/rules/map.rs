@@ -1,0 +1,85 @@
+//! The map of a fleet, as rules look at it.
+
+use saoms_api::{Finding, FleetView, Place};
+
+use crate::environment::{Environment, Happening, Scenario, Spot, Written};
+use crate::grid::{Block, Map};
+use crate::world::{World, WorldProperties};
+
+/// A world with a right map.
+pub(super) struct Area {
+    pub(super) index: usize,
+    pub(super) map: Map,
+    pub(super) properties: WorldProperties,
+}
+
+/// All worlds whose maps are right.
+pub(super) fn areas(fleet: &FleetView<'_>) -> Vec<Area> {
+    let worlds = fleet.all::<World>();
+    worlds
+        .filter_map(|(index, properties)| Some(Area { index, map: properties.map().ok()?, properties }))
+        .collect()
+}
+
+/// The map of the fleet; `None` where there is no world, or where several leave open which one is meant.
+pub(super) fn area(fleet: &FleetView<'_>) -> Option<Area> {
+    let mut areas = areas(fleet);
+    (fleet.all::<World>().count() == 1).then(|| areas.pop()).flatten()
+}
+
+impl Area {
+    /// Why no robot can stand on a block: it is outside, or blocked.
+    pub(super) fn problem(&self, block: Block) -> Option<String> {
+        if !self.map.contains(block) {
+            let (x, y) = (self.map.width() - 1, self.map.height() - 1);
+            return Some(format!("outside the map, which goes from (0,0) to ({x},{y})"));
+        }
+        (!self.map.is_free(block)).then(|| "blocked on the map".to_owned())
+    }
+
+    /// Adds where the block is blocked, or where the map's size is said.
+    pub(super) fn explain(&self, finding: Finding, block: Block) -> Finding {
+        let blocked = self.properties.blocked.iter().position(|text| text.parse() == Ok(block));
+        if let Some(value) = blocked {
+            let all = 0..self.properties.blocked[value].len();
+            return finding
+                .label(Place::property("blocked").part(value, all).in_component(self.index), "blocked here");
+        }
+        let map = Place::property("map").in_component(self.index);
+        match self.properties.map.as_deref().map(|text| Map::written(text, block)) {
+            Some(Some(bytes)) => finding.label(map.part(0, bytes), "blocked here"),
+            Some(None) => finding,
+            None => finding.label(Place::component(self.index), "the world"),
+        }
+    }
+}
+
+/// A luggage line of a scenario.
+pub(super) struct Luggage {
+    /// The environment that it is in.
+    pub(super) index: usize,
+    /// Which of its texts.
+    text: usize,
+    pub(super) from: Written<Spot>,
+    pub(super) to: Written<Spot>,
+}
+
+impl Luggage {
+    pub(super) fn place(&self, spot: &Written<Spot>) -> Place {
+        Place::property("scenario").part(self.text, spot.bytes.clone()).in_component(self.index)
+    }
+}
+
+/// The luggage of all scenarios, wrong lines left out.
+pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<Luggage> {
+    let mut all = Vec::new();
+    for (index, properties) in fleet.all::<Environment>() {
+        let (scenario, _) = Scenario::read_partly(&properties.scenario);
+        for line in scenario.lines() {
+            if let Happening::Luggage { from, to } = &line.happening {
+                all.push(Luggage { index, text: line.text, from: from.clone(), to: to.clone() });
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,59 @@
+//! The robots of a fleet, as rules look at them.
+
+use saoms_api::{FleetView, Place};
+
+use crate::grid::Block;
+use crate::messages::ROBOT_LIST;
+use crate::robot::{Robot, RobotProperties};
+
+/// A robot of the fleet whose own values are right.
+pub(super) struct Known {
+    pub(super) index: usize,
+    pub(super) number: u32,
+    /// Where its charger is, and where it starts.
+    pub(super) charger: Block,
+    /// The index of the world that it is in.
+    pub(super) world: Option<usize>,
+    pub(super) properties: RobotProperties,
+}
+
+/// All robots in document order.
+pub(super) fn robots(fleet: &FleetView<'_>) -> Vec<Known> {
+    let robots = fleet.all::<Robot>().filter_map(|(index, properties)| {
+        let number = properties.number().ok()?;
+        let charger = properties.charge_block(number).ok()?;
+        let world = fleet.components()[index].target("world");
+        Some(Known { index, number, charger, world, properties })
+    });
+    robots.collect()
+}
+
+/// Whether there are robots of other classes, or may be some in other programs.
+pub(super) fn may_be_others(fleet: &FleetView<'_>) -> bool {
+    let own: Vec<usize> = fleet.all::<Robot>().map(|(index, _)| index).collect();
+    let mut components = fleet.components().iter().enumerate();
+    components.any(|(index, component)| {
+        component.has_broker
+            || (component.publishes.contains(&ROBOT_LIST.name()) && own.binary_search(&index).is_err())
+    })
+}
+
+impl Known {
+    /// Where the composite says where its charger is, as far as it does.
+    pub(super) fn charger_place(&self, fleet: &FleetView<'_>) -> Place {
+        self.first_given(fleet, &["chargeY", "chargeX", "ID"])
+    }
+
+    /// Where the composite says its number.
+    pub(super) fn number_place(&self, fleet: &FleetView<'_>) -> Place {
+        let name = if self.properties.number.is_some() { "number" } else { "ID" };
+        self.first_given(fleet, &[name])
+    }
+
+    fn first_given(&self, fleet: &FleetView<'_>, names: &[&str]) -> Place {
+        let values = fleet.components()[self.index].values;
+        let given = names.iter().find(|name| values.iter().any(|(given, _)| given == **name));
+        let place = given.map_or_else(Place::default, |name| Place::property(*name));
+        place.in_component(self.index)
+    }
+}

@@ -1,0 +1,45 @@
+//! Two robots on one block at the start.
+
+use std::collections::HashMap;
+
+use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+
+use super::robots::{Known, robots};
+use crate::grid::Block;
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5003",
+        name: "start-shared",
+        meaning: "Two robots start on one block: a robot starts at its charger.",
+        severity: Severity::Error,
+        rule: None,
+    },
+    check,
+};
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let robots = robots(fleet);
+    let mut first: HashMap<(Option<usize>, Block), &Known> = HashMap::new();
+    let mut findings = Vec::new();
+    for robot in &robots {
+        let key = (robot.world, robot.charger);
+        let Some(other) = first.get(&key) else {
+            first.insert(key, robot);
+            continue;
+        };
+        // Two of one number are told that.
+        if other.number != robot.number {
+            let message = format!(
+                "robots {} and {} both start at {}, where their chargers are",
+                other.number, robot.number, robot.charger
+            );
+            findings.push(
+                Finding::new(robot.charger_place(fleet), message)
+                    .label(other.charger_place(fleet), "the first")
+                    .help("give one of them another charger with `chargeX` and `chargeY`"),
+            );
+        }
+    }
+    findings
+}

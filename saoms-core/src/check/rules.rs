@@ -1,0 +1,79 @@
+//! What rules of crates of components find in the fleet as a whole.
+
+use saoms_api::contain::contained;
+use saoms_api::{ComponentView, FleetRule, FleetView};
+
+use super::Resolved;
+use super::classes::ClassIndex;
+use super::findings::{Subject, diagnostic};
+use super::fleet::{Fleet, Kind, Member};
+use super::report::Report;
+use super::wires::Wiring;
+use crate::diagnostic::{Diagnostic, Severity};
+
+/// Asks the rules, once every component is resolved: a part of a fleet is no fleet to judge.
+pub(super) fn check<'s>(
+    fleet: &'s Fleet<'_>,
+    classes: &'s [ClassIndex<'_>],
+    resolved: &'s [Option<Resolved<'_>>],
+    wiring: &Wiring,
+    rules: &[&'static FleetRule],
+    report: &mut Report<'_>,
+) {
+    // Components that composites implement are not there in a run.
+    let runs = |member: &Member<'_>| !matches!(member.kind, Kind::Composite(_));
+    let mut places = Vec::with_capacity(fleet.members.len());
+    let mut subjects: Vec<Subject<'s>> = Vec::new();
+    let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
+    for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
+        places.push(parts.len());
+        if !runs(member) {
+            continue;
+        }
+        let (Some(resolved), Some(class)) = (resolved, fleet.class_of(place, classes)) else { return };
+        subjects.push(Subject { name: member.path(), ..resolved.subject(member) });
+        parts.push((place, resolved, class));
+    }
+    let Some(first) = subjects.first().copied() else { return };
+    let views: Vec<ComponentView<'_>> = parts
+        .iter()
+        .zip(&subjects)
+        .map(|((place, resolved, class), subject)| {
+            let declaration = class.class.declaration();
+            let references = class.references.iter().zip(&wiring[*place]);
+            let wires = references.flat_map(|(reference, providers)| {
+                providers.iter().map(|provider| (reference.name.as_str(), places[provider.member]))
+            });
+            ComponentView {
+                path: subject.name,
+                class: &declaration.name,
+                declaration: class.class.declaration_json(),
+                values: &resolved.values,
+                period: resolved.task.as_ref().map(|task| task.period),
+                has_broker: resolved.task.as_ref().is_some_and(|task| task.url.is_some()),
+                publishes: declaration.publishes.iter().map(|topic| topic.name.as_str()).collect(),
+                wires: wires.collect(),
+            }
+        })
+        .collect();
+    let view = FleetView::new(&views);
+    for rule in rules {
+        let findings = match contained(|| (rule.check)(&view)) {
+            Ok(findings) => findings,
+            Err(failure) => {
+                let message = format!("the rule {} failed: {failure}", rule.code.name);
+                let one = Diagnostic::new(&rule.code, first.at, message).severity(Severity::Warning);
+                report.push(one.help("this is a fault of the rule, not of the fleet"));
+                continue;
+            }
+        };
+        for finding in &findings {
+            let severity = finding.own_severity().unwrap_or(rule.code.severity);
+            let named = |index: usize| subjects.get(index).copied();
+            let own = finding.place().component_index().and_then(named).unwrap_or(first);
+            if let Some(one) = diagnostic(&rule.code, severity, finding, own, &named, report) {
+                report.push(one);
+            }
+        }
+    }
+}

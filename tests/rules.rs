@@ -1,0 +1,231 @@
+//! The rules over whole fleets that the shipped components bring: their part of `docs/diagnostics.md`, with an example of each, and where
+//! they say nothing.
+//!
+//! `UPDATE_EXPECT=1 cargo test --test rules` writes the part anew.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::{env, fs};
+
+use saoms_core::registry::Registry;
+use saoms_testkit::Fleet;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn every_rule_is_documented_with_an_example() {
+    let registry = Registry::linked().unwrap();
+    let mut part = String::new();
+    for rule in registry.rules() {
+        let (id, name, meaning) = (rule.code.id, rule.code.name, rule.code.meaning);
+        assert!(id.len() == 5 && id.starts_with("S50") && meaning.ends_with('.'), "{id}");
+        let file = format!("tests/rules/{id}.composite");
+        let text = fs::read_to_string(root().join(&file)).unwrap_or_else(|_| panic!("there is no {file}"));
+        let found = Fleet::of_text(&text).diagnostics();
+        let ids: Vec<&str> = found.lines().filter_map(|line| line.split(' ').nth(1)).collect();
+        assert_eq!(ids, [id], "{file} has to have this fault alone:\n{found}");
+        let shown = Fleet::of_text(text).shown().replace("text.composite", &format!("{id}.composite"));
+        assert!(shown.contains("help:"), "{id} does not say what to do");
+        let severity = rule.code.severity.name();
+        let _ = write!(part, "\n## {id} {name}\n\n*{severity}.* {meaning}\n\n```text\n{shown}```\n");
+    }
+    let path = root().join("docs/diagnostics.md");
+    let page = fs::read_to_string(&path).unwrap();
+    let (before, present) = page.find("\n## S5").map_or((page.as_str(), ""), |start| page.split_at(start));
+    if env::var_os("UPDATE_EXPECT").is_some() {
+        fs::write(path, format!("{before}{part}")).unwrap();
+    } else {
+        assert_eq!(present, part, "docs/diagnostics.md is out of date: run with UPDATE_EXPECT=1");
+    }
+}
+
+/// A component: its name, class and properties, and whether it is wired to the world.
+type Component<'a> = (&'a str, &'a str, &'a [(&'a str, &'a str)], bool);
+
+/// A composite of these components, from line 2 on, each in a line.
+fn fleet(components: &[Component<'_>]) -> String {
+    let mut text = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" name=\"t\">\n".to_owned();
+    for (name, class, properties, is_wired) in components {
+        let _ = write!(text, "<component name=\"{name}\"><implementation.java class=\"{class}\"/>");
+        for (property, value) in [("ID", *name), ("period", "100")].iter().chain(*properties) {
+            let _ = write!(text, "<property name=\"{property}\">{value}</property>");
+        }
+        text += if *is_wired { "<reference name=\"world\" target=\"World\"/>" } else { "" };
+        text += "</component>\n";
+    }
+    text + "</composite>"
+}
+
+/// What is found, without lines and columns.
+fn found(components: &[Component<'_>]) -> Vec<String> {
+    let found = Fleet::of_text(fleet(components)).diagnostics();
+    let plain = |line: &str| {
+        let mut words = line.splitn(4, ' ');
+        format!("{} {} {}", words.next().unwrap(), words.next().unwrap(), words.nth(1).unwrap())
+    };
+    found.lines().map(plain).collect()
+}
+
+const ROBOT: Component<'_> = ("Robot1", "saoms.Robot", &[], true);
+
+/// What is found with this scenario on this map, and one robot.
+fn with_scenario(map: &str, scenario: &str) -> Vec<String> {
+    found(&[
+        ("World", "saoms.World", &[("map", map)], false),
+        ("Environment", "saoms.Environment", &[("scenario", scenario)], false),
+        ROBOT,
+    ])
+}
+
+#[test]
+fn luggage_is_looked_at_wherever_it_may_be() {
+    let map = ".....\n.@@..\n.@...";
+    assert!(
+        with_scenario(map, "at 1s luggage (3,1) to (4,2); at 2s luggage random to (0,0)..(1,2)").is_empty()
+    );
+    assert_eq!(
+        with_scenario(map, "at 1s luggage (5,1) to (4,9)\nat 1s luggage (1,1)..(2,1) to (1,2)"),
+        [
+            "error S5001 luggage cannot be at (5,1): it is outside the map, which goes from (0,0) to (4,2)",
+            "error S5001 luggage cannot be at (4,9): it is outside the map, which goes from (0,0) to (4,2)",
+            "error S5001 there is no free block from (1,1) to (2,1), so no luggage can be there",
+            "error S5001 luggage cannot be at (1,2): it is blocked on the map",
+        ]
+    );
+    assert_eq!(
+        with_scenario(map, "at 1s luggage (0,0)..(5,1) to (4,2)"),
+        ["warning S5001 the blocks from (0,0) to (5,1) reach beyond the map, which ends at (4,2)"]
+    );
+    let without =
+        [("Environment", "saoms.Environment", &[("scenario", "at 1s luggage random to (70,7)")][..], false)];
+    assert_eq!(
+        found(&without),
+        ["error S5001 `random` needs an area to draw from, and nothing in the fleet says one"]
+    );
+    // A wrong line and an impossible one are told together.
+    let both = with_scenario(map, "at 1s lugage (1,1) to (0,0); at 1s luggage (1,1) to (0,0)");
+    assert_eq!(both.len(), 2, "{both:?}");
+}
+
+#[test]
+fn chargers_are_looked_at_in_the_world_that_they_are_in() {
+    let world = ("World", "saoms.World", &[("width", "4"), ("height", "4"), ("blocked", "(0,2)")][..], false);
+    fn robot(name: &str, is_wired: bool) -> Component<'_> {
+        (name, "saoms.Robot", &[], is_wired)
+    }
+    assert_eq!(
+        found(&[world, ROBOT, robot("Robot2", true), robot("Robot9", true), robot("Robot8", false)]),
+        [
+            "error S5002 the charger of robot 2 is at (0,2), blocked on the map",
+            "error S5002 the charger of robot 9 is at (0,9), outside the map, which goes from (0,0) to (3,3)",
+        ]
+    );
+}
+
+#[test]
+fn robots_of_one_number_are_found_with_and_without_a_world() {
+    fn robot<'a>(name: &'a str, class: &'a str, properties: &'a [(&'a str, &'a str)]) -> Component<'a> {
+        (name, class, properties, false)
+    }
+    let number: &[(&str, &str)] = &[("number", "1"), ("chargeX", "3")];
+    let one = "robots `Robot1` and `R` both have the number 1";
+    assert_eq!(
+        found(&[robot("Robot1", "saoms.Robot", &[]), robot("R", "saoms.Robot", number)]),
+        [format!("error S5004 {one}")]
+    );
+    assert_eq!(
+        found(&[robot("Robot1", "saoms.Robot", &[]), robot("R", "robot.Robot001", &[])]),
+        [format!("error S5004 {one}")],
+        "their common block is not told, too"
+    );
+    let both = found(&[robot("R", "robot.Robot001", &[]), robot("S", "saoms.Robot", number)]);
+    assert_eq!(both.len(), 1);
+    assert!(both[0].starts_with("error S3013"), "{both:?}");
+    let apart: &[(&str, &str)] = &[("number", "2"), ("chargeX", "3")];
+    assert!(found(&[robot("Robot1", "saoms.Robot", &[]), robot("R", "saoms.Robot", apart)]).is_empty());
+}
+
+#[test]
+fn events_of_unknown_robots_are_found() {
+    let scenario = |scenario: &'static str| {
+        let environment = [("scenario", scenario)];
+        found(&[
+            ("Environment", "saoms.Environment", &environment, false),
+            ("Robot1", "saoms.Robot", &[], false),
+            ("Lift5", "saoms.Robot", &[("number", "2")], false),
+        ])
+    };
+    assert!(scenario("at 1s breakdown Robot1; at 1s breakdown 1..2; at 1s breakdown Robot002").is_empty());
+    assert_eq!(
+        scenario("at 1s breakdown Robot7; at 2s breakdown 4..6; at 3s breakdown 1..3; at 4s breakdown Lift5"),
+        [
+            "error S5005 the fleet has no robot 7",
+            "error S5005 the fleet has no robot from 4 to 6",
+            "error S5005 of the robots from 1 to 3 the fleet has only 2",
+            "error S5005 `Lift5` stands for robot 5, and the robot of this name has the number 2",
+        ]
+    );
+}
+
+#[test]
+fn only_what_no_full_battery_can_do_is_out_of_reach() {
+    let row = ".".repeat(60);
+    let map = format!("{row}\n{row}\n{row}");
+    // Robot 1 is at (0,1), and a full battery lasts for 50 executions.
+    assert!(with_scenario(&map, "at 1s luggage (0,0) to (25,1)").is_empty());
+    let far = with_scenario(&map, "at 1s luggage (26,1) to (0,0)");
+    assert_eq!(far.len(), 1);
+    assert!(far[0].starts_with("error S5006 no robot can bring luggage from (26,1): 26 moves"), "{far:?}");
+    let range = with_scenario(&map, "at 1s luggage (0,0) to (1,0)..(30,2)");
+    assert!(range.len() == 1 && range[0].starts_with("warning S5006"), "{range:?}");
+    // Around a wall it is farther.
+    let wall = format!("{row}\n.@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@@{}\n{row}", ".".repeat(19));
+    assert!(with_scenario(&wall, "at 1s luggage (0,0) to (20,2)").is_empty());
+    let wall = wall.replace(&format!("\n{row}"), &format!("\n@{}", &row[1..]));
+    assert_eq!(with_scenario(&wall, "at 1s luggage (0,0) to (20,2)").len(), 1);
+}
+
+#[test]
+fn parts_of_a_map_without_a_charger_are_found() {
+    let map = "..@..\n..@..\n@@@@@\n.....";
+    assert!(with_scenario(map, "at 1s luggage (0,0) to (0,1)..(1,1)").is_empty());
+    assert_eq!(
+        with_scenario(map, "at 1s luggage (4,0) to (0,3); at 1s luggage random to (0,0)"),
+        [
+            "error S5007 no way on the map leads to (4,0) from the charger of any robot",
+            "error S5007 no way on the map leads to (0,3) from the charger of any robot",
+            "warning S5007 no way on the map leads to 9 of the 13 free blocks here from the charger of any robot",
+        ]
+    );
+    let two = found(&[
+        ("World", "saoms.World", &[("map", map)], false),
+        ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (0,0) to (4,0)")], false),
+        ROBOT,
+        ("Robot2", "saoms.Robot", &[("chargeX", "4"), ("chargeY", "1")], true),
+    ]);
+    assert_eq!(two, ["error S5007 no way on the map leads from where the luggage is to where it has to go"]);
+}
+
+#[test]
+fn a_battery_beyond_its_range_is_told_so() {
+    let battery: &[(&str, &str)] = &[("battery", "101")];
+    assert_eq!(
+        found(&[("Robot1", "saoms.Robot", battery, false)]),
+        ["error S3008 property `battery`: `101` is out of range: expected a number from 0.0 to 100.0 [%]"]
+    );
+}
+
+#[test]
+fn shipped_fleets_break_no_rule() {
+    for entry in fs::read_dir(root().join("composites")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "composite") {
+            let found = Fleet::of_file(&path).diagnostics();
+            assert!(!found.contains(" S50"), "{}:\n{found}", path.display());
+        }
+    }
+}
