@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use saoms_core::journal::Journal;
 use saoms_core::report::{ComponentReport, RunReport, Status};
 use serde_json::Value;
 
@@ -19,6 +20,7 @@ pub(crate) fn summary(report: &RunReport) -> String {
     text.push('\n');
     text.push_str(&table(&report.components));
     text.push_str(&troubles(&report.components));
+    text.push_str(&journal(&report.journal));
     if let Some(hash) = &report.trace_hash {
         let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
     }
@@ -43,6 +45,23 @@ pub(crate) fn outcome(report: &RunReport) -> String {
             collisions(report),
             number(report, "/stranded"),
         );
+    }
+    text
+}
+
+/// What of the journal is not there; mostly nothing.
+fn journal(journal: &Journal) -> String {
+    let mut text = String::new();
+    if journal.overwritten > 0 {
+        let _ = writeln!(
+            text,
+            "\njournal: {} of {} records were overwritten by newer ones; --journal FILE keeps all",
+            journal.overwritten, journal.records
+        );
+    }
+    if journal.lost > 0 {
+        let _ =
+            writeln!(text, "\njournal: {} of {} records are not in the file", journal.lost, journal.records);
     }
     text
 }
@@ -115,6 +134,18 @@ fn table(components: &[ComponentReport]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_missing_in_the_journal_is_told() {
+        let mut one = Journal::default();
+        one.records = 9;
+        assert_eq!(journal(&one), "");
+        one.overwritten = 4;
+        assert_eq!(
+            journal(&one),
+            "\njournal: 4 of 9 records were overwritten by newer ones; --journal FILE keeps all\n"
+        );
+    }
 
     #[test]
     fn trouble_is_told_below_the_table() {

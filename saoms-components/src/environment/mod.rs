@@ -7,13 +7,15 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-use saoms_api::{Class, Component, Context, Failure, Level, Properties, Publisher, Subscription, Time, Work};
+use saoms_api::{
+    Class, Component, Context, Failure, Level, Properties, Publisher, Subscription, Time, Work, record,
+};
 
 use crate::console::Timestamp;
 use crate::grid::Map;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, LuggageStage,
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage,
 };
 
 use player::Player;
@@ -167,11 +169,23 @@ impl Environment {
                 }
                 context.console(format_args!("Environment: Test{test}: {request} at {now}"));
                 context.info(format_args!("luggage {} waits at {from} to be brought to {to}", self.luggage));
+                let luggage = self.luggage;
+                context.symptom(record!(
+                    "luggage {luggage} waits at {from} to be brought to {to}",
+                    luggage,
+                    from,
+                    to
+                ));
                 context.send(&self.events, request.into())
             }
             Some(Event::Exceptional(event)) => {
                 context.console(format_args!("Environment: Test{test}: New event: {event}."));
                 context.info(format_args!("{event}"));
+                let pieces = event.pieces;
+                context.symptom(match event.kind {
+                    ExceptionalKind::Landing => record!("an airplane lands with {pieces} pieces", pieces),
+                    ExceptionalKind::Takeoff => record!("an airplane takes off with {pieces} pieces", pieces),
+                });
                 context.send(&self.events, event.into())
             }
             Some(Event::End) => Ok(()),
@@ -179,6 +193,7 @@ impl Environment {
                 let fault = Fault::breakdown(robot);
                 context.console(format_args!("Environment: Test{test}: New event: {fault}."));
                 context.info(format_args!("{fault}"));
+                context.symptom(record!("robot {robot} breaks down", robot));
                 context.send(&self.events, fault.into())
             }
         }

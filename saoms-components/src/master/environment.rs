@@ -1,4 +1,4 @@
-use saoms_api::{Class, Component, Context, Failure, Header, Level, Publisher, Subscription};
+use saoms_api::{Cause, Class, Component, Context, Failure, Header, Level, Publisher, Subscription};
 
 use super::gate::{Gate, Refusal};
 use super::open::Open;
@@ -71,11 +71,13 @@ impl Component for MasterEnvironment {
         }
         let now = Timestamp::now(context);
         for (header, event) in context.receive(&self.events).with_headers() {
+            context.because(header.cause);
             self.sort(context, header, event)?;
             context.console(format_args!(
                 "MasterEnvironmentManagingSystem: new event received and managed at {now}"
             ));
         }
+        context.because(Cause::default());
         for robot in context.receive(&self.robots) {
             self.open.hear_robot(robot);
         }

@@ -13,6 +13,8 @@ pub(crate) struct Recorder {
     /// The way of what happens outside all loops.
     outside: Trail,
     loops: Vec<Way>,
+    /// The newest change of each entry by each loop.
+    changes: Vec<(&'static str, u16, Cause)>,
     /// What is to be handed over.
     pub(crate) batch: Batch,
     pub(crate) notices: Vec<Notice>,
@@ -82,6 +84,7 @@ impl Recorder {
     /// A new instance begins, which knows nothing of the one before.
     pub(crate) fn reset(&mut self) {
         self.loops.clear();
+        self.changes.clear();
     }
 
     pub(crate) fn name(&mut self, place: u32, name: &str) {
@@ -138,27 +141,42 @@ impl Recorder {
         }
     }
 
-    /// Notes down what the present loop saw, decided or did, unless it is what it saw, decided and did in its last execution.
-    pub(crate) fn write(&mut self, stamp: Stamp<'_>, phase: Phase, record: &Record) {
+    /// The loop that acts.
+    pub(crate) fn present(&self) -> Option<u16> {
+        self.present
+    }
+
+    /// Notes down what the present loop saw, decided or did, unless it is what it saw, decided and did in its last execution. A symptom that
+    /// nobody gave a reason for follows from the newest change that another loop made to an entry which this one `senses`.
+    pub(crate) fn write(&mut self, stamp: Stamp<'_>, phase: Phase, record: &Record, senses: &[String]) {
         let fingerprint = fingerprint(phase, record);
         match phase {
-            Phase::Symptom => self.symptom(stamp, fingerprint, record),
+            Phase::Symptom => self.symptom(stamp, fingerprint, record, senses),
             Phase::Decision => self.decision(stamp, fingerprint, record),
             Phase::Effect => self.effect(stamp, fingerprint, record),
         }
     }
 
-    fn symptom(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
+    fn symptom(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record, senses: &[String]) {
         let before = self.way().and_then(|way| way.last.symptom);
         let noted = match before.filter(|before| before.fingerprint == fingerprint) {
             Some(before) => before,
             None => {
-                let cause = self.trail().because;
+                let because = self.trail().because;
+                let cause = if because == Cause::default() { self.sensed(senses) } else { because };
                 self.push(stamp, Phase::Symptom, fingerprint, cause, false, record)
             }
         };
         *self.trail() =
             Trail { because: Cause::default(), symptom: Some(noted), decision: None, newest: noted.id };
+    }
+
+    /// The newest change of one of these entries by another loop.
+    fn sensed(&self, senses: &[String]) -> Cause {
+        let Some(present) = self.present else { return Cause::default() };
+        let others = self.changes.iter().filter(|(_, by, _)| *by != present);
+        let sensed = others.filter(|(entry, ..)| senses.iter().any(|name| name == entry));
+        sensed.map(|(.., cause)| *cause).max().unwrap_or_default()
     }
 
     fn decision(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
@@ -196,7 +214,13 @@ impl Recorder {
         let record = saoms_api::record!("{entry}: {before} -> {after}", entry, before, after);
         let cause = self.trail().cause_of_effect();
         let fingerprint = fingerprint(Phase::Effect, &record);
-        self.trail().newest = self.push(stamp, Phase::Effect, fingerprint, cause, true, &record).id;
+        let id = self.push(stamp, Phase::Effect, fingerprint, cause, true, &record).id;
+        self.trail().newest = id;
+        let by = self.present.unwrap_or(OUTSIDE);
+        match self.changes.iter_mut().find(|(name, place, _)| *name == entry && *place == by) {
+            Some(known) => known.2 = id,
+            None => self.changes.push((entry, by, id)),
+        }
     }
 
     /// Something followed from the present decision: an effect, a message, a call.

@@ -75,6 +75,12 @@ impl JournalFile {
         Ok(JournalFile { file, components, loops, text: Vec::new() })
     }
 
+    /// For tests: goes on in another file.
+    #[cfg(test)]
+    pub(super) fn replace(&mut self, file: File) {
+        self.file = file;
+    }
+
     fn write(&mut self, waiting: &Waiting) -> io::Result<()> {
         for (component, place, name) in &waiting.names {
             self.loops[*component as usize].set(*place, name);

@@ -1,1 +1,215 @@
+use std::fs::File;
+use std::sync::atomic::AtomicU64;
 
+use saoms_api::{Cause, Phase, Time, Value, record};
+
+use super::recorder::{Recorder, Stamp};
+use super::{Journal, JournalFile, Named, ReadError, Stream, read};
+
+/// A recorder in its first execution, and what stamps its records.
+fn recorder() -> (Recorder, AtomicU64) {
+    let mut recorder = Recorder::default();
+    recorder.begin(Cause::default());
+    (recorder, AtomicU64::new(0))
+}
+
+fn stamp(ids: &AtomicU64) -> Stamp<'_> {
+    Stamp { ids, component: 0, time: 1_000_000_000 }
+}
+
+/// Numbers and causes.
+fn causes(recorder: &Recorder) -> Vec<(u64, u64)> {
+    recorder.batch.heads().iter().map(|head| (head.id.0, head.cause.0)).collect()
+}
+
+#[test]
+fn a_symptom_without_a_reason_follows_from_what_the_loop_senses() {
+    let (mut recorder, ids) = recorder();
+    let senses = ["battery".to_owned(), "busy".to_owned()];
+    recorder.enter(Some(0), 0);
+    recorder.changed(stamp(&ids), "busy", Value::Bool(false), Value::Bool(true));
+    recorder.changed(stamp(&ids), "next", Value::Pair(1, 1), Value::Pair(1, 2));
+    recorder.enter(Some(1), 0);
+    recorder.changed(stamp(&ids), "battery", Value::Number(1.0), Value::Number(0.5));
+    recorder.write(stamp(&ids), Phase::Symptom, &record!("has a job"), &senses);
+    assert_eq!(causes(&recorder).last(), Some(&(4, 1)), "neither its own change nor what it does not sense");
+    recorder.enter(Some(2), 0);
+    recorder.because(Cause(2));
+    recorder.write(stamp(&ids), Phase::Symptom, &record!("moves"), &senses);
+    assert_eq!(causes(&recorder).last(), Some(&(5, 2)), "what the loop says itself counts more");
+}
+
+#[test]
+fn a_value_that_is_no_number_is_the_same_value_again() {
+    let (mut recorder, ids) = recorder();
+    for execution in 0..3 {
+        recorder.enter(Some(0), execution);
+        recorder.write(stamp(&ids), Phase::Symptom, &record!("{level}", level = f64::NAN), &[]);
+    }
+    assert_eq!(recorder.batch.len(), 1);
+    recorder.changed(stamp(&ids), "level", Value::Number(f64::NAN), Value::Number(f64::NAN));
+    assert_eq!(recorder.batch.len(), 1);
+}
+
+#[test]
+fn a_loop_that_paused_begins_anew() {
+    let (mut recorder, ids) = recorder();
+    for execution in [0, 1, 3] {
+        recorder.enter(Some(0), execution);
+        recorder.write(stamp(&ids), Phase::Symptom, &record!("sees it"), &[]);
+    }
+    assert_eq!(recorder.batch.len(), 2);
+}
+
+#[test]
+fn a_full_disk_is_told_once_and_all_that_is_missing_is_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal");
+    let named = Named { name: "A".to_owned(), id: None };
+    let mut file = JournalFile::create(&path, 1, true, &[named]).unwrap();
+    // As good as a full disk: nothing can be written to it any more.
+    file.replace(File::open(&path).unwrap());
+    let stream = Stream::new(true);
+    let (mut recorder, ids) = recorder();
+    for _ in 0..5 {
+        recorder.write(stamp(&ids), Phase::Effect, &record!("acts"), &[]);
+    }
+    stream.put(0, &recorder);
+    stream.close(Time::START);
+    let told = AtomicU64::new(0);
+    let written = stream.write_to(file, |_| {
+        told.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    });
+    assert_eq!(written.lost, 5);
+    assert!(written.error.is_some());
+    assert_eq!(told.into_inner(), 1);
+}
+
+#[test]
+fn in_real_time_what_finds_no_room_is_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal");
+    let named = Named { name: "A".to_owned(), id: None };
+    let file = JournalFile::create(&path, 1, false, &[named]).unwrap();
+    let stream = Stream::new(false);
+    let (mut recorder, ids) = recorder();
+    for _ in 0..1000 {
+        recorder.write(stamp(&ids), Phase::Effect, &record!("acts"), &[]);
+    }
+    for _ in 0..70 {
+        stream.put(0, &recorder);
+    }
+    stream.close(Time::from_nanos(5));
+    assert_eq!(stream.write_to(file, |_| {}).lost, 4000);
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(text.lines().last(), Some(r#"{"end":{"lost":4000,"records":70000,"time_s":5e-9}}"#));
+}
+
+const HEAD: &str = r#"{"journal":1,"seed":7,"clock":"virtual","components":[{"name":"A","id":"1"}]}"#;
+
+fn refused(text: &str) -> String {
+    read(text).unwrap_err().to_string()
+}
+
+#[test]
+fn files_that_are_no_journal_are_told_apart() {
+    assert_eq!(read(""), Err(ReadError::Other));
+    assert_eq!(read("[1]"), Err(ReadError::Other));
+    assert_eq!(read(r#"{"time_s": 1.0, "components": []}"#), Err(ReadError::NoJournal));
+    assert_eq!(
+        refused("{\n\"a\": 1"),
+        "line 2, column 6: this is no whole report of `saoms run --report`, and no file of `saoms run --journal`: \
+         EOF while parsing an object"
+    );
+    let newer = HEAD.replace("\"journal\":1", "\"journal\":2");
+    assert_eq!(
+        refused(&newer),
+        "line 1: this file has the form 2, which a newer version of the program writes"
+    );
+}
+
+#[test]
+fn a_wrong_record_is_told_at_its_line() {
+    let record = r#"{"id":1,"time_s":1.0,"component":"A","phase":"effect","text":"acts"}"#;
+    assert_eq!(read(&format!("{HEAD}\n{record}\n")).unwrap().journal.entries().len(), 1);
+    let cases = [
+        (
+            record.replace("effect", "affect"),
+            "line 2, column 53: this is no record of a journal: unknown variant `affect`",
+        ),
+        (
+            record.replace("1.0", "-1.0"),
+            "line 2: this is no record of a journal: `-1` is no time of a run in seconds",
+        ),
+        (
+            record.replace("\"text\"", "\"cause\":1,\"text\""),
+            "line 2: this is no record of a journal: record 1 cannot follow",
+        ),
+        (record.replace("}", ""), "line 2, column 67: this is no record of a journal: EOF"),
+        (format!("{record}\n{record}"), "line 1: there are two records with the number 1"),
+    ];
+    for (lines, expected) in cases {
+        let found = refused(&format!("{HEAD}\n{lines}\n"));
+        assert!(found.starts_with(expected), "{found}\ninstead of\n{expected}");
+    }
+}
+
+#[test]
+fn the_file_of_a_run_that_goes_on_may_end_in_the_middle_of_a_record() {
+    let text = format!(
+        "{HEAD}\n{}\n{}",
+        r#"{"id":1,"time_s":1.0,"component":"A","phase":"effect","text":"acts"}"#, r#"{"id":2,"ti"#
+    );
+    let document = read(&text).unwrap();
+    assert_eq!((document.journal.records, document.end), (1, None));
+}
+
+#[test]
+fn records_that_are_missing_in_a_file_are_counted() {
+    let text = format!(
+        "{HEAD}\n{}\n",
+        r#"{"id":3,"time_s":1.0,"component":"A","phase":"effect","text":"acts","cause":2}"#
+    );
+    let journal = read(&text).unwrap().journal;
+    assert_eq!((journal.records, journal.lost), (3, 2));
+    let why = journal.why("A", None).unwrap();
+    assert_eq!(why.chains[0].missing, Some(Cause(2)));
+}
+
+fn journal(entries: &str) -> Journal {
+    serde_json::from_str(&format!(r#"{{"records": 9, "entries": [{entries}]}}"#)).unwrap()
+}
+
+#[test]
+fn what_was_done_for_one_reason_is_one_chain_and_what_was_known_is_told() {
+    let journal = journal(
+        r#"{"id":1,"time_s":1,"component":"B","phase":"symptom","text":"calls"},
+           {"id":2,"time_s":1,"component":"A","phase":"effect","entry":"battery","text":"battery: 9 -> 8","values":{"before":9,"after":8}},
+           {"id":3,"time_s":2,"component":"A","loop":"L","phase":"symptom","text":"hears","cause":1},
+           {"id":4,"time_s":2,"component":"A","loop":"L","phase":"decision","text":"goes","cause":3},
+           {"id":5,"time_s":2,"component":"A","loop":"L","phase":"effect","entry":"next","text":"next: none -> (1,2)","values":{"before":null,"after":[1,2]},"cause":4},
+           {"id":6,"time_s":2,"component":"A","loop":"L","phase":"effect","text":"lights up","cause":4},
+           {"id":7,"time_s":2,"component":"A","loop":"M","phase":"decision","text":"rests"},
+           {"id":8,"time_s":3,"component":"A","loop":"M","phase":"symptom","text":"sees something"},
+           {"id":9,"time_s":4,"component":"A","phase":"effect","entry":"battery","text":"battery: 8 -> 7","values":{"before":8,"after":7}}"#,
+    );
+    let told = |at: Option<u64>| {
+        let why = journal.why("A", at.map(|at| Time::from_nanos(at * 1_000_000_000))).unwrap();
+        let texts = |entries: &[&super::Entry]| {
+            entries.iter().map(|entry| entry.text()).collect::<Vec<_>>().join(", ")
+        };
+        let chains: Vec<_> = why
+            .chains
+            .iter()
+            .map(|chain| format!("{} <- {}", texts(&chain.acts), texts(&chain.reasons)))
+            .collect();
+        let known: Vec<_> =
+            why.knowledge.iter().map(|known| format!("{}={}", known.entry, known.shown())).collect();
+        format!("{:?}: {} | {}", why.time.map(|time| time.as_secs_f64()), chains.join("; "), known.join(" "))
+    };
+    let acts = "Some(2.0): next: none -> (1,2), lights up <- goes, hears, calls; rests <- ";
+    assert_eq!(told(None), format!("{acts} | battery=7 next=(1,2)"));
+    assert_eq!(told(Some(3)), format!("{acts} | battery=8 next=(1,2)"));
+    assert_eq!(told(Some(1)), "Some(1.0): battery: 9 -> 8 <-  | battery=8 next=none");
+    assert_eq!(told(Some(0)), "None:  | battery=9 next=none");
+}

@@ -303,7 +303,11 @@ impl Host for ComponentHost<'_> {
 
     fn journal(&mut self, phase: Phase, record: &Record) {
         let stamp = stamp(self.shared, self.part);
-        self.part.recorder.write(stamp, phase, record);
+        let place = self.part.recorder.present().map(usize::from);
+        let class =
+            place.and_then(|place| self.shared.spec(self.part.index).loops.get(place)).map(|one| &one.class);
+        let senses = class.map_or(&[][..], |class| &class.declaration().senses);
+        self.part.recorder.write(stamp, phase, record, senses);
     }
 
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {

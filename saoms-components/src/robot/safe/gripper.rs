@@ -6,7 +6,7 @@ use crate::robot::{Job, RobotKnowledge};
 
 /// Works the gripper: collects luggage where it is and deposits it where it has to go.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.GripperMS")]
+#[looping(name = "saoms.GripperMS", senses("block", "busy", "hasLuggage"))]
 pub struct GripperMS {
     luggage: Publisher<EventLuggage>,
 }

@@ -14,7 +14,7 @@ const TELLING_WAIT: u32 = 3;
 
 /// Drives the wheels along the way to where the robot has to be, and says which block it wants next.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.PathFollowerMS")]
+#[looping(name = "saoms.PathFollowerMS", senses("busy", "hasLuggage", "reachingCharge", "inCharge"))]
 pub struct PathFollowerMS {
     said: Option<Position>,
     positions: Publisher<Position>,
