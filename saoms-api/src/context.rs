@@ -297,6 +297,9 @@ impl<'a> Context<'a> {
 /// Where in a handle of a reference the number of the target is; below it is the place of the reference in its class.
 pub const TARGET_SHIFT: u32 = 16;
 
+/// Sees the loops of a component: name, class and values of each.
+pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(String, PropertyValue)]) + 'a;
+
 /// What a host gives to a component: the scheduler in a run, a stand-in in a test, a function table behind a plugin's boundary.
 /// Component authors use [`Context`].
 pub trait Host {
@@ -365,7 +368,7 @@ pub trait Host {
         let _ = (place, name);
     }
     /// For a host across a boundary, which constructs what it has itself: name, class and values of each of the component's loops.
-    fn chosen_loops(&mut self, visit: &mut dyn FnMut(&str, &str, &[(String, PropertyValue)])) {
+    fn chosen_loops(&mut self, visit: &mut LoopVisit<'_>) {
         let _ = visit;
     }
     /// Constructs the loop at this place of [`chosen_loops`](Host::chosen_loops).

@@ -90,7 +90,7 @@ pub use adaptation::{
 };
 pub use chance::Chance;
 pub use component::{Class, Component, DynComponent};
-pub use context::{Context, Host, Level, TARGET_SHIFT};
+pub use context::{Context, Host, Level, LoopVisit, TARGET_SHIFT};
 pub use failure::{CallError, Failure};
 pub use field::{Arguments, Field};
 pub use finding::{Finding, Place};

@@ -36,9 +36,14 @@
 //!
 //! The components that ship are linked in; a crate with its own links them by naming it: `use my_robot as _;`.
 
+mod bench;
+mod comply;
 mod fleet;
 mod run;
+mod stage;
 
+pub use bench::Bench;
+pub use comply::{comply, comply_as};
 pub use fleet::Fleet;
 pub use run::Run;
 use saoms_components as _;

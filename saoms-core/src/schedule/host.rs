@@ -3,7 +3,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::{
-    CallError, Cause, Chance, DynLoop, Failure, Host, Level, NamedLoops, Phase, PropertyValue, Record,
+    CallError, Cause, Chance, DynLoop, Failure, Host, Level, LoopVisit, NamedLoops, Phase, Record,
     ReportValue, ServiceCall, SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Value, Work,
 };
 
@@ -267,7 +267,7 @@ impl Host for ComponentHost<'_> {
             .collect()
     }
 
-    fn chosen_loops(&mut self, visit: &mut dyn FnMut(&str, &str, &[(String, PropertyValue)])) {
+    fn chosen_loops(&mut self, visit: &mut LoopVisit<'_>) {
         for one in &self.spec().loops {
             visit(&one.name, one.class.name(), &one.values);
         }

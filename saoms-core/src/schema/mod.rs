@@ -5,6 +5,7 @@
 
 mod json;
 mod read;
+mod sample;
 #[cfg(test)]
 mod tests;
 

@@ -104,3 +104,12 @@ fn a_schema_that_is_none_is_refused() {
         Schema::parse(&format!(r#"{{"name":"A","fields":[{{"name":"x","type":{deep}}}]}}"#)).unwrap_err();
     assert!(error.to_string().contains("32 deep"), "{error}");
 }
+
+#[test]
+fn samples_are_messages() {
+    let mut chance = saoms_api::Chance::new(1);
+    for _ in 0..500 {
+        let bytes = schema().sample(&mut chance);
+        assert!(cdr::decode::<All>(&bytes).is_ok(), "{bytes:?}");
+    }
+}

@@ -1,0 +1,281 @@
+use std::path::Path;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use saoms_api::contain::{contained, install_hook};
+use saoms_api::{
+    CallError, Cause, Class, Context, DynComponent, Failure, Header, Invocation, Message, PropertyValue,
+    Registration, ReportValue, ServiceCall, SharedMessage, Topic, Work,
+};
+use saoms_core::plugin::Plugin;
+use saoms_core::registry::Registry;
+use saoms_core::schema::Schema;
+use serde_json::Value;
+
+use crate::stage::{Happened, Stage};
+
+/// One component without a fleet: a test says what it hears, and sees what it says and does.
+///
+/// Time is virtual: each [`execute`](Bench::execute) is one period later. What the component did is that of the last step (a start, an
+/// execution, the end), but for the [transcript](Bench::transcript), which has everything.
+///
+/// ```
+/// use saoms_components::grid::Block;
+/// use saoms_components::messages::{EXCEPTIONAL_EVENT, EnvironmentEvent, ENVIRONMENT, ExceptionalEvent, ExceptionalKind};
+/// use saoms_components::master::MasterEnvironment;
+/// use saoms_testkit::Bench;
+///
+/// let mut master = Bench::of::<MasterEnvironment>(&[])?;
+/// master.start()?;
+/// let landing = ExceptionalEvent { kind: ExceptionalKind::Landing, pieces: 4 };
+/// master.deliver(&ENVIRONMENT, landing.clone().into());
+/// master.execute()?;
+/// assert_eq!(master.sent(&EXCEPTIONAL_EVENT), [landing]);
+/// # Ok::<(), saoms_api::Failure>(())
+/// ```
+pub struct Bench {
+    component: Box<dyn DynComponent>,
+    stage: Stage,
+    /// For the next execution, by subscription.
+    waiting: Vec<(String, SharedMessage)>,
+    /// Where the last step begins in what happened.
+    step: usize,
+    started: bool,
+}
+
+/// The index of whoever the test stands for.
+const TEST: u32 = u32::MAX;
+
+impl Bench {
+    /// A component of a class that the test links, with these values of its properties.
+    ///
+    /// # Errors
+    /// The component refuses the values.
+    pub fn of<C: Class>(values: &[(&str, &str)]) -> Result<Bench, Failure> {
+        // Read once: a test makes many.
+        static LINKED: OnceLock<Result<Registry, String>> = OnceLock::new();
+        let linked = LINKED.get_or_init(|| Registry::linked().map_err(|error| error.to_string()));
+        let mut registry = linked.clone()?;
+        let registration = Registration::of::<C>();
+        let declared = |registry: &Registry| {
+            registry.iter().find(|class| class.declaration_json() == registration.declaration()).cloned()
+        };
+        if declared(&registry).is_none() {
+            registry.add(registration).map_err(|error| Failure::new(error.to_string()))?;
+        }
+        let name = declared(&registry).map(|class| class.name().to_owned()).unwrap_or_default();
+        Bench::in_registry(&registry, &name, values)
+    }
+
+    /// A component of a class in a library, across the boundary to plugins.
+    ///
+    /// # Errors
+    /// The library cannot be used, has no such class, or its component refuses the values.
+    pub fn of_library(library: &Path, class: &str, values: &[(&str, &str)]) -> Result<Bench, Failure> {
+        let mut registry = Registry::new();
+        let plugin = Plugin::open(library).map_err(|error| Failure::new(error.to_string()))?;
+        plugin.register(&mut registry).map_err(|error| Failure::new(error.to_string()))?;
+        Bench::in_registry(&registry, class, values)
+    }
+
+    /// A component of a class by its name.
+    ///
+    /// # Errors
+    /// There is no such class, or its component refuses the values.
+    pub fn in_registry(registry: &Registry, class: &str, values: &[(&str, &str)]) -> Result<Bench, Failure> {
+        install_hook();
+        let found =
+            registry.get(class).ok_or_else(|| Failure::new(format!("there is no class `{class}`")))?;
+        let given = values.iter().map(|(name, value)| ((*name).to_owned(), PropertyValue::from(*value)));
+        let mut values: Vec<(String, PropertyValue)> = given.collect();
+        let absent =
+            found.presets().iter().filter(|(name, _)| !values.iter().any(|(given, _)| given == name));
+        let absent: Vec<_> = absent.cloned().collect();
+        values.extend(absent);
+        let component = contained(|| found.construct(&values))??;
+        let stage = Stage::new(registry, found, &values)?;
+        Ok(Bench { component, stage, waiting: Vec::new(), step: 0, started: false })
+    }
+
+    /// Gives it another period than 100 ms.
+    #[must_use]
+    pub fn period(mut self, period: Duration) -> Bench {
+        self.stage.period = period;
+        self
+    }
+
+    /// Gives its chance another seed than 0.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Bench {
+        self.stage.set_seed(seed);
+        self
+    }
+
+    /// Wires one of its references to a service of another component, which has to be started before.
+    #[must_use]
+    pub fn wire(mut self, reference: &str, provider: Bench, service: &str) -> Bench {
+        self.stage.wires.push((reference.to_owned(), service.to_owned(), provider));
+        self
+    }
+
+    /// Initializes it.
+    ///
+    /// # Errors
+    /// Those of the component.
+    pub fn start(&mut self) -> Result<(), Failure> {
+        self.started = true;
+        self.stage.initializing = true;
+        let result = self.call(|component, context| component.initialize(context));
+        self.stage.initializing = false;
+        result
+    }
+
+    /// Executes it once, with what was delivered since the last time.
+    ///
+    /// # Errors
+    /// Those of the component, panics included; or it was not started.
+    pub fn execute(&mut self) -> Result<(), Failure> {
+        if !self.started {
+            return Err(Failure::new("this component was not started: call `start` first"));
+        }
+        let mut inboxes = vec![Vec::new(); self.stage.subscriptions.len()];
+        for (topic, message) in std::mem::take(&mut self.waiting) {
+            for (inbox, subscription) in inboxes.iter_mut().zip(&self.stage.subscriptions) {
+                if subscription.name == topic {
+                    inbox.push(message.clone());
+                }
+            }
+        }
+        self.step = self.stage.happened.len();
+        let (component, mut context) = (&mut self.component, Context::new(&mut self.stage, &inboxes));
+        let result = contained(|| component.execute(&mut context)).and_then(|result| result);
+        self.stage.end_of_execution();
+        result
+    }
+
+    /// Executes it again and again until that time of the run.
+    ///
+    /// # Errors
+    /// Those of the component.
+    pub fn execute_until(&mut self, time: Duration) -> Result<(), Failure> {
+        while self.stage.now.as_nanos() < time.as_nanos() as u64 {
+            self.execute()?;
+        }
+        Ok(())
+    }
+
+    /// Ends it.
+    ///
+    /// # Errors
+    /// Those of the component.
+    pub fn shutdown(&mut self) -> Result<(), Failure> {
+        self.started = false;
+        self.call(|component, context| component.shutdown(context))
+    }
+
+    fn call(
+        &mut self,
+        code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        self.step = self.stage.happened.len();
+        let (component, mut context) = (&mut *self.component, Context::new(&mut self.stage, &[]));
+        contained(|| code(component, &mut context)).and_then(|result| result)
+    }
+
+    pub(crate) fn serve(&mut self, service: &str, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+        let mut invocation = Invocation { service, call };
+        self.component.serve(&mut invocation, &mut Context::new(&mut self.stage, &[]))
+    }
+
+    fn header(&self) -> Header {
+        Header { sender: TEST, sent: self.stage.now, cause: Cause::default() }
+    }
+
+    /// Lets it hear a message in its next execution.
+    pub fn deliver<M: Message>(&mut self, topic: &Topic<M>, message: M) {
+        let message = SharedMessage::new(self.header(), message);
+        self.waiting.push((topic.name().to_owned(), message));
+    }
+
+    /// Lets it hear a message that is given as JSON.
+    ///
+    /// # Errors
+    /// Its class does not subscribe to the topic, or the JSON is none of its messages.
+    pub fn deliver_json(&mut self, topic: &str, message: &Value) -> Result<(), Failure> {
+        let schema = self.stage.schema_heard(topic)?;
+        let bytes = schema.encode(message).map_err(|error| Failure::new(error.to_string()))?;
+        self.deliver_bytes(topic, bytes);
+        Ok(())
+    }
+
+    /// Lets it hear any bytes.
+    pub fn deliver_bytes(&mut self, topic: &str, bytes: Vec<u8>) {
+        self.waiting.push((topic.to_owned(), SharedMessage::from_bytes(self.header(), None, bytes)));
+    }
+
+    /// What it sent on a topic.
+    pub fn sent<M: Message>(&self, topic: &Topic<M>) -> Vec<M> {
+        self.messages(topic.name()).filter_map(|message| message.get::<M>().cloned()).collect()
+    }
+
+    /// What it sent on a topic, as JSON.
+    pub fn sent_json(&self, topic: &str) -> Vec<Value> {
+        let schema = self.stage.schema_said(topic);
+        let as_json = |message: &SharedMessage| schema.as_ref()?.decode(message.bytes()).ok();
+        self.messages(topic).filter_map(as_json).collect()
+    }
+
+    fn messages(&self, topic: &str) -> impl Iterator<Item = &SharedMessage> {
+        self.stage.happened[self.step..].iter().filter_map(move |(_, what)| match what {
+            Happened::Sent(place, message) if self.stage.publishers[*place].name == topic => Some(message),
+            _ => None,
+        })
+    }
+
+    /// The lines that it wrote to the log.
+    pub fn log(&self) -> Vec<&str> {
+        self.lines(|what| match what {
+            Happened::Log(_, line) => Some(line),
+            _ => None,
+        })
+    }
+
+    /// The records that it left in the journal, and the entries that its loops changed.
+    pub fn journal(&self) -> Vec<&str> {
+        self.lines(|what| match what {
+            Happened::Journal(line) => Some(line),
+            _ => None,
+        })
+    }
+
+    fn lines<'a>(&'a self, choose: impl Fn(&'a Happened) -> Option<&'a String>) -> Vec<&'a str> {
+        let step = self.stage.happened[self.step..].iter();
+        step.filter_map(|(_, what)| choose(what)).map(String::as_str).collect()
+    }
+
+    /// What it said last about the work that is left, in any step.
+    pub fn work(&self) -> Option<Work> {
+        self.stage.work
+    }
+
+    /// A value that it gave to the report, or what it counted there.
+    pub fn report(&self, path: &str) -> Option<&ReportValue> {
+        self.stage.report.iter().rev().find(|(known, _)| known == path).map(|(_, value)| value)
+    }
+
+    /// Everything that it did, a line each with its time, messages as JSON: to look at, or to compare with a file.
+    pub fn transcript(&self) -> String {
+        self.stage.transcript()
+    }
+
+    /// What its class subscribes to, with the schema of the messages.
+    pub fn hears(&self) -> Vec<(String, Schema)> {
+        self.stage.heard().collect()
+    }
+}
+
+impl std::fmt::Debug for Bench {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(&self.transcript())
+    }
+}

@@ -1,0 +1,357 @@
+//! The host of a component on a [`Bench`].
+
+use std::fmt::{self, Write as _};
+use std::sync::Arc;
+use std::time::Duration;
+
+use saoms_api::{
+    CallError, Cause, Chance, Failure, Host, Level, LoopVisit, NamedLoops, Phase, PropertyValue, Record,
+    ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, Value, Work,
+};
+use saoms_core::registry::{Class, LoopClass, Registry, TopicDeclaration as Declared};
+use saoms_core::schema::Schema;
+
+use crate::Bench;
+
+/// What a component did.
+pub(crate) enum Happened {
+    /// It sent a message as the publisher of this place.
+    Sent(usize, SharedMessage),
+    Log(Level, String),
+    Console(String),
+    Journal(String),
+    Report(String),
+    Work(Work),
+}
+
+/// A topic that the component took.
+pub(crate) struct Taken {
+    pub(crate) name: String,
+    schema: Option<Schema>,
+}
+
+pub(crate) struct Stage {
+    class: Arc<Class>,
+    loops: Vec<Arc<LoopClass>>,
+    loop_names: Vec<String>,
+    acting: Option<u32>,
+    pub(crate) period: Duration,
+    pub(crate) now: Time,
+    execution: u64,
+    chance: Chance,
+    pub(crate) initializing: bool,
+    pub(crate) publishers: Vec<Taken>,
+    pub(crate) subscriptions: Vec<Taken>,
+    pub(crate) wires: Vec<(String, String, Bench)>,
+    pub(crate) happened: Vec<(Time, Happened)>,
+    pub(crate) report: Vec<(String, ReportValue)>,
+    pub(crate) work: Option<Work>,
+}
+
+/// The component's name.
+const NAME: &str = "Bench";
+
+impl Stage {
+    /// The stage of a component with these values; its loops are those of its class.
+    pub(crate) fn new(
+        registry: &Registry,
+        class: &Arc<Class>,
+        values: &[(String, PropertyValue)],
+    ) -> Result<Stage, Failure> {
+        let declaration = class.declaration();
+        let chosen = declaration.loops.property.as_ref().and_then(|property| {
+            let given = values.iter().find(|(name, _)| name == property);
+            match given.map(|(_, value)| value) {
+                Some(PropertyValue::Text(text)) => Some(text.as_str()),
+                _ => declaration.property(property)?.default.as_deref(),
+            }
+        });
+        let find = |name: &String| {
+            registry.get_loop(name).cloned().ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))
+        };
+        let loops = declaration.loops.of(chosen).iter().map(find).collect::<Result<_, _>>()?;
+        Ok(Stage {
+            class: Arc::clone(class),
+            loops,
+            loop_names: Vec::new(),
+            acting: None,
+            period: Duration::from_millis(100),
+            now: Time::START,
+            execution: 0,
+            chance: Chance::for_component(0, NAME),
+            initializing: false,
+            publishers: Vec::new(),
+            subscriptions: Vec::new(),
+            wires: Vec::new(),
+            happened: Vec::new(),
+            report: Vec::new(),
+            work: None,
+        })
+    }
+
+    pub(crate) fn set_seed(&mut self, seed: u64) {
+        self.chance = Chance::for_component(seed, NAME);
+    }
+
+    pub(crate) fn end_of_execution(&mut self) {
+        self.execution += 1;
+        self.now = self.now + self.period;
+    }
+
+    fn tell(&mut self, what: Happened) {
+        self.happened.push((self.now, what));
+    }
+
+    fn declared(&self, publishes: bool) -> impl Iterator<Item = &Declared> {
+        let class = self.class.declaration();
+        let of_loops = self.loops.iter().flat_map(move |one| {
+            let one = one.declaration();
+            if publishes { &one.publishes } else { &one.subscribes }
+        });
+        (if publishes { &class.publishes } else { &class.subscribes }).iter().chain(of_loops)
+    }
+
+    /// The topics that are heard by declaration, with their schemas.
+    pub(crate) fn heard(&self) -> impl Iterator<Item = (String, Schema)> {
+        self.declared(false).filter_map(|topic| Some((topic.name.clone(), Schema::of(&topic.schema).ok()?)))
+    }
+
+    pub(crate) fn schema_heard(&self, topic: &str) -> Result<Schema, Failure> {
+        let found = self.heard().find(|(name, _)| name == topic);
+        found
+            .map(|(_, schema)| schema)
+            .ok_or_else(|| Failure::new(format!("it does not subscribe to `{topic}`")))
+    }
+
+    pub(crate) fn schema_said(&self, topic: &str) -> Option<Schema> {
+        self.publishers.iter().find(|taken| taken.name == topic).and_then(|taken| taken.schema.clone())
+    }
+
+    fn take(&self, topic: &TopicDeclaration<'_>, publishes: bool) -> Result<Taken, Failure> {
+        let verb = if publishes { "publishes" } else { "subscribes" };
+        if !self.initializing {
+            return Err(Failure::new(format!("topic `{}`: it {verb} after `initialize`", topic.name)));
+        }
+        if !self.declared(publishes).any(|declared| declared.name == topic.name) {
+            return Err(Failure::new(format!(
+                "topic `{}`: it {verb}, but neither its class `{}` nor a loop declares that",
+                topic.name,
+                self.class.name()
+            )));
+        }
+        Ok(Taken { name: topic.name.to_owned(), schema: Schema::parse(topic.schema).ok() })
+    }
+
+    pub(crate) fn transcript(&self) -> String {
+        let mut text = String::new();
+        for (time, what) in &self.happened {
+            let _ = write!(text, "{:8.3} s  ", time.as_nanos() as f64 / 1e9);
+            let _ = match what {
+                Happened::Sent(place, message) => {
+                    let taken = &self.publishers[*place];
+                    let shown = taken.schema.as_ref().and_then(|schema| schema.decode(message.bytes()).ok());
+                    let shown =
+                        shown.map_or_else(|| "bytes that are no message".to_owned(), |json| json.to_string());
+                    writeln!(text, "sends {} {shown}", taken.name)
+                }
+                Happened::Log(level, line) => writeln!(text, "{}: {line}", level_name(*level)),
+                Happened::Console(line) => writeln!(text, "console: {line}"),
+                Happened::Journal(line) => writeln!(text, "{line}"),
+                Happened::Report(line) => writeln!(text, "report: {line}"),
+                Happened::Work(Work::Open) => writeln!(text, "has work left"),
+                Happened::Work(Work::Done) => writeln!(text, "has no work left"),
+            };
+        }
+        text
+    }
+}
+
+const fn level_name(level: Level) -> &'static str {
+    match level {
+        Level::Error => "error",
+        Level::Warning => "warning",
+        Level::Info => "info",
+        Level::Debug => "debug",
+    }
+}
+
+impl Host for Stage {
+    fn name(&self) -> &str {
+        NAME
+    }
+
+    fn sender(&self) -> u32 {
+        0
+    }
+
+    fn now(&self) -> Time {
+        self.now
+    }
+
+    fn date(&self) -> Option<Duration> {
+        None
+    }
+
+    fn due(&self) -> Time {
+        self.now
+    }
+
+    fn execution(&self) -> u64 {
+        self.execution
+    }
+
+    fn period(&self) -> Duration {
+        self.period
+    }
+
+    fn cancelled(&self) -> bool {
+        false
+    }
+
+    fn chance(&mut self) -> &mut Chance {
+        &mut self.chance
+    }
+
+    fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        let taken = self.take(topic, true)?;
+        self.publishers.push(taken);
+        Ok(self.publishers.len() as u32 - 1)
+    }
+
+    fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
+        let taken = self.take(topic, false)?;
+        self.subscriptions.push(taken);
+        Ok(self.subscriptions.len() as u32 - 1)
+    }
+
+    fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {
+        let place = publisher as usize;
+        if place >= self.publishers.len() {
+            return Err(Failure::new(
+                "this publisher belongs to no topic: keep what `Context::publish` returned",
+            ));
+        }
+        self.tell(Happened::Sent(place, message));
+        Ok(())
+    }
+
+    fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {
+        let class = self.class.declaration();
+        let of_loops = self.loops.iter().flat_map(|one| &one.declaration().references);
+        let declared = class
+            .references
+            .iter()
+            .chain(of_loops)
+            .any(|reference| reference.name == name && reference.interface.name == interface);
+        if !declared {
+            return Err(Failure::new(format!(
+                "neither its class nor a loop declares the reference `{name}`"
+            )));
+        }
+        // One that is not wired has a handle, too.
+        let wired = self.wires.iter().position(|(reference, ..)| reference == name);
+        Ok(wired.unwrap_or(usize::from(u16::MAX)) as u32)
+    }
+
+    fn is_wired(&self, reference: u32) -> bool {
+        (reference as usize) < self.wires.len()
+    }
+
+    fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+        match self.wires.get_mut(reference as usize) {
+            Some((_, service, provider)) => provider.serve(service, call),
+            None => Err(CallError::NotWired { reference: reference.to_string() }),
+        }
+    }
+
+    fn loops(&mut self) -> Result<NamedLoops, Failure> {
+        let made =
+            self.loops.iter().map(|one| Ok((one.declaration().short_name().to_owned(), one.construct(&[])?)));
+        made.collect()
+    }
+
+    fn chosen_loops(&mut self, visit: &mut LoopVisit<'_>) {
+        for one in &self.loops {
+            visit(one.declaration().short_name(), one.name(), &[]);
+        }
+    }
+
+    fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn saoms_api::DynLoop>, Failure> {
+        self.loops.get(place as usize).ok_or("there are not so many loops")?.construct(&[])
+    }
+
+    fn name_loop(&mut self, place: u32, name: &str) {
+        let place = place as usize;
+        if self.loop_names.len() <= place {
+            self.loop_names.resize(place + 1, String::new());
+        }
+        name.clone_into(&mut self.loop_names[place]);
+    }
+
+    fn enter_loop(&mut self, place: Option<u32>) {
+        self.acting = place;
+    }
+
+    fn because(&mut self, _: Cause) {}
+
+    fn cause(&self) -> Cause {
+        Cause::default()
+    }
+
+    fn journal(&mut self, phase: Phase, record: &Record) {
+        let phase = match phase {
+            Phase::Symptom => "symptom",
+            Phase::Decision => "decision",
+            Phase::Effect => "effect",
+        };
+        let line = format!("{}{phase}: {record}", self.acting());
+        self.tell(Happened::Journal(line));
+    }
+
+    fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
+        let line = format!("{}{entry}: {before} -> {after}", self.acting());
+        self.tell(Happened::Journal(line));
+    }
+
+    fn listens(&self, _: Option<Level>) -> bool {
+        true
+    }
+
+    fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
+        self.tell(Happened::Log(level, line.to_string()));
+    }
+
+    fn console(&mut self, line: fmt::Arguments<'_>) {
+        self.tell(Happened::Console(line.to_string()));
+    }
+
+    fn report(&mut self, path: &str, value: ReportValue) {
+        self.tell(Happened::Report(format!("{path} = {value:?}")));
+        self.report.push((path.to_owned(), value));
+    }
+
+    fn count(&mut self, path: &str, more: i64) {
+        let before = self.report.iter().rev().find(|(known, _)| known == path);
+        let before = match before {
+            Some((_, ReportValue::Integer(before))) => *before,
+            _ => 0,
+        };
+        let now = before.saturating_add(more);
+        self.tell(Happened::Report(format!("{path} = {now}")));
+        self.report.push((path.to_owned(), ReportValue::Integer(now)));
+    }
+
+    fn vote(&mut self, work: Work) {
+        if self.work != Some(work) {
+            self.work = Some(work);
+            self.tell(Happened::Work(work));
+        }
+    }
+}
+
+impl Stage {
+    fn acting(&self) -> String {
+        let name = self.acting.and_then(|place| self.loop_names.get(place as usize));
+        name.map_or_else(String::new, |name| format!("{name} "))
+    }
+}
