@@ -5,7 +5,7 @@ use std::fmt::Write;
 use saoms_testkit::Fleet;
 
 /// The manual's area with its masters, an environment that plays this scenario, and these robots, given as number and further properties:
-/// `2 asleep=true battery=60`. Periods are those of the manual; robots are half a second apart.
+/// `2 asleep=true battery=60`. Periods are those of the manual.
 pub(crate) fn fleet(policy: &str, master: &str, scenario: &str, robots: &[&str]) -> Fleet {
     let mut text = String::from(
         r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="test" targetNamespace="urn:test">"#,
@@ -27,10 +27,10 @@ pub(crate) fn fleet(policy: &str, master: &str, scenario: &str, robots: &[&str])
     add("unibg.saoms.MasterRobotManagingSystem", "MRMS", 500, master, "");
     let scenario = format!(r#"<property name="scenario">{scenario}</property>"#);
     add("launch.Environment", "Environment", 500, "", &scenario);
-    for (place, robot) in robots.iter().enumerate() {
-        let (number, properties) = robot.split_once(' ').unwrap_or((robot, ""));
+    for robot in robots {
+        let (number, properties) = robot.split_once(' ').unwrap_or((*robot, ""));
         let id = format!("Robot{:03}", number.parse::<u32>().unwrap());
-        let properties = format!("policy={policy} delay={} {properties}", 500 * (place % 2));
+        let properties = format!("policy={policy} {properties}");
         add("saoms.Robot", &id, 1000, &properties, r#"<reference name="world" target="World"/>"#);
     }
     Fleet::of_text(text + "</composite>")

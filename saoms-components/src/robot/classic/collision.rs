@@ -11,38 +11,55 @@ pub struct CollisionMS {
     positions: Subscription<Position>,
 }
 
-/// Another robot announced the same next block.
+/// What the announced blocks say.
 #[derive(Clone, Copy, Debug)]
-pub struct CollisionSymptom {
-    /// The lowest number of such a robot.
-    pub robot: u32,
-    /// The block.
-    pub block: Block,
+pub enum CollisionSymptom {
+    /// Another robot announced the same next block.
+    Risk {
+        /// The lowest number of such a robot.
+        robot: u32,
+        /// The block.
+        block: Block,
+    },
+    /// Nobody does any more.
+    Over,
 }
 
 /// Who goes first.
 #[derive(Clone, Copy, Debug)]
 pub enum CollisionDecision {
     /// The other robot.
-    Stop(CollisionSymptom),
+    Stop {
+        /// Its number.
+        robot: u32,
+        /// Where it goes.
+        block: Block,
+    },
     /// This one.
     GoOn,
+    /// Nobody has to wait any more.
+    GoOnAgain,
 }
 
 impl Recordable for CollisionSymptom {
     fn record(&self) -> Record {
-        let CollisionSymptom { robot, block } = *self;
-        record!("robot {robot} goes to {block}, too", robot, block)
+        match *self {
+            CollisionSymptom::Risk { robot, block } => {
+                record!("robot {robot} goes to {block}, too", robot, block)
+            }
+            CollisionSymptom::Over => record!("no other robot goes there any more"),
+        }
     }
 }
 
 impl Recordable for CollisionDecision {
     fn record(&self) -> Record {
         match *self {
-            CollisionDecision::Stop(CollisionSymptom { robot, .. }) => {
+            CollisionDecision::Stop { robot, .. } => {
                 record!("stops for a period: robot {robot} has the lower number", robot)
             }
             CollisionDecision::GoOn => record!("goes on: it has the lower number"),
+            CollisionDecision::GoOnAgain => record!("goes on"),
         }
     }
 }
@@ -76,12 +93,11 @@ impl Loop for CollisionMS {
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<Option<CollisionSymptom>, Failure> {
-        if !knowledge.variables.busy {
-            return Ok(None);
-        }
         let block = knowledge.next;
         let same = knowledge.lists.peers.heard().filter(|peer| peer.next == block);
-        Ok(same.map(|peer| peer.robot).min().map(|robot| CollisionSymptom { robot, block }))
+        let risk = same.map(|peer| peer.robot).min().filter(|_| knowledge.variables.busy);
+        let over = knowledge.variables.stop_a_period.then_some(CollisionSymptom::Over);
+        Ok(risk.map(|robot| CollisionSymptom::Risk { robot, block }).or(over))
     }
 
     fn plan(
@@ -90,8 +106,13 @@ impl Loop for CollisionMS {
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<Option<CollisionDecision>, Failure> {
-        let stops = symptom.robot < knowledge.number;
-        Ok(Some(if stops { CollisionDecision::Stop(symptom) } else { CollisionDecision::GoOn }))
+        Ok(Some(match symptom {
+            CollisionSymptom::Risk { robot, block } if robot < knowledge.number => {
+                CollisionDecision::Stop { robot, block }
+            }
+            CollisionSymptom::Risk { .. } => CollisionDecision::GoOn,
+            CollisionSymptom::Over => CollisionDecision::GoOnAgain,
+        }))
     }
 
     fn execute(
@@ -100,11 +121,12 @@ impl Loop for CollisionMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        let name = &knowledge.name;
-        context.console(format_args!("{name}: RISK OF COLLISION DETECTED AND AVOIDED!"));
-        knowledge.variables.stop_a_period = false;
-        if let CollisionDecision::Stop(CollisionSymptom { robot, block }) = decision {
-            knowledge.variables.stop_a_period = true;
+        if !matches!(decision, CollisionDecision::GoOnAgain) {
+            let name = &knowledge.name;
+            context.console(format_args!("{name}: RISK OF COLLISION DETECTED AND AVOIDED!"));
+        }
+        knowledge.variables.stop_a_period = matches!(decision, CollisionDecision::Stop { .. });
+        if let CollisionDecision::Stop { robot, block } = decision {
             context.info(format_args!("waits: robot {robot} goes to {block} first"));
         }
         Ok(())

@@ -172,8 +172,7 @@ impl Loop for PathFollowerMS {
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         match decision {
-            PathDecision::Stop => knowledge.variables.stop_a_period = false,
-            PathDecision::Announce => {}
+            PathDecision::Stop | PathDecision::Announce => {}
             PathDecision::Handle(action) => {
                 knowledge.begin(context, action)?;
                 return knowledge.tell(self.luggage, context);
