@@ -28,7 +28,10 @@ pub fn expanded(assembly: &Assembly, like: &Composite) -> String {
     };
     let mut out = Writer { text: String::new(), depth: 0 };
     let mut attributes = vec![("xmlns", version.namespace())];
-    if assembly.components.iter().zip(&names).any(|(component, name)| component.path != *name) {
+    let is_own = |(component, name): (&ComponentSpec, &String)| {
+        component.path != *name || !loops(component).is_empty()
+    };
+    if assembly.components.iter().zip(&names).any(is_own) {
         attributes.push(("xmlns:s", SAOMS_NAMESPACE));
     }
     attributes.push(("name", like.name.as_str()));
@@ -88,6 +91,19 @@ impl Writer {
             let uri = |target: &super::Target| format!("{}/{}", names[target.component], target.service);
             let targets: Vec<String> = wire.targets.iter().map(uri).collect();
             self.empty("reference", &[("name", &wire.reference), ("target", &targets.join(" "))]);
+        }
+        for said in loops(component) {
+            let given =
+                [("class", said.class), ("after", said.after), ("remove", said.is_removed.then_some("true"))];
+            let mut attributes = vec![("name", said.name)];
+            attributes.extend(given.into_iter().filter_map(|(name, value)| Some((name, value?))));
+            if said.values.is_empty() {
+                self.empty("s:loop", &attributes);
+                continue;
+            }
+            self.open("s:loop", &attributes);
+            said.values.iter().for_each(|(name, value)| self.property(name, value));
+            self.close("s:loop");
         }
         self.close("component");
     }
@@ -169,6 +185,58 @@ impl Writer {
         let _ =
             writeln!(self.text, ">{}</{name}>", escaped(text).replace("&#10;", "\n").replace("&#9;", "\t"));
     }
+}
+
+/// What has to be said about a loop of a component.
+struct Said<'a> {
+    name: &'a str,
+    class: Option<&'a str>,
+    after: Option<&'a str>,
+    is_removed: bool,
+    values: &'a [(String, PropertyValue)],
+}
+
+/// How the loops of a component differ from those that its class gives it.
+fn loops(component: &ComponentSpec) -> Vec<Said<'_>> {
+    let declaration = component.class.declaration();
+    let value = declaration.loops.property.as_ref().and_then(|property| {
+        match component.values.iter().find(|(name, _)| name == property) {
+            Some((_, PropertyValue::Text(text))) => Some(text.trim()),
+            _ => declaration.property(property)?.default.as_deref(),
+        }
+    });
+    let usual: Vec<(&str, &str)> =
+        declaration.loops.of(value).iter().map(|class| (simple(class), class.as_str())).collect();
+    let is_there = |name: &str| component.loops.iter().any(|one| one.name == name);
+    let is_usual = |name: &str| usual.iter().any(|(known, _)| *known == name);
+    let kept = usual.iter().map(|(name, _)| *name).filter(|name| is_there(name));
+    let added = component.loops.iter().map(|one| one.name.as_str()).filter(|name| !is_usual(name));
+    let is_in_order = component.loops.iter().map(|one| one.name.as_str()).eq(kept.chain(added));
+    let removed = usual.iter().filter(|(name, _)| !is_there(name));
+    let mut all: Vec<Said<'_>> = removed
+        .map(|(name, _)| Said { name, class: None, after: None, is_removed: true, values: &[] })
+        .collect();
+    for (place, one) in component.loops.iter().enumerate() {
+        let class = one.class.name();
+        let is_same = usual.iter().any(|(name, usual)| *name == one.name && *usual == class);
+        let before = place.checked_sub(1).map(|before| component.loops[before].name.as_str());
+        let said = Said {
+            name: &one.name,
+            class: (!is_same).then_some(class),
+            after: before.filter(|_| !is_in_order),
+            is_removed: false,
+            values: &one.values,
+        };
+        if said.class.is_some() || said.after.is_some() || !said.values.is_empty() {
+            all.push(said);
+        }
+    }
+    all
+}
+
+/// What a loop is called unless it is given a name: what follows the last dot of its class.
+fn simple(class: &str) -> &str {
+    class.rsplit('.').next().unwrap_or(class)
 }
 
 /// A text as it can stand in an attribute: also what reading would make a blank of.

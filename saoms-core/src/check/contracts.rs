@@ -162,7 +162,7 @@ pub(super) fn of_class(declared: &ReferenceDeclaration) -> Multiplicity {
 }
 
 /// Checks that the multiplicity that a component gives narrows that of what implements it.
-fn narrows(reference: &Reference, own: Multiplicity, whose: &str, report: &mut Report<'_>) {
+pub(super) fn narrows(reference: &Reference, own: Multiplicity, whose: &str, report: &mut Report<'_>) {
     let Some(given) = &reference.multiplicity else { return };
     if given.value.narrows(own) {
         return;

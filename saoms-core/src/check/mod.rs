@@ -10,6 +10,7 @@ mod classes;
 mod construct;
 mod contracts;
 mod cycles;
+mod described;
 mod endpoint;
 mod findings;
 mod fleet;
@@ -92,6 +93,7 @@ pub fn check(
     let resolved = components(&fleet, &classes, checked, loops, report);
     written::check(&fleet, report);
     contracts::check(&fleet, &classes, report);
+    described::check(&fleet, &classes, report);
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);
     saoms_api::contain::install_hook();

@@ -164,7 +164,8 @@ impl<'f, 'a> Wires<'f, 'a> {
             [] => self.unwired(place, declared, report),
             [first, second, ..] if !self.multiplicity(place, declared).is_many() => {
                 let multiplicity = self.multiplicity(place, declared);
-                self.too_many(place, multiplicity, (first.place, second.place), all.len(), report);
+                let places = (first.place, second.place);
+                self.too_many(place, multiplicity, places, all.len(), Severity::Error, report);
                 return Vec::new();
             }
             _ => {}
@@ -185,7 +186,23 @@ impl<'f, 'a> Wires<'f, 'a> {
         let Some(names) = fleet.reference_names(member, self.classes) else {
             let component = fleet.members[member].component;
             for reference in &component.references {
-                self.level((member, &reference.name), None, report);
+                let level = self.level((member, &reference.name), None, report);
+                let described = fleet.component_type(member);
+                let own = described
+                    .and_then(|own| own.references.iter().find(|own| own.name == *reference.name.value));
+                let given = reference.multiplicity.as_ref().map(|given| given.value);
+                let declared =
+                    own.map(|own| own.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value));
+                if let ([first, second, ..], Some(most)) = (&level.places[..], given.or(declared))
+                    && !most.is_many()
+                {
+                    let places = (*first, *second);
+                    // In SCA 1.0 a warning: whoever implements it may take the first.
+                    let is_1_1 = fleet.members[member].composite.version.is_1_1();
+                    let severity = if is_1_1 { Severity::Error } else { Severity::Warning };
+                    let count = level.places.len();
+                    self.too_many((member, &reference.name), most, places, count, severity, report);
+                }
             }
             for (&(_, name), wires) in self.wires.iter().filter(|((from, _), _)| *from == member) {
                 if component.reference(name).is_none() {
@@ -202,7 +219,8 @@ impl<'f, 'a> Wires<'f, 'a> {
             if let [first, second, ..] = ends.places[..]
                 && !multiplicity.is_many()
             {
-                self.too_many((member, name), multiplicity, (first, second), ends.places.len(), report);
+                let count = ends.places.len();
+                self.too_many((member, name), multiplicity, (first, second), count, Severity::Error, report);
             }
         }
     }
@@ -327,6 +345,7 @@ impl<'f, 'a> Wires<'f, 'a> {
         multiplicity: Multiplicity,
         (first, second): (Location, Location),
         count: usize,
+        severity: Severity,
         report: &mut Report<'_>,
     ) {
         let message = format!(
@@ -336,6 +355,7 @@ impl<'f, 'a> Wires<'f, 'a> {
         );
         report.push(
             Diagnostic::new(&codes::TOO_MANY_TARGETS, second, message)
+                .severity(severity)
                 .rule(if multiplicity.is_required() { "ASM50040" } else { "ASM50039" })
                 .label(first, "the first")
                 .help("keep one of them"),

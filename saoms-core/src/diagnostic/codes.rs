@@ -107,6 +107,8 @@ codes! {
     BINDING_REPEATED = "S2040" Error "binding-repeated" ("ASM90002"): "A service or a reference has two bindings of one name.";
     SERVICE_BINDING_URI = "S2041" Error "service-binding-uri" ("ASM90005"): "A service's binding of SCA has a URI.";
     COMPOSITE_VALUE_TYPE = "S2042" Error "composite-value-type" ("ASM50027"): "The value of a composite's property is not of its type.";
+    COMPONENT_TYPE_REPEATED = "S2043" Error "component-type-repeated": "A component type has two services, references or properties of one name. In SCA 1.0 files a warning.";
+    COMPONENT_TYPE_MISSING = "S2044" Error "component-type-missing" ("ASM40001"): "An implementation that says nothing by itself has no component type beside it.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";

@@ -7,6 +7,7 @@
 mod attributes;
 mod children;
 mod component;
+mod component_type;
 mod composite;
 mod contract;
 mod encoding;
@@ -26,6 +27,7 @@ mod vocabulary;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use component_type::load_component_type;
 pub use named::load_named;
 pub use read::{MAX_SIZE, read, read_from};
 pub use values::read_values;

@@ -4,15 +4,16 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::shelf::Shelf;
-use super::{load_file, read, read_values};
+use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostics, nearest_few, quoted};
-use crate::model::{Contribution, Link, Missing, Naming};
+use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::Sources;
 
 /// Names that are offered in place of one that is not found.
 const OFFERED: usize = 3;
 
-/// Reads the composites that those of a contribution include or implement components with, and what those name in turn.
+/// Reads the composites that those of a contribution include or implement components with, and what those name in turn; and the
+/// component types of implementations, the files `X.componentType` beside them.
 ///
 /// They are looked for by namespace and name in the folder of the file that names them, and then in the whole contribution:
 /// the nearest folder above that has a `sca-contribution.xml`, in itself or in its `META-INF`, or that first folder where
@@ -32,6 +33,7 @@ pub fn load_named(
     for (place, composite) in contribution.composites().iter().enumerate() {
         known.insert(identity(Path::new(sources.get(composite.file()).path())), Some(place));
     }
+    let (mut side_files, mut types) = (HashMap::new(), HashMap::new());
     let mut place = 0;
     while let Some(composite) = contribution.composites().get(place) {
         place += 1;
@@ -51,10 +53,33 @@ pub fn load_named(
                 }
             })
             .collect();
-        if wanted.is_empty() || !path.is_file() {
+        let described = described(composite);
+        if wanted.is_empty() && described.is_empty() || !path.is_file() {
             continue;
         }
         let folder = path.parent().unwrap_or(Path::new(""));
+        let root = shelf.root(folder);
+        for (origin, paths, is_needed) in described {
+            // By its path in the contribution, or beside the composite under its last name.
+            let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
+            let found = paths.iter().map(|path| root.join(path)).chain(beside);
+            let found =
+                found.filter(|path| *side_files.entry(path.clone()).or_insert_with(|| path.is_file()));
+            match found.take(1).collect::<Vec<_>>().pop() {
+                Some(found) => {
+                    let place = types.entry(found).or_insert_with_key(|path| {
+                        let file = read(path, max_size, sources, diagnostics)?;
+                        let made = load_component_type(file, sources, diagnostics)?;
+                        Some(contribution.add_component_type(made))
+                    });
+                    if place.is_some() {
+                        contribution.describe(origin, *place);
+                    }
+                }
+                None if is_needed => contribution.describe(origin, None),
+                None => {}
+            }
+        }
         for wanted in wanted {
             let link = match shelf.find(folder, wanted.namespaces.as_deref(), &wanted.local) {
                 None => Link::Missing(missing(&mut shelf, folder, &wanted)),
@@ -74,8 +99,21 @@ pub fn load_named(
     }
 }
 
+/// The implementations of a composite that a file beside them may describe: its paths, and whether it has to be there.
+fn described(composite: &Composite) -> Vec<(Origin, Vec<PathBuf>, bool)> {
+    let all = composite.components.iter().filter_map(|component| {
+        let implementation = component.implementation.as_ref()?;
+        let paths = component_type::paths(component, composite);
+        // A bundle of OSGi says nothing about services by itself.
+        let is_needed =
+            matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi");
+        (!paths.is_empty()).then_some((implementation.origin, paths, is_needed))
+    });
+    all.collect()
+}
+
 struct Wanted {
-    origin: crate::model::Origin,
+    origin: Origin,
     prefix: String,
     namespaces: Option<Vec<String>>,
     local: String,

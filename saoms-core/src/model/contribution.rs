@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Component, Composite, ImplementationKind, Include, Origin, Part, Version};
+use super::{Component, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Version};
 use crate::source::{FileId, Text};
 use crate::xml::ElementId;
 
@@ -17,6 +17,9 @@ pub struct Contribution {
     /// How many there were at first; the others were found by their names.
     given: usize,
     links: HashMap<(FileId, ElementId), Link>,
+    component_types: Vec<ComponentType>,
+    /// By the element of the implementation; `None` for one that was looked for and is not there.
+    described: HashMap<(FileId, ElementId), Option<usize>>,
 }
 
 /// Where the name of a composite leads.
@@ -117,7 +120,7 @@ impl Contribution {
         let asked_for = composites.len();
         let mut composites = composites;
         composites.extend(others);
-        let mut all = Self { asked_for, given: composites.len(), composites, links: HashMap::new() };
+        let mut all = Self { asked_for, given: composites.len(), composites, ..Self::default() };
         for place in 0..all.composites.len() {
             all.link_known(place);
         }
@@ -137,6 +140,32 @@ impl Contribution {
     /// Where the name at an element leads; `None` where nobody looked.
     pub fn link(&self, origin: Origin) -> Option<&Link> {
         self.links.get(&(origin.file(), origin.element))
+    }
+
+    /// What a file beside an implementation says about it.
+    pub fn component_type(&self, implementation: Origin) -> Option<&ComponentType> {
+        let place = *self.described.get(&(implementation.file(), implementation.element))?;
+        Some(&self.component_types[place?])
+    }
+
+    /// Whether a component type was looked for and not found.
+    pub fn lacks_component_type(&self, implementation: Origin) -> bool {
+        self.described.get(&(implementation.file(), implementation.element)) == Some(&None)
+    }
+
+    /// Every component type that was read.
+    pub fn component_types(&self) -> &[ComponentType] {
+        &self.component_types
+    }
+
+    /// Adds a component type; its place.
+    pub(crate) fn add_component_type(&mut self, component_type: ComponentType) -> usize {
+        self.component_types.push(component_type);
+        self.component_types.len() - 1
+    }
+
+    pub(crate) fn describe(&mut self, implementation: Origin, place: Option<usize>) {
+        self.described.insert((implementation.file(), implementation.element), place);
     }
 
     /// Adds a composite that is named by another one, and links what it names among those that are known; its place.

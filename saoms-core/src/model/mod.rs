@@ -6,6 +6,7 @@
 //! [`Document`](crate::xml::Document), reached through each part's [`Origin`].
 
 mod component;
+mod component_type;
 mod composite;
 mod contract;
 mod contribution;
@@ -16,6 +17,7 @@ mod property;
 mod version;
 
 pub use component::{Component, Implementation, ImplementationKind};
+pub use component_type::ComponentType;
 pub use composite::{Composite, Include, Wire};
 pub use contract::{
     Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,

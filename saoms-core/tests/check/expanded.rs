@@ -109,6 +109,43 @@ fn references_without_a_target_make_it_one_of_sca_1_0() {
     assert!(settled(&[&fleet, &text]).contains("xmlns=\"http://www.osoa.org/xmlns/sca/1.0\""));
 }
 
+#[test]
+fn loops_are_said_as_far_as_they_differ_from_those_of_the_class() {
+    let cart = |loops: &str| {
+        let text = format!(
+            "<component name=\"Cart\"><implementation.rust class=\"example.Cart\"/><property name=\"ID\">Cart</property><property name=\"period\">100</property>{loops}</component>"
+        );
+        settled(&[&part("fleet", "xmlns:s=\"urn:saoms:1\"", &text)])
+    };
+    assert!(!cart("").contains("loop"));
+    let all = cart(
+        r#"<s:loop name="Saver" class="example.BatterySaver" before="BatteryMS"><property name="threshold" value="50"/></s:loop>
+<s:loop name="CollisionMS" class="example.Courteous" after="PathMS"/><s:loop name="BatteryMS" after="CollisionMS"/>"#,
+    );
+    expect![[r#"
+            <s:loop name="CollisionMS" class="example.Courteous" after="PathMS"/>
+            <s:loop name="Saver" class="example.BatterySaver" after="CollisionMS">
+              <property name="threshold">50</property>
+            </s:loop>
+            <s:loop name="BatteryMS" after="Saver"/>
+          </component>
+        </composite>
+    "#]]
+    .assert_eq(&all[all.find("    <s:loop").unwrap()..]);
+    let fewer = cart(
+        r#"<s:loop name="BatteryMS" remove="true"/><s:loop name="CollisionMS"><property name="patience">7</property></s:loop>"#,
+    );
+    expect![[r#"
+            <s:loop name="BatteryMS" remove="true"/>
+            <s:loop name="CollisionMS">
+              <property name="patience">7</property>
+            </s:loop>
+          </component>
+        </composite>
+    "#]]
+    .assert_eq(&fewer[fewer.find("    <s:loop").unwrap()..]);
+}
+
 /// One of several composites: its robot, the composite behind it that implements a component, and where its band leads. A robot's ID is
 /// its own, so each composite is there once.
 #[derive(Clone, Debug)]

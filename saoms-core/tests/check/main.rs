@@ -16,6 +16,7 @@ mod nested;
 mod parameters;
 mod properties;
 mod reference;
+mod rules;
 mod support;
 mod tasks;
 mod topics;

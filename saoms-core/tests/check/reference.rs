@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use expect_test::expect_file;
 use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
-use saoms_core::load::{MAX_SIZE, load_file, read};
+use saoms_core::load::{MAX_SIZE, load, load_file, load_named, read};
 use saoms_core::model::Contribution;
 use saoms_core::source::Sources;
 
@@ -106,6 +106,7 @@ fn example(code: &Code) -> Result<String, String> {
             files.push(("hall0.composite".to_owned(), crate::support::part("hall0", "", gps)));
             checked(&files, 1, &[])
         }
+        id @ ("S2043" | "S2044") => from_folder(id),
         id => from_files(id),
     };
     let found: Vec<Diagnostic> = diagnostics.iter().filter(|one| one.code == code).cloned().collect();
@@ -130,6 +131,21 @@ fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
     assert!(!files.is_empty(), "there is no example of {id}");
     let settings = fs::read_to_string(folder().join(format!("{id}.set"))).unwrap_or_default();
     checked(&files, asked_for, &settings.lines().collect::<Vec<_>>())
+}
+
+/// Checks `ID.composite` in its folder, where there are component types, with unknown classes taken as given.
+fn from_folder(id: &str) -> (Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let composite = load(&folder().join(format!("{id}.composite")), &mut sources, &mut diagnostics);
+    let mut fleet = Contribution::of(composite.into_iter().collect());
+    load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
+    let options = Options { assume_classes: true, ..Options::default() };
+    check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+    let mut renamed = Sources::new();
+    for (_, file) in sources.iter() {
+        renamed.add(Path::new(file.path()).file_name().unwrap().to_string_lossy(), file.text().clone());
+    }
+    (diagnostics.into_sorted(), renamed)
 }
 
 fn checked(files: &[(String, String)], asked_for: usize, settings: &[&str]) -> (Vec<Diagnostic>, Sources) {

@@ -1,0 +1,102 @@
+//! Component types: the files beside implementations.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::children::Family;
+use super::vocabulary::{COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE_PROPERTY};
+use super::{Gathered, Loader};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
+use crate::model::{Component, ComponentType, Composite, ImplementationKind, Origin, Version};
+use crate::source::{FileId, Sources};
+use crate::xml;
+
+/// The ending of their names.
+const ENDING: &str = "componentType";
+
+/// Makes the model of a component type that was read before. `None` when the text is no well-formed XML with a `componentType` of SCA as its
+/// root.
+pub fn load_component_type(
+    file: FileId,
+    sources: &Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<ComponentType> {
+    let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
+    if let Some(fault) = fault {
+        diagnostics.push(fault);
+        return None;
+    }
+    let document = Arc::new(document?);
+    let root = document.root();
+    let version = Version::from_namespace(root.namespace());
+    let Some(version) = version.filter(|_| root.local_name() == ENDING) else {
+        let message =
+            format!("the root element is {} and has to be `componentType` of SCA", quoted(root.name()));
+        let one = Diagnostic::new(&codes::ROOT, root.name_location(), message);
+        diagnostics.push(one.help("a file of this name describes the implementation of the same name"));
+        return None;
+    };
+    let namespace = root.namespace().to_owned();
+    let mut loader = Loader { version, namespace, diagnostics, gathered: Gathered::default() };
+    let mut made = ComponentType {
+        origin: Origin::of(root),
+        document: Arc::clone(&document),
+        version,
+        services: Vec::new(),
+        references: Vec::new(),
+        properties: Vec::new(),
+    };
+    for child in root.children() {
+        match (loader.family(child), child.local_name()) {
+            (Family::Sca, "service") => made.services.push(loader.service(child, &COMPONENT_SERVICE)),
+            (Family::Sca, "reference") => made.references.push(loader.reference(child, &COMPONENT_REFERENCE)),
+            (Family::Sca, "property") => made.properties.push(loader.property(child, &COMPOSITE_PROPERTY)),
+            // What else a component type can say is for the containers of other languages.
+            _ => {}
+        }
+    }
+    Some(made)
+}
+
+/// The files that may describe the implementation of a component, the likeliest first, as paths in the contribution.
+pub(super) fn paths(component: &Component, composite: &Composite) -> Vec<PathBuf> {
+    let Some(implementation) = &component.implementation else { return Vec::new() };
+    let attribute = |name| {
+        let element = implementation.origin.element(&composite.document);
+        element.attribute(name).map(|attribute| attribute.trimmed().as_str().to_owned())
+    };
+    let named = match &implementation.kind {
+        ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => {
+            class.iter().map(|class| class.replace('.', "/")).collect()
+        }
+        ImplementationKind::Composite { .. } => Vec::new(),
+        ImplementationKind::Other { kind, .. } => {
+            let names: &[&str] = match kind.as_str() {
+                "script" => &["script"],
+                "osgi" => &["bundle", "bundleSymbolicName"],
+                "xquery" | "spring" | "widget" => &["location"],
+                _ => &[],
+            };
+            let mut named: Vec<String> = names.iter().filter_map(|name| attribute(name)).collect();
+            // A bundle of which there are several versions has one description for each: `CustomerV2`.
+            let version =
+                attribute("bundleVersion").and_then(|version| Some(version.split('.').next()?.to_owned()));
+            if let (Some(bundle), Some(version)) = (attribute("bundle"), version) {
+                named.push(format!("{bundle}V{version}"));
+            }
+            named
+        }
+    };
+    let is_plain = |name: &String| {
+        !name.is_empty()
+            && Path::new(name).components().all(|part| matches!(part, std::path::Component::Normal(_)))
+    };
+    let of_script = |name: String| {
+        let path = PathBuf::from(&name);
+        let has_ending = matches!(implementation.kind, ImplementationKind::Other { .. })
+            && name.contains('/')
+            || path.extension().is_some_and(|ending| ending.len() <= 6 && !name.contains('/'));
+        if has_ending { path.with_extension(ENDING) } else { PathBuf::from(format!("{name}.{ENDING}")) }
+    };
+    named.into_iter().filter(is_plain).map(of_script).collect()
+}

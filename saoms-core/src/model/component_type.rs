@@ -1,0 +1,26 @@
+//! Component types: what a file beside an implementation says about it.
+
+use std::sync::Arc;
+
+use super::origin::parts;
+use super::{Origin, Property, Reference, Service, Version};
+use crate::xml::Document;
+
+/// What an implementation offers, asks for and can be given, as a `.componentType` file states it.
+#[derive(Clone, Debug)]
+pub struct ComponentType {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The whole document.
+    pub document: Arc<Document>,
+    /// The version of SCA that its namespace stands for.
+    pub version: Version,
+    /// Its services in order.
+    pub services: Vec<Service>,
+    /// Its references in order.
+    pub references: Vec<Reference>,
+    /// Its properties in order; a value is the default of components.
+    pub properties: Vec<Property>,
+}
+
+parts!(ComponentType);

@@ -1,0 +1,101 @@
+//! `docs/rules.md`: what is held to which rule, generated from the table of codes and from the rules of SCA Assembly 1.1.
+//!
+//! `UPDATE_EXPECT=1 cargo test -p saoms-core --test check rules` writes the page anew.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use expect_test::expect_file;
+use saoms_core::diagnostic::codes;
+
+use crate::corpus::MESSAGES;
+
+/// A rule of SCA Assembly 1.1, in our own words, and what holds it here.
+struct Rule {
+    id: &'static str,
+    meaning: &'static str,
+    codes: Vec<&'static str>,
+    note: &'static str,
+}
+
+const HEAD: &str = "\
+# Rules
+
+What composites are held to. Each code is described, with an example, in [diagnostics.md](diagnostics.md). The test of a code is its
+example: the file of its name in `saoms-core/tests/check/examples` has to have that one fault, and loses it when the rule is gone.
+
+## Codes
+
+| code | name | meaning | rules of SCA Assembly 1.1 | messages of Apache Tuscany |
+| --- | --- | --- | --- | --- |
+";
+
+const SECOND: &str = "
+## Rules of SCA Assembly 1.1
+
+Where no code stands, the last column says why. SCA 1.0 has no numbers; where it allows what 1.1 forbids, the diagnostic is a warning there.
+
+| rule | meaning | codes | remark |
+| --- | --- | --- | --- |
+";
+
+#[test]
+fn every_rule_has_its_code_or_says_why_not() {
+    let rules = rules();
+    let mut page = HEAD.to_owned();
+    for code in codes::ALL {
+        let mut rules: BTreeSet<&str> =
+            rules.iter().filter(|rule| rule.codes.contains(&code.id)).map(|rule| rule.id).collect();
+        rules.extend(code.rule);
+        let messages: BTreeSet<&str> =
+            MESSAGES.iter().filter(|(_, id, _)| *id == code.id).map(|(message, ..)| *message).collect();
+        let join = |all: BTreeSet<&str>| all.into_iter().collect::<Vec<_>>().join(", ");
+        let _ = writeln!(
+            page,
+            "| {} | {} | {} | {} | {} |",
+            code.id,
+            code.name,
+            code.meaning,
+            join(rules),
+            join(messages)
+        );
+    }
+    page += SECOND;
+    for rule in &rules {
+        for code in &rule.codes {
+            assert!(codes::ALL.iter().any(|known| known.id == *code), "{code} of {}", rule.id);
+        }
+        assert!(!rule.codes.is_empty() || !rule.note.is_empty(), "{} has neither code nor reason", rule.id);
+        let _ = writeln!(
+            page,
+            "| {} | {} | {} | {} |",
+            rule.id,
+            rule.meaning.replace('|', "\\|"),
+            rule.codes.join(", "),
+            rule.note
+        );
+    }
+    expect_file!["../../../docs/rules.md"].assert_eq(&page);
+}
+
+#[test]
+fn rules_are_those_of_the_table_once_each() {
+    assert!(rules().iter().map(|rule| rule.id).is_sorted_by(|one, next| one < next));
+    for code in codes::ALL {
+        assert!(
+            code.rule.is_none_or(|id| rules().iter().any(|rule| rule.id == id)),
+            "{} names an unknown rule",
+            code.id
+        );
+    }
+}
+
+/// The rules in `rules.tsv`: number, meaning in our own words, codes, remark.
+fn rules() -> Vec<Rule> {
+    let rule = |line: &'static str| {
+        let columns: Vec<&str> = line.split('\t').collect();
+        let codes = columns[2].split(", ").filter(|code| !code.is_empty()).collect();
+        Rule { id: columns[0], meaning: columns[1], codes, note: columns[3] }
+    };
+    include_str!("rules.tsv").lines().skip(1).map(rule).collect()
+}
