@@ -60,11 +60,10 @@ impl RobotKnowledge {
         Ok(Some((action, outcome)))
     }
 
-    /// Ends the work of the hardware for good; `false` while it cannot be reached.
+    /// Ends the work of the hardware for good, and learns where the robot stays; `false` while it cannot be reached.
     pub(crate) fn retire(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
         let Reply::Answer(block) = self.hooks.retire(context, self.number)? else { return Ok(false) };
         self.block = block.unwrap_or(self.block);
-        self.next = self.block;
         Ok(true)
     }
 

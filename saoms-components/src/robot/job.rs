@@ -1,8 +1,10 @@
+use saoms_api::Field;
+
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage};
 
 /// Luggage that a robot brings, or would.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub struct Job {
     /// The luggage's number.
     pub luggage: u32,

@@ -28,14 +28,18 @@ pub struct RobotKnowledge {
     #[entry]
     pub block: Block,
     /// Where it moves next; the same as `block` while it does not.
-    #[entry]
+    #[entry(effector)]
     pub next: Block,
     /// Where its charger is.
     #[entry]
     pub charge_block: Block,
     /// Its battery.
     pub battery: Battery,
+    /// What is left in its battery.
+    #[entry(name = "battery", unit = "%")]
+    pub(super) charge: f64,
     /// What it brings, or would.
+    #[entry]
     pub job: Option<Job>,
     /// Its state.
     #[entry(flatten)]
@@ -84,6 +88,7 @@ impl RobotKnowledge {
             block: charge_block,
             next: charge_block,
             charge_block,
+            charge: battery.percent(),
             battery,
             job: None,
             variables: Variables::default(),
@@ -115,6 +120,18 @@ impl RobotKnowledge {
     pub fn destination(&self) -> Option<Block> {
         let job = self.job.as_ref().filter(|_| self.variables.busy)?;
         Some(if self.variables.has_luggage { job.to } else { job.from })
+    }
+
+    /// Takes from the battery what an execution needs.
+    pub(super) fn use_battery(&mut self) {
+        self.battery.drain();
+        self.charge = self.battery.percent();
+    }
+
+    /// Gives to the battery what an execution in charge gains.
+    pub(super) fn charge_battery(&mut self) {
+        self.battery.charge();
+        self.charge = self.battery.percent();
     }
 
     /// Takes in what was said about luggage.

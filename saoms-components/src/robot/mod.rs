@@ -19,9 +19,7 @@ use saoms_api::{Class, Component, Context, Failure, Loops};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::{
-    COLLISION, CRITICAL_SITUATION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST, ROBOT_STATE,
-};
+use crate::messages::COLLISION;
 
 pub use battery::Battery;
 pub use job::Job;
@@ -40,8 +38,30 @@ use hooks::{Hooks, Reply};
 #[class(
     name = "saoms.Robot",
     periodic,
-    publishes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, COLLISION, ROBOT_STATE, CRITICAL_SITUATION),
-    subscribes(EVENT_LUGGAGE, ROBOT_LIST, POSITION, ROBOT_STATE, CRITICAL_SITUATION, FAULT),
+    knowledge = RobotKnowledge,
+    loops(
+        property = "policy",
+        safe(
+            safe::RobotMS,
+            safe::BatteryMS,
+            safe::RobotListMS,
+            safe::CriticalSituationMS,
+            safe::GripperMS,
+            safe::EventLuggageMS,
+            safe::CollisionMS,
+            safe::PathFollowerMS
+        ),
+        classic(
+            classic::RobotMS,
+            classic::RobotListMS,
+            classic::BatteryMS,
+            classic::CriticalSituationMS,
+            classic::EventLuggageMS,
+            classic::CollisionMS,
+            classic::PathFollowerMS
+        )
+    ),
+    publishes(COLLISION),
     reference("world": Hardware, optional),
     knowledge = RobotKnowledge,
     loops(

@@ -7,7 +7,12 @@ const LOW: u32 = 35;
 
 /// Uses the battery, and goes under charge when it is low.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.BatteryMS")]
+#[looping(
+    name = "saoms.classic.BatteryMS",
+    knowledge = RobotKnowledge,
+    senses("block", "chargeBlock"),
+    effects("battery", "inCharge", "busy", "asleep", "readyToGoUnderCharge")
+)]
 pub struct BatteryMS;
 
 /// How the battery stands.
@@ -59,9 +64,9 @@ impl Loop for BatteryMS {
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.variables.in_charge {
             knowledge.variables.busy |= !knowledge.battery.is_full();
-            knowledge.battery.charge();
+            knowledge.charge_battery();
         } else if knowledge.block != knowledge.charge_block {
-            knowledge.battery.drain();
+            knowledge.use_battery();
         }
         Ok(())
     }

@@ -6,7 +6,13 @@ use crate::robot::RobotKnowledge;
 
 /// Stops for a period when another robot announced the same next block and has the lower number (listing 6.11).
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.CollisionMS", senses("next"), effects("stopAPeriod"))]
+#[looping(
+    name = "saoms.classic.CollisionMS",
+    knowledge = RobotKnowledge,
+    senses("busy", "next"),
+    effects("stopAPeriod"),
+    subscribes(POSITION)
+)]
 pub struct CollisionMS {
     positions: Subscription<Position>,
 }

@@ -15,7 +15,14 @@ use crate::robot::{Help, RobotKnowledge};
 /// A robot that could heal another one says so; in its next execution, when the others' responses are known, the closest one takes over what
 /// the other robot had to do, and awakes a robot in its own place.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.CriticalSituationMS")]
+#[looping(
+    name = "saoms.classic.CriticalSituationMS",
+    knowledge = RobotKnowledge,
+    senses("battery", "block", "transporter", "readyToGoUnderCharge", "hasLuggage"),
+    effects("critical", "healer", "busy", "transporter", "job", "inCharge", "asleep", "block"),
+    publishes(CRITICAL_SITUATION, ROBOT_STATE, ROBOT_LIST, EVENT_LUGGAGE, POSITION),
+    subscribes(CRITICAL_SITUATION, FAULT)
+)]
 pub struct CriticalSituationMS {
     faults: Subscription<Fault>,
     situations: Publisher<CriticalSituation>,
@@ -202,7 +209,8 @@ impl CriticalSituationMS {
         if let Some(help) = knowledge.lists.helps.settle() {
             context.send(&self.situations, help.situation)?;
         }
-        context.send(&self.positions, knowledge.position())?;
+        let block = knowledge.block;
+        context.send(&self.positions, Position { next: block, wanted: block, ..knowledge.position() })?;
         context.send(&self.robots, knowledge.robot(false))?;
         knowledge.shut_down = true;
         Ok(())

@@ -9,7 +9,14 @@ use crate::robot::{Job, Request, RobotKnowledge};
 ///
 /// A robot takes an interest in the oldest request; in its next execution, when the others' responses are known, the closest robot goes.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.EventLuggageMS")]
+#[looping(
+    name = "saoms.classic.EventLuggageMS",
+    knowledge = RobotKnowledge,
+    senses("block", "inCharge", "readyToGoUnderCharge"),
+    effects("busy", "transporter", "job"),
+    publishes(EVENT_LUGGAGE),
+    subscribes(EVENT_LUGGAGE)
+)]
 pub struct EventLuggageMS {
     luggage: Publisher<EventLuggage>,
     luggage_heard: Subscription<EventLuggage>,

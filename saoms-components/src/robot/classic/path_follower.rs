@@ -12,7 +12,13 @@ use crate::robot::actions::Outcome;
 ///
 /// What was announced in the last execution is driven now, and the next block is announced.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.PathFollowerMS")]
+#[looping(
+    name = "saoms.classic.PathFollowerMS",
+    knowledge = RobotKnowledge,
+    senses("chargeBlock", "readyToGoUnderCharge"),
+    effects("block", "next", "job", "busy", "transporter", "hasLuggage", "reachingCharge", "inCharge"),
+    publishes(POSITION, EVENT_LUGGAGE, CRITICAL_SITUATION)
+)]
 pub struct PathFollowerMS {
     luggage: Publisher<EventLuggage>,
     positions: Publisher<Position>,

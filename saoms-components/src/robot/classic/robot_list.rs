@@ -5,7 +5,13 @@ use crate::robot::RobotKnowledge;
 
 /// Knows which robots are active, and says in each execution that this one is.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.RobotListMS")]
+#[looping(
+    name = "saoms.classic.RobotListMS",
+    knowledge = RobotKnowledge,
+    senses("battery", "inCharge", "asleep"),
+    publishes(ROBOT_LIST),
+    subscribes(ROBOT_LIST)
+)]
 pub struct RobotListMS {
     robots: Publisher<RobotList>,
     robots_heard: Subscription<RobotList>,

@@ -5,7 +5,13 @@ use crate::robot::RobotKnowledge;
 
 /// Obeys whoever awakes the robot or sends it under charge (listing 6.4).
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.classic.RobotMS")]
+#[looping(
+    name = "saoms.classic.RobotMS",
+    knowledge = RobotKnowledge,
+    senses("healer"),
+    effects("inCharge", "asleep", "busy", "readyToGoUnderCharge"),
+    subscribes(ROBOT_STATE)
+)]
 pub struct RobotMS {
     states: Subscription<RobotState>,
     /// The newest that is for this robot and arrived for this execution, and why it was sent.

@@ -7,7 +7,12 @@ use crate::robot::{RobotKnowledge, Trouble};
 /// It knows how many executions the battery lasts, and how many the way to the charger takes with what is kept back for waiting and making
 /// way. What a robot finishes before its battery is that low, it finishes.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.BatteryMS")]
+#[looping(
+    name = "saoms.BatteryMS",
+    knowledge = RobotKnowledge,
+    senses("block", "next", "chargeBlock", "job"),
+    effects("battery", "inCharge")
+)]
 pub struct BatteryMS {
     charging: bool,
 }
@@ -153,7 +158,7 @@ impl BatteryMS {
         if !knowledge.is_at_charger() {
             self.charging = false;
             knowledge.variables.in_charge = false;
-            return knowledge.battery.drain();
+            return knowledge.use_battery();
         }
         let charging = !knowledge.battery.is_full();
         let charged = std::mem::replace(&mut self.charging, charging);
@@ -161,7 +166,7 @@ impl BatteryMS {
             context.info(format_args!("charges (battery {} %)", knowledge.battery));
         }
         if charging {
-            knowledge.battery.charge();
+            knowledge.charge_battery();
         } else if charged {
             context.info(format_args!("is fully charged"));
         }

@@ -8,7 +8,13 @@ use crate::robot::RobotKnowledge;
 ///
 /// The right of way is that of [`Traffic`](super::Traffic).
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.CollisionMS", senses("block", "next"), effects("stopAPeriod"))]
+#[looping(
+    name = "saoms.CollisionMS",
+    knowledge = RobotKnowledge,
+    senses("next"),
+    effects("stopAPeriod"),
+    subscribes(POSITION)
+)]
 pub struct CollisionMS {
     positions: Subscription<Position>,
     /// For which block and robot the robot waits.

@@ -17,7 +17,14 @@ const PATIENCE: u64 = 4;
 /// another robot is known; where there are several, all but the closest take theirs back and the closest waits for that. Of two robots
 /// at least one hears of the other's interest before it decides, so no luggage is taken twice, however late messages are.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.EventLuggageMS")]
+#[looping(
+    name = "saoms.EventLuggageMS",
+    knowledge = RobotKnowledge,
+    senses("block", "battery", "asleep"),
+    effects("job", "busy", "transporter"),
+    publishes(EVENT_LUGGAGE),
+    subscribes(EVENT_LUGGAGE)
+)]
 pub struct EventLuggageMS {
     /// From where the robot said that it is interested.
     said_at: Block,

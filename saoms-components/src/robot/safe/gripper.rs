@@ -6,7 +6,13 @@ use crate::robot::{Job, RobotKnowledge};
 
 /// Works the gripper: collects luggage where it is and deposits it where it has to go.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.GripperMS", senses("block", "busy", "hasLuggage"))]
+#[looping(
+    name = "saoms.GripperMS",
+    knowledge = RobotKnowledge,
+    senses("block", "busy", "hasLuggage"),
+    effects("job", "busy", "transporter", "hasLuggage", "healer"),
+    publishes(EVENT_LUGGAGE)
+)]
 pub struct GripperMS {
     luggage: Publisher<EventLuggage>,
 }

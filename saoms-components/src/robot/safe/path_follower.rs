@@ -14,7 +14,13 @@ const TELLING_WAIT: u32 = 3;
 
 /// Drives the wheels along the way to where the robot has to be, and says which block it wants next.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.PathFollowerMS", senses("busy", "hasLuggage", "reachingCharge", "inCharge"))]
+#[looping(
+    name = "saoms.PathFollowerMS",
+    knowledge = RobotKnowledge,
+    senses("busy", "hasLuggage", "reachingCharge", "inCharge", "stopAPeriod", "critical"),
+    effects("block", "next", "readyToGoUnderCharge", "reachingCharge"),
+    publishes(POSITION)
+)]
 pub struct PathFollowerMS {
     said: Option<Position>,
     positions: Publisher<Position>,
@@ -146,6 +152,7 @@ impl Loop for PathFollowerMS {
     ) -> Result<(), Failure> {
         let goes_on = match decision {
             PathDecision::Hold => {
+                knowledge.next = knowledge.block;
                 knowledge.traffic.stay(knowledge.next);
                 let position = Position { priority: IMMOVABLE, ..knowledge.position() };
                 return self.say_if_news(context, position);
@@ -166,6 +173,7 @@ impl Loop for PathFollowerMS {
 
     fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         // The robot stays where it is, and nobody else gets past it.
+        knowledge.next = knowledge.block;
         self.say_if_news(context, Position { priority: IMMOVABLE, ..knowledge.position() })
     }
 }

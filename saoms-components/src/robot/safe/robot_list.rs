@@ -7,7 +7,13 @@ use crate::robot::RobotKnowledge;
 ///
 /// It repeats that only where others learn something from it: when its battery changed, and when it starts or ends charging.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.RobotListMS")]
+#[looping(
+    name = "saoms.RobotListMS",
+    knowledge = RobotKnowledge,
+    senses("battery", "inCharge", "asleep", "critical", "chargeBlock"),
+    publishes(ROBOT_LIST),
+    subscribes(ROBOT_LIST)
+)]
 pub struct RobotListMS {
     said: Option<RobotList>,
     robots: Publisher<RobotList>,
@@ -42,7 +48,7 @@ impl Recordable for RobotListSymptom {
 
 impl Recordable for SayRobot {
     fn record(&self) -> Record {
-        record!("tells them")
+        record!("tells the others")
     }
 }
 

@@ -1,6 +1,4 @@
-use saoms_api::{
-    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
-};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
 
 use crate::messages::{ROBOT_STATE, RobotState};
 use crate::robot::RobotKnowledge;
@@ -10,7 +8,13 @@ use crate::robot::RobotKnowledge;
 /// A robot that is sent to sleep finishes its job, goes to its charger and takes no jobs until it is awaked. It goes on to listen and to make
 /// way. It awakes by itself where a robot needs help and no other robot is awake.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.RobotMS")]
+#[looping(
+    name = "saoms.RobotMS",
+    knowledge = RobotKnowledge,
+    senses("busy", "transporter", "critical", "block", "chargeBlock"),
+    effects("asleep"),
+    subscribes(ROBOT_STATE)
+)]
 pub struct RobotMS {
     states: Subscription<RobotState>,
     called: Option<(RobotState, Cause)>,
@@ -180,22 +184,5 @@ impl RobotKnowledge {
         let first = self.lists.sleepers().all(|other| self.number < other.robot);
         let first = first && !self.lists.anybody_awake();
         first.then_some((request.situation.critical, request.cause))
-    }
-}
-
-/// Where others learn who has to be awake.
-#[derive(Debug, Default)]
-pub(super) struct Caller {
-    states: Publisher<RobotState>,
-}
-
-impl Caller {
-    pub(super) fn new(context: &mut Context<'_>) -> Result<Caller, Failure> {
-        Ok(Caller { states: context.publish(&ROBOT_STATE)? })
-    }
-
-    /// Awakes a robot in place of another one.
-    pub(super) fn awake(&self, context: &mut Context<'_>, robot: u32, emulate: u32) -> Result<(), Failure> {
-        context.send(&self.states, RobotState { robot, awake: true, emulate })
     }
 }

@@ -8,12 +8,11 @@ use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subs
 use crate::grid::Block;
 use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT,
-    Fault, LuggageStage,
+    Fault, LuggageStage, ROBOT_STATE, RobotState,
 };
 use crate::robot::{Help, Rival, RobotKnowledge, Trouble};
 
 use super::energy::Means;
-use super::robot_state::Caller;
 
 use records::doing;
 pub(super) use records::{CriticalDecision, CriticalSymptom};
@@ -30,13 +29,20 @@ use substitute::Substitution;
 ///
 /// *Charging*: where others sleep, a robot that has to charge awakes one of them in its place, and sleeps when it is charged.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "saoms.CriticalSituationMS")]
+#[looping(
+    name = "saoms.CriticalSituationMS",
+    knowledge = RobotKnowledge,
+    senses("battery", "block", "inCharge", "asleep", "transporter", "hasLuggage"),
+    effects("job", "busy", "healer", "critical"),
+    publishes(CRITICAL_SITUATION, ROBOT_STATE, EVENT_LUGGAGE),
+    subscribes(CRITICAL_SITUATION, FAULT)
+)]
 pub struct CriticalSituationMS {
     situations: Publisher<CriticalSituation>,
     situations_heard: Subscription<CriticalSituation>,
     faults: Subscription<Fault>,
     luggage: Publisher<EventLuggage>,
-    caller: Caller,
+    states: Publisher<RobotState>,
     /// Why the robot broke.
     cause: Cause,
     /// From where it said that it would help.
@@ -67,7 +73,7 @@ impl Loop for CriticalSituationMS {
         self.situations_heard = context.subscribe(&CRITICAL_SITUATION)?;
         self.faults = context.subscribe(&FAULT)?;
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.caller = Caller::new(context)?;
+        self.states = context.publish(&ROBOT_STATE)?;
         Ok(())
     }
 
@@ -216,7 +222,7 @@ impl Loop for CriticalSituationMS {
                     substitution.ask(sleeper);
                 }
                 context.info(format_args!("awakes robot {sleeper} in place of robot {robot}"));
-                self.caller.awake(context, sleeper, robot)?;
+                self.awake(context, sleeper, robot)?;
             }
             CriticalDecision::Rest { robot } => {
                 self.substitution = None;
@@ -245,6 +251,11 @@ impl CriticalSituationMS {
     ) -> Result<(), Failure> {
         let (healer, healer_block) = (knowledge.number, knowledge.block);
         context.send(&self.situations, CriticalSituation { stage, healer, healer_block, ..situation })
+    }
+
+    /// Awakes a robot in place of another one.
+    fn awake(&self, context: &mut Context<'_>, robot: u32, emulate: u32) -> Result<(), Failure> {
+        context.send(&self.states, RobotState { robot, awake: true, emulate })
     }
 
     /// How the robot stands that this one would help; `None` while it waits for others to leave it.
@@ -308,7 +319,7 @@ impl CriticalSituationMS {
         if !knowledge.lists.anybody_awake()
             && let Some(sleeper) = knowledge.best_sleeper(&[])
         {
-            self.caller.awake(context, sleeper.robot, knowledge.number)?;
+            self.awake(context, sleeper.robot, knowledge.number)?;
         }
         knowledge.offers_help = false;
         knowledge.drop_job();
