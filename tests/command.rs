@@ -372,7 +372,7 @@ fn two_robots_with_one_number_do_not_start() {
     );
     let path = file(&folder("twins"), "twins.composite", fleet);
     let output = saoms(&["run", &path, "--virtual", "--for", "1s"]);
-    assert_eq!(code(&output), 1, "{}", stdout(&output));
+    assert_eq!(code(&output), 2, "{}", stdout(&output));
     assert!(stderr(&output).contains("robots `A7` and `B7` both have the number 7"), "{}", stderr(&output));
 }
 

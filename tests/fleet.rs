@@ -116,7 +116,7 @@ fn the_classic_rules_deliver_and_collide_once_as_in_figure_8_19() {
         composite = with(&composite, &old, &format!(r#"{id}<property name="period">50</property>"#));
     }
     let report = Fleet::of_text(composite).run(1, HOUR);
-    assert_eq!(report.outcome.status, Status::Done);
+    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
     assert_eq!(
         section(&report, "luggage"),
         &json!({"requested": 4, "delivered": 4, "open": 0, "ignored": 0})

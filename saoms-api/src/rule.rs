@@ -137,6 +137,8 @@ pub struct ComponentView<'a> {
     pub has_broker: bool,
     /// The topics that it publishes, by their names before any `topicRename`.
     pub publishes: Vec<&'a str>,
+    /// The classes of its loops, in their order.
+    pub loops: Vec<&'a str>,
     /// Its references that are wired, and the index of the component that each leads to.
     pub wires: Vec<(&'a str, usize)>,
 }

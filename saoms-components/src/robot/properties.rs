@@ -37,7 +37,6 @@ pub struct RobotProperties {
     pub(crate) asleep: bool,
     /// By which rules the robot acts: `safe`, which neither collides nor runs out of battery, or `classic`, the manual's.
     #[property(default = "safe")]
-    #[expect(dead_code, reason = "the declaration of the class chooses the loops by it")]
     pub(crate) policy: Policy,
 }
 

@@ -33,9 +33,12 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let mut findings = crowded(fleet, &robots);
     let Some(area) = area(fleet) else { return findings };
-    // The classic rules drive on with an empty battery, and of other robots nothing is known.
-    let classic = robots.iter().any(|robot| robot.properties.policy == Policy::Classic);
-    if robots.is_empty() || classic || may_be_others(fleet) {
+    // The classic rules drive on with an empty battery, and of other robots and loops nothing is known.
+    let is_known = |robot: &Known| {
+        let loops = &fleet.components()[robot.index].loops;
+        robot.properties.policy == Policy::Safe && loops.iter().all(|name| name.starts_with("saoms."))
+    };
+    if robots.is_empty() || !robots.iter().all(is_known) || may_be_others(fleet) {
         return findings;
     }
     let ranges: Vec<Range> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();

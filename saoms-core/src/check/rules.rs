@@ -52,6 +52,7 @@ pub(super) fn check<'s>(
                 period: resolved.task.as_ref().map(|task| task.period),
                 has_broker: resolved.task.as_ref().is_some_and(|task| task.url.is_some()),
                 publishes: declaration.publishes.iter().map(|topic| topic.name.as_str()).collect(),
+                loops: resolved.loops.iter().map(|one| one.spec.class.name()).collect(),
                 wires: wires.collect(),
             }
         })
