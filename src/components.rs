@@ -1,10 +1,14 @@
 //! `saoms components`: what a composite can name, from the declarations alone.
 
+mod loops;
+
 use std::fmt::Write;
 
 use saoms_api::Properties;
 use saoms_core::assembly::TaskProperties;
-use saoms_core::registry::{Class, InterfaceDeclaration, PropertyDeclaration, Registry, TopicDeclaration};
+use saoms_core::registry::{
+    Class, InterfaceDeclaration, LoopClass, PropertyDeclaration, Registry, TopicDeclaration,
+};
 use serde_json::{Value, json};
 
 use crate::Exit;
@@ -17,11 +21,16 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
-    let chosen: Vec<&Class> = match &arguments.name {
-        None => registry.iter().map(AsRef::as_ref).filter(|class| !class.is_alias()).collect(),
-        Some(name) => match registry.get(name) {
-            Some(class) => vec![class],
-            None => {
+    let (chosen, loops): (Vec<&Class>, Vec<&LoopClass>) = match &arguments.name {
+        None => (
+            registry.iter().map(AsRef::as_ref).filter(|class| !class.is_alias()).collect(),
+            registry.loops().map(AsRef::as_ref).collect(),
+        ),
+        // No class and loop have the same name.
+        Some(name) => match (registry.get(name), registry.get_loop(name)) {
+            (Some(class), _) => (vec![class], Vec::new()),
+            (None, Some(one)) => (Vec::new(), vec![one]),
+            (None, None) => {
                 eprint(&unknown(name, &registry));
                 return Exit::WrongInput;
             }
@@ -30,28 +39,34 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
     match arguments.format {
         Format::Json => {
             let classes: Vec<Value> = chosen.into_iter().map(as_json).collect();
-            print(&format!("{:#}\n", json!({ "components": classes })));
+            let loops: Vec<Value> = loops
+                .into_iter()
+                .map(|one| serde_json::from_str(one.declaration_json()).unwrap_or_default())
+                .collect();
+            print(&format!("{:#}\n", json!({ "components": classes, "loops": loops })));
         }
         Format::Human if arguments.name.is_some() => {
-            chosen.into_iter().for_each(|class| print(&described(class)))
+            chosen.into_iter().for_each(|class| print(&described(class)));
+            loops.into_iter().for_each(|one| print(&loops::described(one)));
         }
-        Format::Human => print(&listed(&chosen)),
+        Format::Human => print(&listed(&chosen, &loops)),
     }
     Exit::Done
 }
 
 fn unknown(name: &str, registry: &Registry) -> String {
-    let mut text = format!("error: no component class is named `{name}`\n");
-    let nearest = registry.nearest(name);
+    let mut text = format!("error: no class of components and no loop is named `{name}`\n");
+    let mut nearest = registry.nearest(name);
+    nearest.extend(registry.nearest_loops(name));
     if !nearest.is_empty() {
         let _ = writeln!(text, "help: did you mean `{}`?", nearest.join("` or `"));
     }
-    text.push_str("help: `saoms components` lists all classes\n");
+    text.push_str("help: `saoms components` lists all of them\n");
     text
 }
 
-/// A line per class.
-fn listed(classes: &[&Class]) -> String {
+/// A line per class, then one per loop.
+fn listed(classes: &[&Class], loops: &[&LoopClass]) -> String {
     let width = classes.iter().map(|class| class.name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for class in classes {
@@ -69,6 +84,10 @@ fn listed(classes: &[&Class]) -> String {
                 let _ = writeln!(text, "{:width$}            {line}", "");
             }
         }
+    }
+    if !loops.is_empty() {
+        text.push('\n');
+        text.push_str(&loops::listed(loops));
     }
     text.push_str("\n`saoms components NAME` describes one of them.\n");
     text
@@ -119,6 +138,7 @@ fn described(class: &Class) -> String {
         )
     });
     section(&mut text, "References", references.collect());
+    loops::of_class(declaration, &mut text);
     if !class.is_alias() {
         let names = declaration.also.iter().map(|alias| {
             let values: Vec<String> =
@@ -196,6 +216,9 @@ fn plain(value: &Value) -> &str {
 fn type_name(value: &Value) -> String {
     match value {
         Value::Object(object) => {
+            if let Some(of) = object.get("optional") {
+                return format!("{}, or none", type_name(of));
+            }
             match (object.get("sequence"), object.get("name"), object.get("enumeration")) {
                 (Some(of), _, _) => format!("sequence of {}", type_name(of)),
                 (_, Some(name), _) => plain(name).to_owned(),

@@ -394,3 +394,26 @@ fn check_gives_code_scanning_a_log() {
     let log: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!((code(&output), log["runs"][0]["results"].as_array().unwrap().len()), (0, 0));
 }
+
+#[test]
+fn loops_and_knowledge_are_described() {
+    let class = stdout(&saoms(&["components", "robot.Robot001"]));
+    assert!(
+        class.contains("Loops, in order, where policy is safe\n  RobotMS              saoms.RobotMS\n"),
+        "{class}"
+    );
+    assert!(
+        class.contains("Knowledge saoms.Robot\n") && class.contains("  battery: float64, in %\n"),
+        "{class}"
+    );
+    let one = stdout(&saoms(&["components", "saoms.CollisionMS"]));
+    assert!(
+        one.contains("works on the knowledge saoms.Robot") && one.contains("Effects\n  stopAPeriod\n"),
+        "{one}"
+    );
+    let all: Value = serde_json::from_str(&stdout(&saoms(&["components", "--format", "json"]))).unwrap();
+    assert!(all["loops"].as_array().unwrap().iter().any(|one| one["loop"] == "saoms.classic.CollisionMS"));
+    let unknown = saoms(&["components", "CollisionMS"]);
+    assert_eq!(code(&unknown), 2);
+    assert!(stderr(&unknown).contains("did you mean `saoms.CollisionMS`"), "{}", stderr(&unknown));
+}

@@ -47,3 +47,8 @@ pub use comply::{comply, comply_as};
 pub use fleet::Fleet;
 pub use run::Run;
 use saoms_components as _;
+
+/// The examples of `docs/loops.md`, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/loops.md")]
+struct Loops;
