@@ -1,8 +1,9 @@
 //! What the command line takes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Deploys a fleet of self-adaptive robots from composite files.
@@ -11,6 +12,21 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+/// The command line. Where it is wrong, that is told and the process ends.
+pub(crate) fn parsed() -> Arguments {
+    Arguments::try_parse().unwrap_or_else(|mut error| {
+        // Whoever names a composite alone wants to run it.
+        if error.kind() == ErrorKind::InvalidSubcommand
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand)
+            && Path::new(word).exists()
+        {
+            let tip = format!("to run a composite, write `saoms run {word}`");
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        error.exit()
+    })
 }
 
 const EXIT_CODES: &str = "\

@@ -5,14 +5,20 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use saoms_api::Level;
+use saoms_core::assembly::Assembly;
 use saoms_core::schedule::{Event, Events, Occurrence, Progress};
 
 use crate::arguments::{ConsoleStyle, RunArguments};
 use crate::output::{eprint, print};
 
+/// How narrow and how wide the column with the names of components may be.
+const NAMES: (usize, usize) = (14, 32);
+
 /// What of the events is shown, and how.
 pub(crate) struct Console {
     shown: Shown,
+    /// The width of the column with the names of components.
+    width: usize,
     /// On a terminal, the line below the others that says how far the run is.
     bar: Option<ProgressBar>,
 }
@@ -29,7 +35,7 @@ enum Shown {
 
 impl Console {
     /// The console that the command line asks for.
-    pub(crate) fn new(arguments: &RunArguments) -> Console {
+    pub(crate) fn new(arguments: &RunArguments, assembly: &Assembly) -> Console {
         let shown = match arguments.console {
             _ if arguments.quiet => Shown::Quiet,
             ConsoleStyle::Plain => Shown::Plain,
@@ -43,7 +49,9 @@ impl Console {
             let style = ProgressStyle::with_template("{spinner} {msg}");
             ProgressBar::new_spinner().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
         });
-        Console { shown, bar }
+        let names = assembly.components.iter().map(|component| component.path.chars().count());
+        let width = names.max().unwrap_or(0).clamp(NAMES.0, NAMES.1);
+        Console { shown, width, bar }
     }
 
     fn line(&self, text: &str) {
@@ -68,9 +76,9 @@ impl Events for Console {
         match (self.shown, &event.what) {
             (Shown::Classic, Occurrence::Console { text }) => print(&format!("{text}\n")),
             (_, Occurrence::Console { .. }) => {}
-            (Shown::Quiet, _) if level == Level::Error => eprint(&plain(event)),
-            (Shown::Classic, _) if level <= Level::Warning => eprint(&plain(event)),
-            (Shown::Plain, _) if level <= Level::Info => self.line(&plain(event)),
+            (Shown::Quiet, _) if level == Level::Error => eprint(&plain(event, self.width)),
+            (Shown::Classic, _) if level <= Level::Warning => eprint(&plain(event, self.width)),
+            (Shown::Plain, _) if level <= Level::Info => self.line(&plain(event, self.width)),
             _ => {}
         }
     }
@@ -105,12 +113,12 @@ impl Events for Console {
 }
 
 /// An event as one line: when, who, what.
-fn plain(event: &Event) -> String {
+fn plain(event: &Event, width: usize) -> String {
     let mark = match event.what.level() {
         Level::Error => "error: ",
         Level::Warning => "warning: ",
         Level::Info | Level::Debug => "",
     };
     let who = event.component.as_deref().unwrap_or("fleet");
-    format!("{:>11}  {who:<14} {mark}{}\n", event.time.to_string(), event.what)
+    format!("{:>11}  {who:<width$} {mark}{}\n", event.time.to_string(), event.what)
 }

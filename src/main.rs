@@ -24,10 +24,9 @@ mod why;
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use saoms_components as _;
 
-use crate::arguments::{Arguments, Command};
+use crate::arguments::Command;
 
 /// How the process ends; documented in `saoms --help`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +43,7 @@ enum Exit {
 
 fn main() -> ExitCode {
     // clap itself ends with 2 on a wrong command line, which is wrong input too.
-    let exit = match Arguments::parse().command {
+    let exit = match arguments::parsed().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Expand(arguments) => expand::expand(&arguments),

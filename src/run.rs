@@ -27,13 +27,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         return Exit::WrongInput;
     }
     let paths = arguments.paths.is_some().then(Arc::<Paths>::default);
-    let watch = Watch { console: Console::new(arguments), paths: paths.clone() };
+    let watch = Watch { console: Console::new(arguments, &assembly), paths: paths.clone() };
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
     let signals = Signals::new([SIGINT, SIGTERM]);
     let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(watch)) {
         Ok(fleet) => fleet,
         Err(error) => {
-            eprint(&format!("error: {error}\n"));
+            eprint(&format!("error: {error}\n\nthe fleet did not start: nothing runs\n"));
             return Exit::Failed;
         }
     };

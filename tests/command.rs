@@ -46,6 +46,28 @@ fn file(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> String {
     path.to_str().unwrap().to_owned()
 }
 
+#[test]
+fn whoever_names_a_composite_alone_is_told_how_to_run_it() {
+    let output = saoms(&["composites/hall.composite"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("write `saoms run composites/hall.composite`"), "{}", stderr(&output));
+    assert!(!stderr(&saoms(&["runn"])).contains("write `saoms run"));
+}
+
+#[test]
+fn what_happens_stands_in_one_column_however_long_the_names() {
+    let shown = stdout(&saoms(&["run", "composites/airport.composite", "--virtual"]));
+    // When, who, what: where what begins.
+    let start = |line: &str| {
+        let who = line.trim_start().split_once(" s  ").unwrap().1;
+        let what = who.split_once(' ').unwrap().1.trim_start();
+        line.len() - what.len()
+    };
+    let starts: std::collections::BTreeSet<usize> =
+        shown.lines().take_while(|line| !line.is_empty()).map(start).collect();
+    assert_eq!(starts.len(), 1, "{shown}");
+}
+
 /// A fleet of one robot that runs until it is stopped.
 const ONE_ROBOT: &str = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="one" targetNamespace="urn:one">
   <component name="Robot001">
