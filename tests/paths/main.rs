@@ -28,9 +28,12 @@ fn folder(test: &str) -> PathBuf {
     folder
 }
 
+/// More time than any run here needs: one that does not end by itself ends then.
+const ENOUGH: &str = "5min";
+
 /// The picture of a run in virtual time, which must not fail.
-fn drawn(composite: &str, more: &[&str]) -> String {
-    let output = saoms(&[&["run", composite, "--virtual", "--quiet", "--paths", "-"], more].concat());
+fn drawn(composite: &str, limit: &str) -> String {
+    let output = saoms(&["run", composite, "--virtual", "--for", limit, "--quiet", "--paths", "-"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
@@ -93,10 +96,10 @@ fn said(console: &str, robot: &str) -> Vec<Block> {
 #[test]
 fn a_line_leads_through_the_blocks_that_the_robot_was_on_and_no_others() {
     for composite in ["composites/scenario1.composite", "composites/scenario2.composite"] {
-        let text = drawn(composite, &[]);
+        let text = drawn(composite, ENOUGH);
         let document = Document::parse(&text).unwrap();
         let picture = Picture::of(&document);
-        let console = saoms(&["run", composite, "--virtual", "--console", "classic"]);
+        let console = saoms(&["run", composite, "--virtual", "--for", ENOUGH, "--console", "classic"]);
         let console = String::from_utf8(console.stdout).unwrap();
         let robots = picture.all("robot");
         assert!(!robots.is_empty());
@@ -113,7 +116,7 @@ fn a_line_leads_through_the_blocks_that_the_robot_was_on_and_no_others() {
 
 #[test]
 fn the_second_scenario_shows_what_the_manual_tells_of_it() {
-    let text = drawn("composites/scenario2.composite", &[]);
+    let text = drawn("composites/scenario2.composite", ENOUGH);
     let document = Document::parse(&text).unwrap();
     let picture = Picture::of(&document);
     let texts: Vec<String> = picture.labels().into_iter().map(|label| label.text).collect();
@@ -141,7 +144,7 @@ fn a_fleet_without_a_world_is_drawn_on_the_area_that_it_used() {
     let composite = format!("{before}{after}").replace("<reference name=\"world\" target=\"World\"/>", "");
     let path = folder("no_world").join("hall.composite");
     fs::write(&path, composite).unwrap();
-    let text = drawn(path.to_str().unwrap(), &[]);
+    let text = drawn(path.to_str().unwrap(), ENOUGH);
     let document = Document::parse(&text).unwrap();
     let picture = Picture::of(&document);
     let way = picture.way("Robot7");
@@ -155,7 +158,7 @@ fn a_fleet_without_a_world_is_drawn_on_the_area_that_it_used() {
 
 #[test]
 fn ten_robots_are_told_apart_by_colour_and_dash() {
-    let text = drawn(&crowd("ten", 10, (13, 10), ""), &[]);
+    let text = drawn(&crowd("ten", 10, (13, 10), ""), ENOUGH);
     let document = Document::parse(&text).unwrap();
     let picture = Picture::of(&document);
     let paths = picture.all("path");
@@ -168,7 +171,7 @@ fn ten_robots_are_told_apart_by_colour_and_dash() {
 
 #[test]
 fn a_hundred_robots_shade_the_blocks_that_they_entered() {
-    let text = drawn(&crowd("hundred", 68, (102, 34), ""), &["--for", "20s"]);
+    let text = drawn(&crowd("hundred", 68, (102, 34), ""), "20s");
     let document = Document::parse(&text).unwrap();
     let picture = Picture::of(&document);
     assert_eq!((picture.all("robot").len(), picture.all("density").len()), (0, 1));
@@ -189,7 +192,7 @@ fn a_robot_that_stands_with_an_empty_battery_is_marked() {
         text.replace("\"saoms.Robot\"/>", "\"saoms.Robot\"/><property name=\"policy\">classic</property>"),
     )
     .unwrap();
-    let text = drawn(&composite, &["--for", "8s"]);
+    let text = drawn(&composite, "8s");
     let document = Document::parse(&text).unwrap();
     let picture = Picture::of(&document);
     assert_eq!(picture.all("stranded").len(), 1 + 1, "and in the legend");
@@ -212,7 +215,7 @@ fn a_place_that_cannot_be_written_is_told_before_anything_starts() {
 
 #[test]
 fn a_fleet_without_robots_says_that_there_is_nothing_to_draw() {
-    let text = drawn("composites/manual/launchbroker.composite", &["--for", "1s"]);
+    let text = drawn("composites/manual/launchbroker.composite", "1s");
     let document = Document::parse(&text).unwrap();
     let shown = document.descendants().filter_map(|node| node.text()).collect::<String>();
     assert!(shown.contains("no robot said where it is"), "{shown}");
@@ -221,7 +224,7 @@ fn a_fleet_without_robots_says_that_there_is_nothing_to_draw() {
 /// Write it anew with the command that stands in the README.
 #[test]
 fn the_picture_of_the_readme_is_real() {
-    let text = drawn("composites/scenario2.composite", &[]);
+    let text = drawn("composites/scenario2.composite", ENOUGH);
     let kept = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenario2.svg")).unwrap();
     assert!(text == kept, "docs/scenario2.svg is not what the command draws: run it again");
     let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
