@@ -1,9 +1,5 @@
 use std::fmt;
 
-use saoms_api::cdr::{DecodeError, Reader, Writer};
-use saoms_api::declaration::Text;
-use saoms_api::{Entries, Field, Value};
-
 /// A robot's battery.
 ///
 /// It counts thousandths of a percent, so that many small discharges add up exactly.
@@ -16,46 +12,10 @@ use saoms_api::{Entries, Field, Value};
 /// assert_eq!((battery.percent(), battery.executions_left()), (98.0, 49));
 /// assert_eq!(battery.to_string(), "98.0");
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, Entries)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Battery {
-    /// Its battery.
-    #[entry(name = "battery", unit = "%")]
-    level: Percent,
-    /// What an execution takes from its battery.
-    #[entry(unit = "%")]
-    discharge: Percent,
-}
-
-/// Thousandths of a percent, which others see as percent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Percent(u32);
-
-impl Field for Percent {
-    const TYPE: Text = f64::TYPE;
-    const LEAST_SIZE: usize = f64::LEAST_SIZE;
-    const VALUE: &'static str = f64::VALUE;
-
-    fn as_value(&self) -> Option<Value> {
-        Some(Value::Number(self.percent()))
-    }
-
-    fn of_value(value: Value) -> Option<Percent> {
-        f64::of_value(value).map(thousandths)
-    }
-
-    fn write(&self, writer: &mut Writer) {
-        self.percent().write(writer);
-    }
-
-    fn read(reader: &mut Reader<'_>) -> Result<Percent, DecodeError> {
-        f64::read(reader).map(thousandths)
-    }
-}
-
-impl Percent {
-    fn percent(self) -> f64 {
-        f64::from(self.0) / 1000.0
-    }
+    level: u32,
+    discharge: u32,
 }
 
 /// 100 %.
@@ -72,48 +32,48 @@ impl Battery {
 
     /// The level in percent.
     pub fn percent(&self) -> f64 {
-        self.level.percent()
+        f64::from(self.level) / 1000.0
     }
 
     /// Takes what one execution needs.
     pub fn drain(&mut self) {
-        self.level.0 = self.level.0.saturating_sub(self.discharge.0);
+        self.level = self.level.saturating_sub(self.discharge);
     }
 
     /// Gives what one execution in charge gains.
     pub fn charge(&mut self) {
-        self.level.0 = (self.level.0 + self.discharge.0 * CHARGE_FACTOR).min(FULL);
+        self.level = (self.level + self.discharge * CHARGE_FACTOR).min(FULL);
     }
 
     /// Whether it is charged as far as it goes. One that nothing drains always is.
     pub fn is_full(&self) -> bool {
-        self.level.0 == FULL || self.discharge.0 == 0
+        self.level == FULL || self.discharge == 0
     }
 
     /// Whether nothing is left.
     pub fn is_empty(&self) -> bool {
-        self.level.0 == 0 && self.discharge.0 > 0
+        self.level == 0 && self.discharge > 0
     }
 
     /// Whether at most so many percent are left.
     pub fn is_at_most(&self, percent: u32) -> bool {
-        self.level.0 <= percent.saturating_mul(1000)
+        self.level <= percent.saturating_mul(1000)
     }
 
     /// How many executions it lasts; `u32::MAX` where nothing drains it.
     pub fn executions_left(&self) -> u32 {
-        self.level.0.checked_div(self.discharge.0).unwrap_or(u32::MAX)
+        self.level.checked_div(self.discharge).unwrap_or(u32::MAX)
     }
 
     /// How many executions it lasts when it is full.
     pub fn executions_when_full(&self) -> u32 {
-        FULL.checked_div(self.discharge.0).unwrap_or(u32::MAX)
+        FULL.checked_div(self.discharge).unwrap_or(u32::MAX)
     }
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 0..=100 before")]
-fn thousandths(percent: f64) -> Percent {
-    Percent((percent.clamp(0.0, 100.0) * 1000.0).round() as u32)
+fn thousandths(percent: f64) -> u32 {
+    (percent.clamp(0.0, 100.0) * 1000.0).round() as u32
 }
 
 impl fmt::Display for Battery {

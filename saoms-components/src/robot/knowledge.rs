@@ -34,7 +34,6 @@ pub struct RobotKnowledge {
     #[entry]
     pub charge_block: Block,
     /// Its battery.
-    #[entry(flatten)]
     pub battery: Battery,
     /// What is left in its battery.
     #[entry(name = "battery", unit = "%")]
