@@ -6,7 +6,8 @@ use std::path::Path;
 
 use saoms_core::diagnostic::{Diagnostics, Severity, human};
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
-use saoms_core::load::{load_file, read};
+use saoms_core::load::{load_file, load_named, read};
+use saoms_core::model::Contribution;
 use saoms_core::source::Sources;
 
 use crate::Exit;
@@ -33,11 +34,13 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let file = read(&arguments.file, arguments.max_size, &mut sources, &mut diagnostics);
     let composite = file.and_then(|file| load_file(file, &sources, &mut diagnostics));
+    let mut contribution = Contribution::of(composite.into_iter().collect());
+    load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
     let found = diagnostics.into_sorted();
-    let Some(composite) = composite else {
+    if contribution.composites().is_empty() {
         eprint(&human(&found, &sources, io::stderr().is_terminal()));
         return Exit::WrongInput;
-    };
+    }
     let errors = found.iter().filter(|one| one.severity == Severity::Error).count();
     if errors > 0 {
         let errors = counted(errors, "error");
@@ -48,7 +51,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
-    let diagram = Diagram::of(&composite, &registry);
+    let diagram = Diagram::of(&contribution, &registry);
     let text = match picture {
         Picture::Svg => svg(&diagram),
         Picture::Mermaid => mermaid(&diagram),

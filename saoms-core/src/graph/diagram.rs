@@ -38,6 +38,8 @@ pub struct Component {
     pub services: Vec<Port>,
     /// Its references.
     pub references: Vec<Port>,
+    /// What is inside, when a composite implements it.
+    pub inside: Option<Box<Diagram>>,
 }
 
 /// What is known of a component.

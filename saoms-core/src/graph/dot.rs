@@ -5,13 +5,20 @@ use std::fmt::Write as _;
 use super::diagram::{Component, Diagram, End, LinkKind, Port, State};
 
 /// Draws a diagram in the language of Graphviz: components are records with services on the left and references on the
-/// right, topics ellipses.
+/// right, topics ellipses, composites clusters.
 pub fn dot(diagram: &Diagram) -> String {
     let mut out = format!("digraph {} {{\n  rankdir=LR;\n", quoted(&diagram.name));
     out.push_str(
         "  node [fontname=\"Helvetica\", fontsize=11];\n  edge [fontname=\"Helvetica\", fontsize=9];\n",
     );
-    let _ = writeln!(out, "  subgraph cluster_composite {{\n    label={};", quoted(&diagram.name));
+    composite(diagram, "", "composite", &diagram.name, &mut out);
+    out.push_str("}\n");
+    out
+}
+
+/// Draws a composite as the cluster `id`; the names of all nodes in it start with `prefix`.
+fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut String) {
+    let _ = writeln!(out, "  subgraph cluster_{id} {{\n    label={};", quoted(label));
     out.push_str("    style=rounded; color=\"#46617e\"; fontname=\"Helvetica\";\n");
     for (place, component) in diagram.components.iter().enumerate() {
         let style = match component.state {
@@ -22,32 +29,46 @@ pub fn dot(diagram: &Diagram) -> String {
             State::Missing => "style=\"rounded,dashed\", color=\"#c0392b\"",
         };
         let label = record(component);
-        let _ = writeln!(out, "    c{place} [shape=record, {style}, label=\"{label}\"];");
+        let id = format!("{prefix}c{place}");
+        let _ = writeln!(out, "    {id} [shape=record, {style}, label=\"{label}\"];");
+        if let Some(inside) = &component.inside {
+            composite(inside, &format!("{id}_"), &id, &format!("inside {}", component.name), out);
+        }
     }
     for (place, topic) in diagram.topics.iter().enumerate() {
-        let tooltip = quoted(&format!("{} topic of {}", topic.kind.name(), topic.message));
-        let _ =
-            writeln!(out, "    t{place} [shape=ellipse, label={}, tooltip={tooltip}];", quoted(&topic.name));
+        let (name, tooltip) =
+            (quoted(&topic.name), quoted(&format!("{} topic of {}", topic.kind.name(), topic.message)));
+        let _ = writeln!(out, "    {prefix}t{place} [shape=ellipse, label={name}, tooltip={tooltip}];");
     }
-    out.push_str("  }\n");
+    let is_inside = !prefix.is_empty();
+    if !is_inside {
+        out.push_str("  }\n");
+    }
     let ports = [("s", &diagram.services, "#86c067"), ("r", &diagram.references, "#b59ad6")];
     for (id, ports, color) in ports {
         for (place, port) in ports.iter().enumerate() {
             let name = quoted(&port.name);
             let _ = writeln!(
                 out,
-                "  {id}{place} [shape=cds, style=filled, fillcolor=\"{color}\", label={name}];"
+                "  {prefix}{id}{place} [shape=cds, style=filled, fillcolor=\"{color}\", label={name}];"
             );
         }
     }
+    if is_inside {
+        out.push_str("  }\n");
+    }
+    edges(diagram, prefix, out);
+}
+
+fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
     for link in &diagram.links {
         let from = match link.from {
-            End::Component { component, port } => format!("c{component}:r{port}:e"),
-            End::Composite(place) => format!("s{place}"),
+            End::Component { component, port } => format!("{prefix}c{component}:r{port}:e"),
+            End::Composite(place) => format!("{prefix}s{place}"),
         };
         let to = match link.to {
-            End::Component { component, port } => format!("c{component}:s{port}:w"),
-            End::Composite(place) => format!("r{place}"),
+            End::Component { component, port } => format!("{prefix}c{component}:s{port}:w"),
+            End::Composite(place) => format!("{prefix}r{place}"),
         };
         let style = if link.kind == LinkKind::Promotion { " [style=dashed]" } else { "" };
         let _ = writeln!(out, "  {from} -> {to}{style};");
@@ -55,16 +76,14 @@ pub fn dot(diagram: &Diagram) -> String {
     for (place, topic) in diagram.topics.iter().enumerate() {
         for component in &topic.publishers {
             let both = if topic.subscribers.binary_search(component).is_ok() { ", dir=both" } else { "" };
-            let _ = writeln!(out, "  c{component} -> t{place} [style=dotted{both}];");
+            let _ = writeln!(out, "  {prefix}c{component} -> {prefix}t{place} [style=dotted{both}];");
         }
-        for component in
-            topic.subscribers.iter().filter(|reader| topic.publishers.binary_search(reader).is_err())
-        {
-            let _ = writeln!(out, "  t{place} -> c{component} [style=dotted];");
+        for component in &topic.subscribers {
+            if topic.publishers.binary_search(component).is_err() {
+                let _ = writeln!(out, "  {prefix}t{place} -> {prefix}c{component} [style=dotted];");
+            }
         }
     }
-    out.push_str("}\n");
-    out
 }
 
 fn record(component: &Component) -> String {

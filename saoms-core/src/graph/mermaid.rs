@@ -7,10 +7,18 @@ use super::diagram::{Diagram, End, LinkKind, Port, State};
 /// Draws a diagram as a flowchart of Mermaid.
 pub fn mermaid(diagram: &Diagram) -> String {
     let mut out = "flowchart LR\n".to_owned();
-    for (place, port) in diagram.services.iter().enumerate() {
-        let _ = writeln!(out, "  s{place}>{}]:::service", quoted(&port.name));
-    }
-    let _ = writeln!(out, "  subgraph composite [{}]", quoted(&diagram.name));
+    composite(diagram, "", "composite", &escaped(&diagram.name), &mut out);
+    out.push_str("  classDef component fill:#d8e6f5,stroke:#46617e\n");
+    out.push_str("  classDef unknown fill:#d8e6f5,stroke:#c0392b,stroke-dasharray:5 3\n");
+    out.push_str("  classDef missing fill:#fff,stroke:#c0392b,stroke-dasharray:5 3\n");
+    out.push_str("  classDef service fill:#86c067,stroke:#3d7a22\n");
+    out.push_str("  classDef reference fill:#b59ad6,stroke:#62399a\n");
+    out
+}
+
+/// Draws a composite as the group `id`; the names of all nodes in it start with `prefix`.
+fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut String) {
+    let _ = writeln!(out, "  subgraph {id} [\"{}\"]", if label.is_empty() { "?" } else { label });
     for (place, component) in diagram.components.iter().enumerate() {
         let mut label = escaped(&component.name);
         if !component.class.is_empty() {
@@ -21,15 +29,32 @@ pub fn mermaid(diagram: &Diagram) -> String {
             State::UnknownClass => "unknown",
             State::Missing => "missing",
         };
-        let _ = writeln!(out, "    c{place}(\"{label}\"):::{class}");
+        let id = format!("{prefix}c{place}");
+        match &component.inside {
+            Some(inside) => composite(inside, &format!("{id}_"), &id, &label, out),
+            None => _ = writeln!(out, "    {id}(\"{label}\"):::{class}"),
+        }
     }
     for (place, topic) in diagram.topics.iter().enumerate() {
-        let _ = writeln!(out, "    t{place}([{}])", quoted(&topic.name));
+        let _ = writeln!(out, "    {prefix}t{place}([{}])", quoted(&topic.name));
     }
-    out.push_str("  end\n");
-    for (place, port) in diagram.references.iter().enumerate() {
-        let _ = writeln!(out, "  r{place}>{}]:::reference", quoted(&port.name));
+    // Inside another composite they stand with the others: a group has no border to put them on.
+    let is_inside = !prefix.is_empty();
+    if !is_inside {
+        out.push_str("  end\n");
     }
+    for (id, class, ports) in [("s", "service", &diagram.services), ("r", "reference", &diagram.references)] {
+        for (place, port) in ports.iter().enumerate() {
+            let _ = writeln!(out, "  {prefix}{id}{place}>{}]:::{class}", quoted(&port.name));
+        }
+    }
+    if is_inside {
+        out.push_str("  end\n");
+    }
+    edges(diagram, prefix, out);
+}
+
+fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
     let name = |ports: &[Port], place: usize| ports.get(place).map_or("", |port| &port.name).to_owned();
     for link in &diagram.links {
         let (from, source) = match link.from {
@@ -51,25 +76,20 @@ pub fn mermaid(diagram: &Diagram) -> String {
         let names: Vec<&str> = [&*source, &*target].into_iter().filter(|name| !name.is_empty()).collect();
         let label =
             if names.is_empty() { String::new() } else { format!("|{}|", quoted(&names.join(" → "))) };
-        let _ = writeln!(out, "  {from} {arrow}{label} {to}");
+        let _ = writeln!(out, "  {prefix}{from} {arrow}{label} {prefix}{to}");
     }
     for (place, topic) in diagram.topics.iter().enumerate() {
         for component in &topic.publishers {
-            let arrow = if topic.subscribers.binary_search(component).is_ok() { "<-.->" } else { "-.->" };
-            let _ = writeln!(out, "  c{component} {arrow} t{place}");
+            let both = topic.subscribers.binary_search(component).is_ok();
+            let arrow = if both { "<-.->" } else { "-.->" };
+            let _ = writeln!(out, "  {prefix}c{component} {arrow} {prefix}t{place}");
         }
-        for component in
-            topic.subscribers.iter().filter(|reader| topic.publishers.binary_search(reader).is_err())
-        {
-            let _ = writeln!(out, "  t{place} -.-> c{component}");
+        for component in &topic.subscribers {
+            if topic.publishers.binary_search(component).is_err() {
+                let _ = writeln!(out, "  {prefix}t{place} -.-> {prefix}c{component}");
+            }
         }
     }
-    out.push_str("  classDef component fill:#d8e6f5,stroke:#46617e\n");
-    out.push_str("  classDef unknown fill:#d8e6f5,stroke:#c0392b,stroke-dasharray:5 3\n");
-    out.push_str("  classDef missing fill:#fff,stroke:#c0392b,stroke-dasharray:5 3\n");
-    out.push_str("  classDef service fill:#86c067,stroke:#3d7a22\n");
-    out.push_str("  classDef reference fill:#b59ad6,stroke:#62399a\n");
-    out
 }
 
 fn quoted(text: &str) -> String {

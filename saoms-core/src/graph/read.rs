@@ -2,34 +2,117 @@
 
 use super::diagram::{Component, Diagram, Port, Setting, State};
 use super::{topics, wiring};
-use crate::model::{self, Composite, ImplementationKind, Interface};
+use crate::model::{self, Composite, Contribution, ImplementationKind, Interface, Link, Reference, Service};
 use crate::registry::{Class, Registry};
 
+/// Composites that are drawn inside each other, and components that are drawn in all of them: a few lines of text can name
+/// a composite of composites of composites.
+const MOST_DEEP: usize = 12;
+const MOST_INSIDE: usize = 5_000;
+
 impl Diagram {
-    /// What there is to draw of a composite. Classes that are not registered are drawn with what the file says of them;
+    /// What there is to draw of the first composite of a contribution, with what it includes, and with what is inside the
+    /// components that composites implement. Classes that are not registered are drawn with what the file says of them;
     /// components that are named and not there are drawn as missing.
-    pub fn of(composite: &Composite, registry: &Registry) -> Self {
-        let mut diagram = Self {
+    pub fn of(contribution: &Contribution, registry: &Registry) -> Self {
+        if contribution.composites().is_empty() {
+            return Self::default();
+        }
+        Reader { contribution, registry, open: Vec::new(), left: MOST_INSIDE }.diagram(0)
+    }
+}
+
+/// A composite together with all that it includes.
+pub(super) struct View<'c>(Vec<&'c Composite>);
+
+impl<'c> View<'c> {
+    fn of(contribution: &'c Contribution, place: usize) -> Self {
+        let mut places = vec![place];
+        let mut at = 0;
+        while let Some(place) = places.get(at) {
+            let includes = contribution.composites()[*place].includes.iter();
+            let links = includes.filter_map(|include| contribution.link(include.origin));
+            for link in links {
+                if let Link::To(found) = link
+                    && !places.contains(found)
+                {
+                    places.push(*found);
+                }
+            }
+            at += 1;
+        }
+        Self(places.into_iter().map(|place| &contribution.composites()[place]).collect())
+    }
+
+    pub(super) fn composites(&self) -> impl Iterator<Item = &'c Composite> {
+        self.0.iter().copied()
+    }
+
+    /// All components, each with the composite that it is written in.
+    pub(super) fn components(&self) -> impl Iterator<Item = (&'c Composite, &'c model::Component)> {
+        self.composites().flat_map(|composite| composite.components.iter().map(move |one| (composite, one)))
+    }
+
+    pub(super) fn services(&self) -> impl Iterator<Item = &'c Service> {
+        self.composites().flat_map(|composite| &composite.services)
+    }
+
+    pub(super) fn references(&self) -> impl Iterator<Item = &'c Reference> {
+        self.composites().flat_map(|composite| &composite.references)
+    }
+}
+
+struct Reader<'c> {
+    contribution: &'c Contribution,
+    registry: &'c Registry,
+    /// The composites that are being read.
+    open: Vec<usize>,
+    /// How many more components there may be inside others.
+    left: usize,
+}
+
+impl Reader<'_> {
+    fn diagram(&mut self, place: usize) -> Diagram {
+        let composite = &self.contribution.composites()[place];
+        let view = View::of(self.contribution, place);
+        self.open.push(place);
+        let mut diagram = Diagram {
             name: composite.name.to_string(),
             namespace: composite.target_namespace.as_ref().map(ToString::to_string),
-            properties: composite.properties.iter().map(setting).collect(),
-            services: composite
-                .services
-                .iter()
-                .map(|one| port(&one.name, one.interface.as_deref()))
-                .collect(),
-            references: composite
-                .references
-                .iter()
-                .map(|one| port(&one.name, one.interface.as_deref()))
-                .collect(),
-            components: composite.components.iter().map(|one| component(one, registry)).collect(),
+            properties: view.composites().flat_map(|one| &one.properties).map(setting).collect(),
+            services: view.services().map(|one| port(&one.name, one.interface.as_deref())).collect(),
+            references: view.references().map(|one| port(&one.name, one.interface.as_deref())).collect(),
+            components: view.components().map(|(_, one)| self.component(one)).collect(),
             links: Vec::new(),
-            topics: topics::of(composite, registry),
+            topics: topics::of(&view, self.registry),
         };
-        wiring::link(composite, &mut diagram);
+        self.open.pop();
+        wiring::link(&view, &mut diagram);
         diagram
     }
+
+    fn component(&mut self, one: &model::Component) -> Component {
+        let mut component = component(one, self.registry);
+        let named = one.implementation.as_ref().and_then(|one| self.contribution.link(one.origin));
+        if let Some(Link::To(place)) = named
+            && !self.open.contains(place)
+            && self.open.len() <= MOST_DEEP
+        {
+            let count = self.contribution.composites()[*place].components.len();
+            if let Some(left) = self.left.checked_sub(count) {
+                self.left = left;
+                let inside = self.diagram(*place);
+                declared(pairs(&inside.services), &mut component.services);
+                declared(pairs(&inside.references), &mut component.references);
+                component.inside = Some(Box::new(inside));
+            }
+        }
+        component
+    }
+}
+
+fn pairs(ports: &[Port]) -> impl Iterator<Item = (&str, &str)> {
+    ports.iter().map(|port| (&*port.name, port.interface.as_deref().unwrap_or_default()))
 }
 
 /// The registered class of a component.
@@ -58,15 +141,17 @@ fn component(component: &model::Component, registry: &Registry) -> Component {
         properties: component.properties.iter().map(setting).collect(),
         services,
         references,
+        inside: None,
     }
 }
 
 /// Adds what the class declares beyond what the file says.
 fn declared<'c>(all: impl Iterator<Item = (&'c str, &'c str)>, ports: &mut Vec<Port>) {
     for (name, interface) in all {
+        let interface = Some(interface.to_owned()).filter(|interface| !interface.is_empty());
         match ports.iter_mut().find(|port| port.name == name) {
-            Some(port) => _ = port.interface.get_or_insert_with(|| interface.to_owned()),
-            None => ports.push(Port { name: name.to_owned(), interface: Some(interface.to_owned()) }),
+            Some(port) => port.interface = port.interface.take().or(interface),
+            None => ports.push(Port { name: name.to_owned(), interface }),
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Pictures as SVG.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use super::diagram::{Component, Diagram, Port, Setting, State, Topic};
 use super::layout::measure::{CHEVRON, CHIP_HEIGHT, CHIP_SIZE, Chip, LABEL, NAME_SIZE, SMALL_SIZE};
-use super::layout::{LEGEND, Layout, LineKind, Mark, Placed, Point, Rail, Rect, layout};
+use super::layout::{LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, layout};
 use super::text::{width, xml};
 
 /// The colours of topics, dark enough for lines on white (Okabe, Ito: Color universal design, 2008; yellow left out).
@@ -32,7 +33,7 @@ text{font-family:Helvetica,Arial,'Liberation Sans',sans-serif;fill:#1c2733}\
 /// Topics are rails below the components; a triangle into a rail publishes, one out of it reads. Details (interfaces,
 /// values, types of messages) are shown as tooltips.
 pub fn svg(diagram: &Diagram) -> String {
-    let layout = layout(diagram);
+    let layout = layout(diagram, true);
     let mut out = Out::default();
     let Layout { width, height, .. } = layout;
     let _ = writeln!(
@@ -41,12 +42,52 @@ pub fn svg(diagram: &Diagram) -> String {
     );
     let _ = writeln!(out.text, "<title>{}</title>\n<style>{STYLE}</style>", xml(&diagram.name));
     let _ = writeln!(out.text, "<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
-    out.composite(diagram, &layout);
-    for line in &layout.lines {
-        let (class, dots) = match line.kind {
-            LineKind::Wire => ("wire", true),
-            LineKind::Promotion => ("promotion", true),
-            LineKind::Topics => ("topics", false),
+    out.draw(diagram, &layout);
+    out.legend(diagram, &layout);
+    out.text.push_str("</svg>\n");
+    out.text
+}
+
+#[derive(Default)]
+struct Out {
+    text: String,
+    /// The topics that have a colour: one is of the same colour in all composites.
+    topics: HashMap<String, &'static str>,
+}
+
+impl Out {
+    fn draw(&mut self, diagram: &Diagram, layout: &Layout) {
+        self.composite(diagram, layout);
+        layout.lines.iter().for_each(|line| self.line(line));
+        for (rail, topic) in layout.rails.iter().zip(&diagram.topics) {
+            let color = self.color(&topic.name);
+            self.rail(rail, topic, color);
+        }
+        for mark in &layout.marks {
+            let color = self.color(&diagram.topics[mark.topic].name);
+            self.mark(mark, color);
+        }
+        for (placed, component) in layout.components.iter().zip(&diagram.components) {
+            self.component(placed, component);
+        }
+        for (at, port) in layout.services.iter().zip(&diagram.services) {
+            self.port("service", *at, port, Point { x: at.x - LABEL, y: at.y }, "end");
+        }
+        for (at, port) in layout.references.iter().zip(&diagram.references) {
+            self.port("reference", *at, port, Point { x: at.x + LABEL, y: at.y }, "start");
+        }
+    }
+
+    fn color(&mut self, topic: &str) -> &'static str {
+        let next = TOPICS[self.topics.len() % TOPICS.len()];
+        self.topics.entry(topic.to_owned()).or_insert(next)
+    }
+
+    fn line(&mut self, line: &Line) {
+        let class = match line.kind {
+            LineKind::Wire => "wire",
+            LineKind::Promotion => "promotion",
+            LineKind::Topics => "topics",
         };
         let path = line.parts.iter().map(|(from, to)| {
             if from.y == to.y {
@@ -55,42 +96,13 @@ pub fn svg(diagram: &Diagram) -> String {
                 format!("M{},{}V{}", from.x, from.y, to.y)
             }
         });
-        let _ = writeln!(out.text, "<path class=\"{class}\" d=\"{}\"/>", path.collect::<String>());
-        for dot in line.dots.iter().filter(|_| dots) {
+        let _ = writeln!(self.text, "<path class=\"{class}\" d=\"{}\"/>", path.collect::<String>());
+        for dot in &line.dots {
             let _ =
-                writeln!(out.text, "<circle cx=\"{}\" cy=\"{}\" r=\"2.5\" fill=\"#33475b\"/>", dot.x, dot.y);
+                writeln!(self.text, "<circle cx=\"{}\" cy=\"{}\" r=\"2.5\" fill=\"#33475b\"/>", dot.x, dot.y);
         }
     }
-    for (index, (rail, topic)) in layout.rails.iter().zip(&diagram.topics).enumerate() {
-        out.rail(rail, topic, color(index));
-    }
-    for mark in &layout.marks {
-        out.mark(mark);
-    }
-    for (placed, component) in layout.components.iter().zip(&diagram.components) {
-        out.component(placed, component);
-    }
-    for (at, port) in layout.services.iter().zip(&diagram.services) {
-        out.port("service", *at, port, Point { x: at.x - LABEL, y: at.y }, "end");
-    }
-    for (at, port) in layout.references.iter().zip(&diagram.references) {
-        out.port("reference", *at, port, Point { x: at.x + LABEL, y: at.y }, "start");
-    }
-    out.legend(diagram, &layout);
-    out.text.push_str("</svg>\n");
-    out.text
-}
 
-fn color(topic: usize) -> &'static str {
-    TOPICS[topic % TOPICS.len()]
-}
-
-#[derive(Default)]
-struct Out {
-    text: String,
-}
-
-impl Out {
     fn composite(&mut self, diagram: &Diagram, layout: &Layout) {
         self.rect("composite", layout.frame, 14);
         let Rect { x, y, .. } = layout.frame;
@@ -137,6 +149,12 @@ impl Out {
             let at = Point { x: rect.x + rect.width, y: rect.y + plan.port(place) };
             let shown = Port { name: plan.references[place].clone(), interface: port.interface.clone() };
             self.port("reference", at, &shown, Point { x: at.x - LABEL, y: at.y }, "end");
+        }
+        if let (Some((picture, at)), Some(inside)) = (&plan.inside, &component.inside) {
+            let Point { x, y } = Point { x: rect.x + at.x, y: rect.y + at.y };
+            let _ = writeln!(self.text, "<g transform=\"translate({x},{y})\">");
+            self.draw(inside, picture);
+            self.text.push_str("</g>");
         }
         self.text.push_str("</g>\n");
     }
@@ -197,15 +215,15 @@ impl Out {
         self.text.push_str("</g>\n");
     }
 
-    fn mark(&mut self, mark: &Mark) {
+    fn mark(&mut self, mark: &Mark, color: &str) {
         let Point { x, y } = mark.at;
         let mut base = y - 2;
         if mark.publishes {
-            self.triangle(x, base - 7, base, color(mark.topic), true);
+            self.triangle(x, base - 7, base, color, true);
             base -= 8;
         }
         if mark.reads {
-            self.triangle(x, base, base - 7, color(mark.topic), false);
+            self.triangle(x, base, base - 7, color, false);
         }
     }
 
@@ -238,8 +256,8 @@ impl Out {
             let _ = write!(out.text, "<path class=\"promotion\" d=\"M{x},{y}h18\"/>");
         });
         if !diagram.topics.is_empty() {
-            entry(self, "publishes a topic", &|out, x| out.triangle(x + 9, y - 4, y + 4, color(0), true));
-            entry(self, "reads a topic", &|out, x| out.triangle(x + 9, y + 4, y - 4, color(0), false));
+            entry(self, "publishes a topic", &|out, x| out.triangle(x + 9, y - 4, y + 4, TOPICS[0], true));
+            entry(self, "reads a topic", &|out, x| out.triangle(x + 9, y + 4, y - 4, TOPICS[0], false));
         }
         self.text.push('\n');
     }

@@ -3,6 +3,7 @@ use expect_test::{Expect, expect};
 use super::{Diagram, State, dot, mermaid, svg};
 use crate::diagnostic::Diagnostics;
 use crate::load::load_file;
+use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::Sources;
 
@@ -12,7 +13,8 @@ fn diagram(content: &str) -> Diagram {
         format!("<composite xmlns='{namespace}' name='c' targetNamespace='urn:c'{content}</composite>");
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let file = sources.add("c.composite", text);
-    Diagram::of(&load_file(file, &sources, &mut diagnostics).unwrap(), &Registry::new())
+    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    Diagram::of(&Contribution::of(vec![composite]), &Registry::new())
 }
 
 /// The edges of the flowchart, each a line.
@@ -87,4 +89,53 @@ fn names_are_escaped() {
     assert_eq!(name.unwrap().text(), Some(&*diagram.components[0].name));
     assert!(dot(&diagram).contains(r#"label="\<a\> & \"b\" \| \{c\} \\ # ]]\nx""#), "{}", dot(&diagram));
     assert!(mermaid(&diagram).contains("#60;a#62; #38; #34;b#34; #124; {c} #92; #35; ]]<br/>x"));
+}
+
+#[test]
+fn composites_are_drawn_inside_the_components_that_they_implement() {
+    let composite = |name: &str, content: &str| {
+        format!(
+            "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='{name}' targetNamespace='urn:c' xmlns:c='urn:c'>{content}</composite>"
+        )
+    };
+    let texts = [
+        composite(
+            "outer",
+            "<include name='c:more'/><component name='Hall'><implementation.composite name='c:inner'/></component>
+            <component name='Door'><implementation.java class='a.Door'/><reference name='r' target='Hall/light'/></component>",
+        ),
+        composite("inner", "<service name='light' promote='Lamp/on'/><component name='Lamp'><implementation.java class='a.Lamp'/></component>
+            <component name='Again'><implementation.composite name='c:inner'/></component>"),
+        composite("more", "<component name='Bell'><implementation.java class='a.Bell'/></component>"),
+    ];
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let load = |text: String| {
+        let file = sources.add("c.composite", text);
+        load_file(file, &sources, &mut diagnostics).unwrap()
+    };
+    let contribution = Contribution::of(texts.into_iter().map(load).collect());
+    let diagram = Diagram::of(&contribution, &Registry::new());
+    expect![[r##"
+        flowchart LR
+          subgraph composite ["outer"]
+          subgraph c0 ["Hall<br/>composite c:inner"]
+            c0_c0("Lamp<br/>a.Lamp"):::unknown
+            c0_c1("Again<br/>composite c:inner"):::component
+          c0_s0>"light"]:::service
+          end
+          c0_s0 -.->|"on"| c0_c0
+            c1("Door<br/>a.Door"):::unknown
+            c2("Bell<br/>a.Bell"):::unknown
+          end
+          c1 -->|"r → light"| c0
+    "##]]
+    .assert_eq(mermaid(&diagram).split("  classDef").next().unwrap());
+    let drawn = svg(&diagram);
+    let document = roxmltree::Document::parse(&drawn).unwrap();
+    let names: Vec<_> = document
+        .descendants()
+        .filter(|node| node.attribute("class") == Some("name"))
+        .filter_map(|node| node.text())
+        .collect();
+    assert_eq!(names, ["outer", "Hall", "inner", "Lamp", "Again", "Door", "Bell"]);
 }

@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 
 use super::diagram::Topic;
-use super::read::class_of;
+use super::read::{View, class_of};
 use crate::check::topic_renames;
 use crate::model::{Component, Composite};
 use crate::registry::{Registry, TopicDeclaration};
 
 /// The topics of the components whose classes are registered.
-pub(super) fn of(composite: &Composite, registry: &Registry) -> Vec<Topic> {
+pub(super) fn of(view: &View<'_>, registry: &Registry) -> Vec<Topic> {
     let mut topics = Topics::default();
-    for (place, component) in composite.components.iter().enumerate() {
+    for (place, (composite, component)) in view.components().enumerate() {
         let Some(class) = class_of(component, registry) else { continue };
         if value(component, "useJMS", composite) == Some("false") {
             continue;

@@ -3,24 +3,24 @@
 use std::collections::{HashMap, HashSet};
 
 use super::diagram::{Component, Diagram, End, Link, LinkKind, Port, State};
-use crate::model::Composite;
+use super::read::View;
 
 /// The service that periodic components have without naming it.
 const TASK_SERVICE: &str = "TaskInterface";
 
-/// Adds the links of `composite` to `diagram`, and what they lead to where that is missing.
-pub(super) fn link(composite: &Composite, diagram: &mut Diagram) {
+/// Adds the links of a composite to `diagram`, and what they lead to where that is missing.
+pub(super) fn link(view: &View<'_>, diagram: &mut Diagram) {
     let names = diagram.components.iter().enumerate().rev();
     let places = names.map(|(place, component)| (component.name.clone(), place)).collect();
     let mut linker = Linker { diagram, places, seen: HashSet::new(), linked: HashSet::new() };
-    linker.targets(composite);
-    for wire in &composite.wires {
+    linker.targets(view);
+    for wire in view.composites().flat_map(|composite| &composite.wires) {
         let (Some(source), Some(target)) = (&wire.source, &wire.target) else { continue };
         let from = linker.reference(source);
         linker.wire(from, target);
     }
-    linker.autowire(composite);
-    linker.promotions(composite);
+    linker.autowire(view);
+    linker.promotions(view);
 }
 
 struct Linker<'d> {
@@ -32,8 +32,8 @@ struct Linker<'d> {
 }
 
 impl Linker<'_> {
-    fn targets(&mut self, composite: &Composite) {
-        for (component, model) in composite.components.iter().enumerate() {
+    fn targets(&mut self, view: &View<'_>) {
+        for (component, (_, model)) in view.components().enumerate() {
             for (port, reference) in model.references.iter().enumerate() {
                 for target in &reference.targets {
                     self.wire(End::Component { component, port }, target);
@@ -42,14 +42,14 @@ impl Linker<'_> {
         }
     }
 
-    fn promotions(&mut self, composite: &Composite) {
-        for (place, service) in composite.services.iter().enumerate() {
+    fn promotions(&mut self, view: &View<'_>) {
+        for (place, service) in view.services().enumerate() {
             let Some(promote) = &service.promote else { continue };
             let interface = self.diagram.services[place].interface.clone();
             let to = self.service(promote, interface.as_deref());
             self.add(LinkKind::Promotion, End::Composite(place), to);
         }
-        for (place, reference) in composite.references.iter().enumerate() {
+        for (place, reference) in view.references().enumerate() {
             for promote in reference.promote() {
                 let from = self.reference(promote);
                 self.add(LinkKind::Promotion, from, End::Composite(place));
@@ -58,9 +58,10 @@ impl Linker<'_> {
     }
 
     /// Wires references without a target to the services of their interface, where the file asks for that.
-    fn autowire(&mut self, composite: &Composite) {
-        let by_default = composite.autowire.is_some_and(|one| one.value);
-        for (component, model) in composite.components.iter().enumerate() {
+    fn autowire(&mut self, view: &View<'_>) {
+        let count = view.components().count();
+        for (component, (composite, model)) in view.components().enumerate() {
+            let by_default = composite.autowire.is_some_and(|one| one.value);
             let by_default = model.autowire.map_or(by_default, |one| one.value);
             for port in 0..self.diagram.components[component].references.len() {
                 let from = End::Component { component, port };
@@ -74,7 +75,7 @@ impl Linker<'_> {
                 else {
                     continue;
                 };
-                let found = self.offering(&interface, component, composite);
+                let found = self.offering(&interface, component, count);
                 for to in found.into_iter().take(if many { usize::MAX } else { 1 }) {
                     self.add(LinkKind::Wire, from, to);
                 }
@@ -82,9 +83,9 @@ impl Linker<'_> {
         }
     }
 
-    /// The services of this interface, apart from those of `except`.
-    fn offering(&self, interface: &str, except: usize, composite: &Composite) -> Vec<End> {
-        let all = (0..composite.components.len()).filter(|component| *component != except);
+    /// The services of this interface of the first `count` components, those that are there, apart from those of `except`.
+    fn offering(&self, interface: &str, except: usize, count: usize) -> Vec<End> {
+        let all = (0..count).filter(|component| *component != except);
         all.filter_map(|component| {
             let services = &self.diagram.components[component].services;
             let port = services.iter().position(|one| one.interface.as_deref() == Some(interface))?;
@@ -153,6 +154,7 @@ impl Linker<'_> {
                     properties: Vec::new(),
                     services: Vec::new(),
                     references: Vec::new(),
+                    inside: None,
                 });
                 self.places.insert(name.to_owned(), self.diagram.components.len() - 1);
                 self.diagram.components.len() - 1

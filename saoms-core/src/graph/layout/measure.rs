@@ -1,5 +1,8 @@
 //! The sizes of components and what is in them.
 
+use std::rc::Rc;
+
+use super::{Layout, Point, layout};
 use crate::graph::diagram::{Component, Port, Setting};
 use crate::graph::text::{end, start, width};
 
@@ -45,6 +48,8 @@ pub(in crate::graph) struct Plan {
     first: i32,
     /// Where the line to topics leaves on the left.
     pub(in crate::graph) topics: Option<i32>,
+    /// The picture of what is inside, and where it starts.
+    pub(in crate::graph) inside: Option<(Rc<Layout>, Point)>,
 }
 
 impl Plan {
@@ -68,9 +73,18 @@ impl Plan {
         let header = if class_text.is_empty() { 3 * GRID } else { 5 * GRID };
         let ports = top + header + PITCH * rows as i32;
         let topics = has_topics.then_some(ports + GRID);
+        let mut width = on_grid(inside.max(chips_width + 16));
+        let mut height = if has_topics || rows > 0 { ports + 2 * GRID } else { ports + GRID };
+        let inside = component.inside.as_deref().map(|diagram| {
+            let picture = layout(diagram, false);
+            width = width.max(on_grid(picture.width) + 2 * GRID);
+            let at = Point { x: (width - picture.width) / 2, y: height };
+            height += on_grid(picture.height) + GRID;
+            (Rc::new(picture), at)
+        });
         Self {
-            width: on_grid(inside.max(chips_width + 16)),
-            height: if has_topics || rows > 0 { ports + 2 * GRID } else { ports + GRID },
+            width,
+            height,
             body,
             name: top + 18,
             class: top + 32,
@@ -81,6 +95,7 @@ impl Plan {
             chips,
             first: top + header + GRID,
             topics,
+            inside,
         }
     }
 

@@ -121,8 +121,8 @@ pub(super) const LEGEND: i32 = 4 * GRID;
 /// The least width of a picture: that of the legend.
 const LEAST_WIDTH: i32 = 640;
 
-/// Lays out a diagram in the shape that fills a screen best.
-pub(super) fn layout(diagram: &Diagram) -> Layout {
+/// Lays out a diagram in the shape that fills a screen best: as a whole picture with a legend, or to stand inside another one.
+pub(super) fn layout(diagram: &Diagram, is_whole: bool) -> Layout {
     let mut has_topics = vec![false; diagram.components.len()];
     for topic in &diagram.topics {
         for &end in topic.publishers.iter().chain(&topic.subscribers) {
@@ -140,13 +140,13 @@ pub(super) fn layout(diagram: &Diagram) -> Layout {
             .filter(|rows| *rows <= count)
             .collect(),
     };
-    let layouts = all.into_iter().map(|rows| in_rows(diagram, &plans, rows));
+    let layouts = all.into_iter().map(|rows| in_rows(diagram, &plans, rows, is_whole));
     let size = |layout: &Layout| (f64::from(layout.width) / WIDTH_TO_HEIGHT).max(f64::from(layout.height));
     layouts.min_by(|one, other| size(one).total_cmp(&size(other))).unwrap_or_default()
 }
 
 /// Lays out a diagram with at most so many components above each other.
-fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize) -> Layout {
+fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> Layout {
     let wires: Vec<(usize, usize)> = diagram
         .links
         .iter()
@@ -157,6 +157,7 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize) -> Layout {
             _ => None,
         })
         .collect();
+    let (around, legend, least) = if is_whole { (AROUND, LEGEND, LEAST_WIDTH) } else { (0, 0, 0) };
     let columns = layers::columns(plans.len(), &wires, rows);
     let mut items = Items::of(diagram, plans, &columns);
     order::order(&mut items);
@@ -171,7 +172,7 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize) -> Layout {
     let outside = |names: Vec<&str>| longest(names).map_or(0, |width| width + CHEVRON + 4);
     let left_labels = outside(diagram.services.iter().map(|port| &*port.name).collect());
     let right_labels = outside(diagram.references.iter().map(|port| &*port.name).collect());
-    let origin = Point { x: AROUND + left_labels, y: AROUND + (chips_height - GRID).max(0) + GRID + title };
+    let origin = Point { x: around + left_labels, y: around + (chips_height - GRID).max(0) + GRID + title };
 
     let bottom = items.height();
     let title_width = width(&diagram.name, NAME_SIZE + 2, true) + 4 * GRID;
@@ -184,8 +185,8 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize) -> Layout {
         height: title + bottom + 2 * GRID + rails::height(diagram.topics.len()),
     };
     let mut layout = Layout {
-        width: (frame.x + frame.width + right_labels + AROUND).max(LEAST_WIDTH),
-        height: frame.y + frame.height + AROUND + LEGEND,
+        width: (frame.x + frame.width + right_labels + around).max(least),
+        height: frame.y + frame.height + around + legend,
         frame,
         chips: chips
             .into_iter()

@@ -29,6 +29,7 @@ fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], p
             properties: names("p", *properties).map(|name| Setting { name, value: None }).collect(),
             services: ports("s", *services),
             references: ports("r", *references),
+            inside: None,
         };
     let ends = |port: fn(&(usize, usize, usize)) -> usize| -> Vec<End> {
         let of = |(component, parts)| (0..port(parts)).map(move |port| End::Component { component, port });
@@ -186,7 +187,7 @@ proptest! {
         promoted in 0..3_usize,
     ) {
         let diagram = diagram(&parts, &wires, &topics, promoted);
-        is_readable(&layout(&diagram), &diagram);
+        is_readable(&layout(&diagram, true), &diagram);
     }
 }
 
@@ -195,7 +196,7 @@ fn three_components_and_sixty_fill_a_screen() {
     for count in [3, 60] {
         let wires: Vec<(usize, usize)> = (0..count).map(|from| (from, 0)).collect();
         let diagram = diagram(&vec![(4, 1, 1); count], &wires[1..], &[(0, 1), (0, 2)], 1);
-        let layout = layout(&diagram);
+        let layout = layout(&diagram, true);
         is_readable(&layout, &diagram);
         let shape = f64::from(layout.width) / f64::from(layout.height);
         assert!((0.8..3.5).contains(&shape), "{count}: {} x {}", layout.width, layout.height);
@@ -206,6 +207,20 @@ fn three_components_and_sixty_fill_a_screen() {
 fn a_very_large_composite_has_a_picture() {
     let count = 2000;
     let wires: Vec<(usize, usize)> = (0..count).map(|from| (from, from / 3)).collect();
-    let layout = layout(&diagram(&vec![(2, 1, 1); count], &wires, &[(0, 1)], 0));
+    let layout = layout(&diagram(&vec![(2, 1, 1); count], &wires, &[(0, 1)], 0), true);
     assert_eq!(layout.components.len(), count);
+}
+
+#[test]
+fn what_is_inside_a_component_stands_inside_its_box() {
+    let inner = diagram(&vec![(2, 1, 1); 4], &[(0, 1), (1, 2)], &[(0, 1)], 1);
+    let mut outer = diagram(&vec![(1, 1, 1); 3], &[(0, 1)], &[(0, 1)], 1);
+    outer.components[1].inside = Some(Box::new(inner.clone()));
+    let layout = layout(&outer, true);
+    is_readable(&layout, &outer);
+    let plan = &layout.components[1].plan;
+    let (picture, at) = plan.inside.as_ref().unwrap();
+    is_readable(picture, &inner);
+    let body = Rect { x: 0, y: plan.port(0) + 6, width: plan.width, height: plan.height - plan.port(0) - 6 };
+    assert!(contains(body, Rect { x: at.x, y: at.y, width: picture.width, height: picture.height }));
 }
