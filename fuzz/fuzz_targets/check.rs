@@ -1,0 +1,11 @@
+//! Whatever composite is read is checked and drawn.
+
+#![no_main]
+
+use saoms_components as _;
+
+#[path = "../../tests/robustness/targets.rs"]
+#[allow(dead_code, reason = "each fuzzer runs one of them")]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::check(bytes));

@@ -1,0 +1,11 @@
+//! Bytes are read as a composite or refused, with diagnostics that point into them.
+
+#![no_main]
+
+use saoms_components as _;
+
+#[path = "../../tests/robustness/targets.rs"]
+#[allow(dead_code, reason = "each fuzzer runs one of them")]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::load(bytes));

@@ -1,0 +1,8 @@
+//! What is well-formed, and what it holds, is what another XML parser says.
+
+#![no_main]
+
+#[path = "../../saoms-core/tests/load/oracle.rs"]
+mod oracle;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| oracle::judge(&String::from_utf8_lossy(bytes)));

@@ -1,0 +1,107 @@
+//! Whatever a file holds, the program answers: no panic and no hang, for real composites with bytes changed, cut off, or
+//! put elsewhere.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
+mod targets;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use proptest::prelude::*;
+use proptest::sample::Index;
+use saoms_components as _;
+
+/// Of the larger collection, where it is there, every file of so many.
+const EVERY: usize = 12;
+
+/// The composites of this repository, and some of the larger collection beside it.
+static FILES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut paths = below(&root.join("composites"));
+    paths.extend(below(&root.join("saoms-core/tests")));
+    let collections = root.ancestors().map(|folder| folder.join("shared/corpus/files"));
+    for collection in collections.filter(|folder| folder.is_dir()).take(1) {
+        paths.extend(below(&collection).into_iter().step_by(EVERY));
+    }
+    paths.into_iter().map(|path| fs::read(path).unwrap()).collect()
+});
+
+fn below(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(below(&path));
+        } else if path.extension().is_some_and(|extension| extension == "composite") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn holds(bytes: &[u8]) {
+    targets::load(bytes);
+    targets::check(bytes);
+    targets::fmt(bytes);
+}
+
+#[test]
+fn every_file_as_it_is() {
+    assert!(FILES.len() > 80);
+    FILES.iter().for_each(|bytes| holds(bytes));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 120, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_bit_flipped(file in any::<Index>(), at in any::<Index>(), bit in 0..8_u32) {
+        let mut bytes = file.get(&FILES).clone();
+        if !bytes.is_empty() {
+            let at = at.index(bytes.len());
+            bytes[at] ^= 1 << bit;
+        }
+        holds(&bytes);
+    }
+
+    #[test]
+    fn a_file_cut_off(file in any::<Index>(), at in any::<Index>()) {
+        let bytes = file.get(&FILES);
+        holds(&bytes[..at.index(bytes.len() + 1)]);
+    }
+
+    #[test]
+    fn a_part_of_one_file_in_another(from in any::<Index>(), to in any::<Index>(), start in any::<Index>(), at in any::<Index>(), length in 1..200_usize) {
+        let (from, mut to) = (from.get(&FILES), to.get(&FILES).clone());
+        let start = start.index(from.len() + 1);
+        let part = &from[start..from.len().min(start + length)];
+        let at = at.index(to.len() + 1);
+        to.splice(at..at, part.iter().copied());
+        holds(&to);
+    }
+}
+
+/// What could take the square of its size, or the stack.
+#[test]
+fn large_and_deep_files() {
+    let composite = |content: &str| {
+        format!(
+            "<composite xmlns='http://www.osoa.org/xmlns/sca/1.0' name='c' targetNamespace='u'>{content}</composite>"
+        )
+    };
+    let component = "<component name='R'><implementation.java class='robot.Robot001'/><reference name='world' target='R'/></component>";
+    for text in [
+        "<a>".repeat(30_000),
+        composite(&"<component>".repeat(5_000)),
+        composite(&component.repeat(800)),
+        composite(&format!("<component name='{}'/>", "x".repeat(100_000))),
+        composite(&format!("<property name='p'>{}</property>", "<![CDATA[x]]>&lt;".repeat(5_000))),
+        composite(&format!("<service name='s' promote='{}'/>", "a/b ".repeat(5_000))),
+        composite(&"<!-- - -->\r\r\n".repeat(20_000)),
+    ] {
+        holds(text.as_bytes());
+    }
+}

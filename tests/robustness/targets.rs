@@ -1,0 +1,110 @@
+//! What has to hold for whatever bytes a file has. The tests beside this file and the fuzzers in `fuzz/` run the same functions.
+
+use std::sync::Arc;
+
+use saoms_core::check::{Options, check as check_fleet};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
+use saoms_core::format::format;
+use saoms_core::graph::{Diagram, dot, mermaid, svg};
+use saoms_core::load::{MAX_SIZE, load_file, read_from};
+use saoms_core::model::{Composite, Contribution};
+use saoms_core::registry::Registry;
+use saoms_core::source::{FileId, Location, Sources};
+use saoms_core::xml::{self, Document};
+
+/// Reads bytes as a composite. What is said of them points into them and can be shown.
+pub(crate) fn load(bytes: &[u8]) {
+    let loaded = Loaded::of(bytes);
+    let all = loaded.diagnostics.into_sorted();
+    let has_errors = all.iter().any(|one| one.severity == Severity::Error);
+    assert!(has_errors || loaded.composite.is_some(), "what is refused is refused for a reason");
+    show(&all, &loaded.sources);
+}
+
+/// Checks bytes as a fleet, with the classes that ship and with classes as given, and draws it.
+pub(crate) fn check(bytes: &[u8]) {
+    for assume_classes in [false, true] {
+        let Loaded { composite, sources, mut diagnostics } = Loaded::of(bytes);
+        let Some(composite) = composite else { return };
+        REGISTRY.with(|registry| {
+            let fleet = Contribution::of(vec![composite]);
+            if !assume_classes {
+                let diagram = Diagram::of(&fleet, registry);
+                let pictures = [svg(&diagram), dot(&diagram), mermaid(&diagram)];
+                assert!(xml::parse(FileId(0), &Arc::from(&*pictures[0])).fault.is_none(), "{}", pictures[0]);
+            }
+            let options = Options { assume_classes, ..Options::default() };
+            let assembly = check_fleet(&fleet, registry, &options, &sources, &mut diagnostics);
+            let all = diagnostics.into_sorted();
+            let has_errors = all.iter().any(|one| one.severity == Severity::Error);
+            assert!(!(has_errors && assembly.is_some()), "what is wrong does not run");
+            assert!(has_errors || assume_classes || assembly.is_some(), "what does not run is wrong");
+            show(&all, &sources);
+        });
+    }
+}
+
+/// Formats bytes: the result has the same elements, attributes and texts, and is its own format.
+pub(crate) fn fmt(bytes: &[u8]) {
+    let Some(document) = parsed(&String::from_utf8_lossy(bytes)) else { return };
+    for width in [120, 30] {
+        let once = format(&document, width);
+        let Some(again) = parsed(&once) else { panic!("{once:?} is not well-formed") };
+        assert_eq!(meaning(&again), meaning(&document), "{once:?}");
+        assert_eq!(format(&again, width), once);
+    }
+}
+
+thread_local! {
+    static REGISTRY: Registry = Registry::linked().unwrap();
+}
+
+struct Loaded {
+    composite: Option<Composite>,
+    sources: Sources,
+    diagnostics: Diagnostics,
+}
+
+impl Loaded {
+    fn of(bytes: &[u8]) -> Self {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let file = read_from(bytes, "x", MAX_SIZE, &mut sources, &mut diagnostics);
+        let composite = file.and_then(|file| load_file(file, &sources, &mut diagnostics));
+        Self { composite, sources, diagnostics }
+    }
+}
+
+fn parsed(text: &str) -> Option<Document> {
+    let parsed = xml::parse(FileId(0), &Arc::from(text));
+    parsed.document.filter(|_| parsed.fault.is_none())
+}
+
+/// Elements with their attributes and texts, white space between elements left out.
+fn meaning(document: &Document) -> Vec<String> {
+    let element = |element: xml::Element<'_>| {
+        let attributes = element.written_attributes();
+        let attributes: Vec<_> =
+            attributes.map(|one| (one.name().to_owned(), one.value().into_owned())).collect();
+        let text = element.has_text().then(|| element.text().into_owned());
+        format!("{} {attributes:?} {text:?}", element.name())
+    };
+    document.elements().map(element).collect()
+}
+
+/// Shows diagnostics in all formats; the first ones, when there are very many.
+fn show(all: &[Diagnostic], sources: &Sources) {
+    let is_inside = |at: Location| {
+        let text = sources.get(at.file).text();
+        text.get(at.span.start as usize..at.span.end as usize).is_some()
+    };
+    for one in all {
+        let labels = one.labels.iter().map(|label| label.location);
+        let edits = one.suggestions.iter().flat_map(|one| &one.edits).map(|edit| edit.location);
+        let places = [one.location].into_iter().chain(labels).chain(edits);
+        places.for_each(|place| assert!(is_inside(place), "{one:?}"));
+    }
+    let first = &all[..all.len().min(20)];
+    assert!(first.is_empty() || !human(first, sources, false).is_empty());
+    assert_eq!(json(first, sources)["diagnostics"].as_array().map(Vec::len), Some(first.len()));
+    assert_eq!(sarif(first, sources, "0")["runs"][0]["results"].as_array().map(Vec::len), Some(first.len()));
+}
