@@ -93,12 +93,12 @@ fn the_airport_delivers_everything_and_ends_by_itself() {
     ];
     let output = saoms(&arguments);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    assert!(stdout(&output).contains("4 of 4 pieces of luggage delivered, no collision, 0 stranded"));
+    assert!(stdout(&output).contains("14 of 14 pieces of luggage delivered, no collision, 0 stranded"));
     let first: Value = serde_json::from_slice(&fs::read(&report).unwrap()).unwrap();
     assert_eq!(first["seed"], 7);
     assert_eq!(
         first["luggage"],
-        serde_json::json!({"delivered": 4, "requested": 4, "open": 0, "ignored": 0})
+        serde_json::json!({"delivered": 14, "requested": 14, "open": 0, "ignored": 0})
     );
     assert_eq!(first["collisions"], serde_json::json!({"swap": 0, "vertex": 0}));
     assert_eq!(first["stranded"], 0);
@@ -115,9 +115,9 @@ fn the_airport_delivers_everything_and_ends_by_itself() {
 }
 
 #[test]
-fn the_airport_runs_in_real_time_too() {
+fn two_robots_deliver_in_real_time_too() {
     let output =
-        saoms(&["run", "composites/airport.composite", "--set", "period=20", "--quiet", "--report", "-"]);
+        saoms(&["run", "tests/fleets/pair.composite", "--set", "period=20", "--quiet", "--report", "-"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(report["luggage"]["delivered"], 4);

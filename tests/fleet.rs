@@ -1,4 +1,4 @@
-//! The airport fleet in virtual time: what every run of it has to keep, whatever the seed, the periods and the delays.
+//! Small fleets in virtual time: what every run of them has to keep, whatever the seed, the periods and the delays.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
 
@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 
 const HOUR: Duration = Duration::from_secs(3600);
 
-fn airport() -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("composites/airport.composite")).unwrap()
+fn pair() -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fleets/pair.composite")).unwrap()
 }
 
 /// The same composite with another text in place of one that it has.
@@ -40,36 +40,44 @@ fn assert_delivered(report: &RunReport, pieces: u32, context: &str) {
 }
 
 #[test]
-fn the_airport_delivers_everything_with_every_seed_period_and_delay() {
-    let airport = airport();
+fn two_robots_deliver_everything_with_every_seed_period_and_delay() {
+    let pair = pair();
     for seed in 0..50 {
         let (period, delay) = (20 + 7 * seed, 13 * seed);
-        let composite = with(&airport, r#"name="delay">50<"#, &format!(r#"name="delay">{delay}<"#));
+        let composite = with(&pair, r#"name="delay">50<"#, &format!(r#"name="delay">{delay}<"#));
         let report = Fleet::of_text(composite).set("period", &period.to_string()).run(seed, HOUR);
         assert_delivered(&report, 4, &format!("seed {seed}, period {period}, delay {delay}"));
     }
 }
 
-/// The text of the world in the airport.
-fn world(airport: &str) -> &str {
-    let start = airport.find(r#"<component name="World">"#).unwrap();
+#[test]
+fn the_airport_delivers_everything_with_every_seed() {
+    let airport = Path::new(env!("CARGO_MANIFEST_DIR")).join("composites/airport.composite");
+    for seed in 0..10 {
+        assert_delivered(&Fleet::of_file(&airport).run(seed, HOUR), 14, &format!("seed {seed}"));
+    }
+}
+
+/// The text of the world in the pair's composite.
+fn world(pair: &str) -> &str {
+    let start = pair.find(r#"<component name="World">"#).unwrap();
     let end = "</component>";
-    &airport[start..start + airport[start..].find(end).unwrap() + end.len()]
+    &pair[start..start + pair[start..].find(end).unwrap() + end.len()]
 }
 
 #[test]
-fn the_airport_runs_without_a_world_too() {
-    let airport = airport();
-    let composite = with(&airport, world(&airport), "");
+fn two_robots_run_without_a_world_too() {
+    let pair = pair();
+    let composite = with(&pair, world(&pair), "");
     let composite = with(&composite, r#"<reference name="world" target="World"/>"#, "");
     assert_delivered(&Fleet::of_text(composite).run(1, HOUR), 4, "without a world");
 }
 
 #[test]
 fn robots_may_come_before_their_world() {
-    let airport = airport();
-    let world = world(&airport);
-    let moved = with(&with(&airport, world, ""), "</composite>", &format!("{world}</composite>"));
+    let pair = pair();
+    let world = world(&pair);
+    let moved = with(&with(&pair, world, ""), "</composite>", &format!("{world}</composite>"));
     assert_delivered(&Fleet::of_text(moved).run(1, HOUR), 4, "the world comes last");
 }
 
@@ -77,7 +85,7 @@ fn robots_may_come_before_their_world() {
 fn moves_and_handling_may_take_several_periods() {
     let size = r#"<property name="width">11</property>"#;
     let times = r#"<property name="moveTime">250ms</property><property name="handlingTime">1s</property>"#;
-    let slow = with(&airport(), size, &format!("{size}{times}"));
+    let slow = with(&pair(), size, &format!("{size}{times}"));
     let slow = with(
         &slow,
         r#"<property name="period" source="$period"/>"#,
@@ -93,23 +101,23 @@ fn moves_and_handling_may_take_several_periods() {
 
 #[test]
 fn the_same_seed_gives_the_same_run() {
-    let run = |seed| Fleet::of_text(airport()).run(seed, HOUR);
+    let run = |seed| Fleet::of_text(pair()).run(seed, HOUR);
     assert_eq!(run(7).trace_hash, run(7).trace_hash);
     assert!(run(7).trace_hash.is_some());
 }
 
 /// The manual's rules and periods, for the scenario of its section 8.2.
-fn classic(airport: &str) -> String {
-    let robots = airport.matches(r#"<reference name="world""#).count();
+fn classic(pair: &str) -> String {
+    let robots = pair.matches(r#"<reference name="world""#).count();
     assert_eq!(robots, 2);
     let classic = r#"<property name="policy">classic</property><reference name="world""#;
-    with(airport, r#"<reference name="world""#, classic)
+    with(pair, r#"<reference name="world""#, classic)
 }
 
 #[test]
 fn the_classic_rules_deliver_and_collide_once_as_in_figure_8_19() {
     // Ten times as fast as the manual's robots, and so are its masters.
-    let mut composite = classic(&airport());
+    let mut composite = classic(&pair());
     for component in ["World", "MasterEnvironment", "MasterRobot", "Environment"] {
         let id = format!(r#"<property name="ID">{component}</property>"#);
         let old = format!("{id}\n    <property name=\"period\" source=\"$period\"/>");
@@ -129,7 +137,7 @@ fn the_classic_rules_deliver_and_collide_once_as_in_figure_8_19() {
 #[test]
 fn two_robots_cannot_start_on_one_block() {
     let same = with(
-        &airport(),
+        &pair(),
         r#"class="robot.Robot002"/>"#,
         r#"class="robot.Robot002"/><property name="chargeY">1</property>"#,
     );
@@ -139,9 +147,9 @@ fn two_robots_cannot_start_on_one_block() {
 
 #[test]
 fn a_wrong_scenario_is_found_before_anything_runs() {
-    let wrong = with(&airport(), "then 100ms luggage (1,5) to (10,5)", "then 100ms luggage (1,5) to");
+    let wrong = with(&pair(), "then 100ms luggage (1,5) to (10,5)", "then 100ms luggage (1,5) to");
     let found = Fleet::of_text(wrong).diagnostics();
-    let expected = "error S3014 42:34 component `Environment`: property `scenario`: found the end of the line, expected a block";
+    let expected = "error S3014 38:34 component `Environment`: property `scenario`: found the end of the line, expected a block";
     assert!(found.starts_with(expected), "{found}");
 }
 
