@@ -44,6 +44,8 @@ pub(super) fn check<'s>(
             let wires = references.flat_map(|(reference, providers)| {
                 providers.iter().map(|provider| (reference.name.as_str(), places[provider.member]))
             });
+            let own = declaration.publishes.iter();
+            let of_loops = resolved.loops.iter().flat_map(|one| &one.spec.class.declaration().publishes);
             ComponentView {
                 path: subject.name,
                 class: &declaration.name,
@@ -51,7 +53,7 @@ pub(super) fn check<'s>(
                 values: &resolved.values,
                 period: resolved.task.as_ref().map(|task| task.period),
                 has_broker: resolved.task.as_ref().is_some_and(|task| task.url.is_some()),
-                publishes: declaration.publishes.iter().map(|topic| topic.name.as_str()).collect(),
+                publishes: own.chain(of_loops).map(|topic| topic.name.as_str()).collect(),
                 loops: resolved.loops.iter().map(|one| one.spec.class.name()).collect(),
                 wires: wires.collect(),
             }
