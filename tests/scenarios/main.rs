@@ -12,3 +12,4 @@ mod scenario2;
 mod scenario3;
 mod situations;
 mod story;
+mod usecases;

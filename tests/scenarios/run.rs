@@ -81,6 +81,11 @@ impl Run {
         self.lines.iter().filter(of).map(|line| format!("{} {}", line.time, line.text)).collect()
     }
 
+    /// The whole log, as component and text.
+    pub(crate) fn whole_log(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.lines.iter().filter(|line| line.log).map(|line| (&*line.component, line.text.as_str()))
+    }
+
     /// The executions of a robot, in order.
     pub(crate) fn executions(&self, robot: &str) -> Vec<Execution<'_>> {
         let mut executions: Vec<Execution<'_>> = Vec::new();
