@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use saoms_api::{Chance, Class, Component, Context, Failure, Properties, Publisher};
 use saoms_components::environment::Environment;
-use saoms_components::master::MasterEnvironment;
-use saoms_components::messages::{FAULT, Fault, FaultKind};
+use saoms_components::master::{MasterEnvironment, MasterRobot};
+use saoms_components::messages::{FAULT, Fault};
 use saoms_components::robot::Robot;
 use saoms_components::world::World;
 
@@ -43,7 +43,7 @@ impl Component for Fate {
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let now = context.now().as_nanos() / 1_000_000;
         for (_, robot) in self.strokes.extract_if(.., |(time, _)| *time <= now) {
-            context.send(&self.faults, Fault { robot, kind: FaultKind::Breakdown })?;
+            context.send(&self.faults, Fault::breakdown(robot))?;
         }
         Ok(())
     }
@@ -61,6 +61,8 @@ struct Emergency<'a> {
     move_time: u64,
     handling_time: u64,
     seed: u64,
+    /// After how many periods a master sends robots to sleep again; 0 for no master.
+    counter: u32,
 }
 
 const TWO: &str = "at 500ms luggage (3,1) to (3,6); at 500ms luggage (6,4) to (1,4)";
@@ -76,6 +78,7 @@ impl Default for Emergency<'_> {
             move_time: 0,
             handling_time: 0,
             seed: 0,
+            counter: 0,
         }
     }
 }
@@ -95,6 +98,10 @@ impl Emergency<'_> {
             self.strokes.iter().map(|(time, robot)| format!("{time} {robot}")).collect();
         if !strokes.is_empty() {
             fleet.add::<Fate>("Fate", fast, zero, &[("strokes", &strokes.join(";"))], &[]);
+        }
+        if self.counter > 0 {
+            let (period, counter) = (Duration::from_millis(100), self.counter.to_string());
+            fleet.add::<MasterRobot>("MasterRobot", period, zero, &[("counter", &counter)], &[]);
         }
         for robot in 1..=self.robots {
             let late = self.lateness > 0.0;
@@ -168,4 +175,78 @@ fn the_healer_breaks_as_well() {
             Emergency { strokes, ..variant }.check();
         }
     }
+}
+
+#[test]
+fn two_robots_break_at_once() {
+    for variant in variants() {
+        let slow = 1 + variant.move_time / 60;
+        for moment in (6..50).step_by(2) {
+            let time = moment * 50 * slow;
+            let strokes = vec![(time, 1), (time, 3)];
+            let fleet = Emergency { robots: 4, strokes, ..variant }.check();
+            assert!(fleet.count("assistance") <= 2);
+        }
+    }
+}
+
+#[test]
+fn who_sleeps_is_awaked_when_all_others_break() {
+    for variant in variants() {
+        let slow = 1 + variant.move_time / 60;
+        for moment in (6..60).step_by(3) {
+            let time = moment * 50 * slow;
+            let strokes = vec![(time, 1), (time + moment % 5 * 60, 3)];
+            let fleet = Emergency { robots: 4, asleep: &[2, 4], strokes, ..variant }.check();
+            let awaked = fleet.log.iter().filter(|line| line.contains("Info: awakes")).count();
+            assert!(awaked <= 4 && (awaked > 0 || fleet.count("assistance") < 2), "{:#?}", fleet.log);
+        }
+    }
+}
+
+#[test]
+fn what_nobody_is_left_for_is_given_up() {
+    for variant in variants() {
+        let slow = 1 + variant.move_time / 60;
+        for moment in (6..50).step_by(2) {
+            let time = |robot: u64| (moment + robot * (moment % 4)) * 50 * slow;
+            let strokes = (1..=3).map(|robot| (time(robot.into()), robot)).collect();
+            let mut fleet = Emergency { strokes, ..variant }.fleet();
+            assert!(fleet.run(Duration::from_secs(60)), "not finished: {:#?}", fleet.log);
+            let (delivered, open) = (fleet.count("luggage.delivered"), fleet.count("luggage.open"));
+            assert_eq!(delivered + open, 2, "{:#?} {:?}", fleet.log, fleet.counts);
+            let given_up = fleet.log.iter().filter(|line| line.contains("gives up luggage")).count();
+            assert_eq!(given_up as i64, open, "{:#?}", fleet.log);
+            assert_eq!((fleet.count("collisions.vertex"), fleet.count("collisions.swap")), (0, 0));
+        }
+    }
+}
+
+#[test]
+fn a_broken_robot_is_in_nobodys_way() {
+    // Robots 1 and 2 break where the luggage is and where it has to go.
+    let scenario =
+        "at 100ms luggage (0,1) to (5,5); at 100ms luggage (6,6) to (0,2); at 100ms luggage (0,1) to (0,2)";
+    let strokes = vec![(50, 1), (50, 2)];
+    Emergency { scenario, strokes, ..Emergency::default() }.check();
+}
+
+#[test]
+fn a_landing_awakes_robots_that_sleep_again_afterwards() {
+    let scenario = "at 1s landing 4; at 2s luggage (3,1) to (3,6); at 2s luggage (6,4) to (1,4); at 20s luggage (5,5) to (6,6)";
+    let asleep = &[2, 3, 4];
+    let fleet = Emergency { scenario, robots: 4, asleep, counter: 50, ..Emergency::default() }.check();
+    let told = |what: &str| fleet.log.iter().filter(|line| line.ends_with(what)).count();
+    assert_eq!((told("Info: awakes"), told("Info: sleeps")), (2, 2), "{:#?}", fleet.log);
+}
+
+#[test]
+fn a_robot_that_charges_awakes_a_substitute_and_sleeps() {
+    let scenario = (0..12).map(|_| "at 1s luggage (5,1) to (5,6);").collect::<String>();
+    let emergency = Emergency { scenario: &scenario, asleep: &[2], robots: 2, ..Emergency::default() };
+    let fleet = emergency.check();
+    let found = |what: &str| fleet.log.iter().any(|line| line.ends_with(what));
+    assert!(found("Robot001: Info: awakes robot 2 in place of robot 1"), "{:#?}", fleet.log);
+    assert!(found("Robot002: Info: awakes") && found("Robot001: Info: sleeps"), "{:#?}", fleet.log);
+    assert_eq!(fleet.count("assistance"), 0);
 }
