@@ -64,6 +64,18 @@ impl Routes {
         }
     }
 
+    /// Learns that the robot has another charger, and where those of others are.
+    pub fn use_charger(&mut self, charge_block: Block, others: impl Iterator<Item = Block>) {
+        if let Some(area) = &mut self.area {
+            area.charge_block = charge_block;
+            area.chargers = Map::new(area.map.width(), area.map.height());
+            for charger in others.filter(|charger| *charger != charge_block) {
+                area.chargers.set_blocked(charger);
+            }
+            self.forget_searches();
+        }
+    }
+
     /// Learns that nobody gets past a robot any more.
     pub fn learn_obstacle(&mut self, robot: u32, block: Block) {
         if self.obstacles.contains(&(robot, block)) {

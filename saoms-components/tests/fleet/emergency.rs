@@ -63,6 +63,8 @@ struct Emergency<'a> {
     seed: u64,
     /// After how many periods a master sends robots to sleep again; 0 for no master.
     counter: u32,
+    blocked: &'a str,
+    discharge: &'a str,
 }
 
 const TWO: &str = "at 500ms luggage (3,1) to (3,6); at 500ms luggage (6,4) to (1,4)";
@@ -79,6 +81,8 @@ impl Default for Emergency<'_> {
             handling_time: 0,
             seed: 0,
             counter: 0,
+            blocked: "",
+            discharge: "0.5",
         }
     }
 }
@@ -90,8 +94,15 @@ impl Emergency<'_> {
         let mut chance = Chance::for_component(self.seed, "emergency");
         let millis = |time: u64| format!("{time}ms");
         let (moving, handling) = (millis(self.move_time), millis(self.handling_time));
-        let times = [("moveTime", &*moving), ("handlingTime", &*handling), ("width", "8"), ("height", "8")];
-        let world = fleet.add::<World>("World", fast, zero, &times, &[]);
+        let times = [
+            ("moveTime", &*moving),
+            ("handlingTime", &*handling),
+            ("width", "8"),
+            ("height", "8"),
+            ("blocked", self.blocked),
+        ];
+        let times = &times[..if self.blocked.is_empty() { 4 } else { 5 }];
+        let world = fleet.add::<World>("World", fast, zero, times, &[]);
         fleet.add::<MasterEnvironment>("MasterEnvironment", fast, zero, &[], &[]);
         fleet.add::<Environment>("Environment", fast, zero, &[("scenario", self.scenario)], &[]);
         let strokes: Vec<String> =
@@ -109,7 +120,7 @@ impl Emergency<'_> {
             let delay = Duration::from_millis(if late { chance.below(100) } else { 0 });
             let id = format!("Robot{robot:03}");
             let asleep = self.asleep.contains(&robot).to_string();
-            let properties = [("ID", &*id), ("asleep", &asleep), ("discharge", "0.5")];
+            let properties = [("ID", &*id), ("asleep", &asleep), ("discharge", self.discharge)];
             fleet.add::<Robot>(&id, period, delay, &properties, &[("world", world, "hardware")]);
         }
         fleet.initialize().unwrap();
@@ -249,4 +260,38 @@ fn a_robot_that_charges_awakes_a_substitute_and_sleeps() {
     assert!(found("Robot001: Info: awakes robot 2 in place of robot 1"), "{:#?}", fleet.log);
     assert!(found("Robot002: Info: awakes") && found("Robot001: Info: sleeps"), "{:#?}", fleet.log);
     assert_eq!(fleet.count("assistance"), 0);
+}
+
+#[test]
+fn a_robot_whose_charger_is_cut_off_uses_that_of_another_one() {
+    // Only the robots beside it lead to the charger of robot 2, and they break while it is away.
+    let scenario = "at 500ms luggage (2,2) to (6,6); then 5s luggage (7,7) to (6,0); then 5s luggage (7,2) to (1,7);\
+        then 5s luggage (7,7) to (6,0); then 5s luggage (7,2) to (1,7)";
+    let strokes = vec![(3000, 1), (3000, 3)];
+    let emergency =
+        Emergency { scenario, strokes, robots: 4, blocked: "(1,2)", discharge: "2", ..Emergency::default() };
+    let fleet = emergency.check();
+    let found = |what: &str| fleet.log.iter().any(|line| line.ends_with(what));
+    assert!(found("Robot002: Info: charges at (0,4) from now on"), "{:#?}", fleet.log);
+}
+
+#[test]
+fn luggage_that_is_cut_off_is_given_up() {
+    // The way to the corner leads past (7,6) and (6,7), where the robots that collect there break.
+    let scenario = "at 500ms luggage (7,6) to (6,0); at 500ms luggage (6,7) to (6,0); at 9s luggage (7,7) to (0,0);\
+        at 9s luggage (4,4) to (7,7); at 9s luggage (4,4) to (5,5)";
+    for asleep in [&[][..], &[4]] {
+        let mut fleet = Emergency { scenario, robots: 4, asleep, ..Emergency::default() };
+        let collected = |fleet: &Fleet, block: &str| {
+            let line = fleet.log.iter().find(|line| line.contains("collected") && line.ends_with(block))?;
+            let (time, rest) = line.split_once(" s Robot")?;
+            Some(((time.parse::<f64>().ok()? * 1000.0) as u64, rest[..3].parse().ok()?))
+        };
+        let before = fleet.check();
+        fleet.strokes = ["(7,6)", "(6,7)"].iter().filter_map(|block| collected(&before, block)).collect();
+        let mut fleet = fleet.fleet();
+        assert!(fleet.run(Duration::from_secs(100)), "not finished: {:#?}", fleet.log);
+        assert_eq!(fleet.count("luggage.delivered") + fleet.count("luggage.open"), 5, "{:#?}", fleet.log);
+        assert!(fleet.count("luggage.open") > 0, "{:#?}", fleet.log);
+    }
 }

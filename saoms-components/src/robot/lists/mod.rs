@@ -6,6 +6,7 @@ mod requests;
 #[cfg(test)]
 mod tests;
 
+use crate::grid::Block;
 use crate::messages::RobotList;
 
 pub use helps::{Help, Helps};
@@ -24,6 +25,8 @@ pub struct Lists {
     pub helps: Helps,
     /// Where the other robots are and go.
     pub peers: Peers,
+    /// The chargers of the other robots, also of those that are not active any more.
+    pub chargers: Vec<(u32, Block)>,
     /// Robots that cannot move any more, until it is known where they are.
     pub lost: Vec<u32>,
 }
@@ -37,6 +40,7 @@ impl Lists {
             requests: Requests::new(number),
             helps: Helps::new(number),
             peers: Peers::new(number),
+            chargers: Vec::new(),
             lost: Vec::new(),
         }
     }
@@ -66,6 +70,10 @@ impl Lists {
         self.helps.hear_robot(robot);
         if robot.robot == self.number {
             return;
+        }
+        match self.chargers.iter_mut().find(|(known, _)| *known == robot.robot) {
+            Some((_, charger)) => *charger = robot.charger,
+            None => self.chargers.push((robot.robot, robot.charger)),
         }
         match (self.active.binary_search_by_key(&robot.robot, |known| known.robot), robot.active) {
             (Ok(place), true) => self.active[place].clone_from(robot),

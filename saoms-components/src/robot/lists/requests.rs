@@ -28,6 +28,8 @@ pub struct Request {
     pub rivals: Vec<Rival>,
     /// How many executions the battery has to last before this robot thinks about it again; 0 while it did not.
     pub needs: u32,
+    /// Whether this robot found out, while it sleeps, that the luggage is not out of its reach.
+    pub judged: bool,
 }
 
 impl fmt::Display for Request {
@@ -105,6 +107,7 @@ impl Requests {
                 cause: header.cause,
                 rivals: Vec::new(),
                 needs: 0,
+                judged: false,
             });
         }
     }

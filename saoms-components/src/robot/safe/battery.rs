@@ -1,5 +1,6 @@
 use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
 
+use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{RobotKnowledge, Trouble};
 
 /// Uses the battery, and turns back to the charger in time.
@@ -10,11 +11,13 @@ use crate::robot::{RobotKnowledge, Trouble};
 #[looping(
     name = "saoms.BatteryMS",
     knowledge = RobotKnowledge,
-    senses("block", "next", "chargeBlock", "job"),
-    effects("battery", "inCharge")
+    senses("block", "next", "job"),
+    effects("battery", "inCharge", "chargeBlock")
 )]
 pub struct BatteryMS {
     charging: bool,
+    /// How often other ways had become necessary when it looked at the way to its charger.
+    changes: u32,
 }
 
 /// What the battery allows now.
@@ -31,6 +34,13 @@ pub enum BatterySymptom {
     },
     /// It is empty, with no charger there.
     Empty,
+    /// No way leads to the charger any more, and another one can be reached.
+    CutOff {
+        /// The charger.
+        charger: Block,
+        /// The other one.
+        other: Block,
+    },
     /// At the charger it holds enough for what the robot has to do.
     Charged {
         /// What is in it, in percent.
@@ -47,6 +57,8 @@ pub enum BatteryDecision {
     Stop,
     /// Leave the charger.
     Leave,
+    /// Charge at another charger from now on.
+    Use(Block),
 }
 
 impl Recordable for BatterySymptom {
@@ -59,6 +71,13 @@ impl Recordable for BatterySymptom {
                 home
             ),
             BatterySymptom::Empty => record!("has an empty battery"),
+            BatterySymptom::CutOff { charger, other } => {
+                record!(
+                    "no way leads to its charger at {charger} any more, but one to {other}",
+                    charger,
+                    other
+                )
+            }
             BatterySymptom::Charged { battery } => record!("has charged up to {battery} %", battery),
         }
     }
@@ -66,10 +85,11 @@ impl Recordable for BatterySymptom {
 
 impl Recordable for BatteryDecision {
     fn record(&self) -> Record {
-        match self {
+        match *self {
             BatteryDecision::Charge => record!("goes to its charger"),
             BatteryDecision::Stop => record!("stays where it is"),
             BatteryDecision::Leave => record!("has enough for what it has to do"),
+            BatteryDecision::Use(other) => record!("charges at {other} from now on", other),
         }
     }
 }
@@ -100,6 +120,13 @@ impl Loop for BatteryMS {
             return Ok(None);
         }
         knowledge.energy.pace().note_action(knowledge.polled);
+        let changes = knowledge.routes.changes();
+        if std::mem::replace(&mut self.changes, changes) != changes
+            && let Some(other) = knowledge.other_charger()
+        {
+            let charger = knowledge.charge_block;
+            return Ok(Some(BatterySymptom::CutOff { charger, other }));
+        }
         let battery = knowledge.battery.percent();
         let must_charge = knowledge.energy.must_charge();
         Ok(if knowledge.is_at_charger() {
@@ -124,6 +151,7 @@ impl Loop for BatteryMS {
             BatterySymptom::Low { .. } => BatteryDecision::Charge,
             BatterySymptom::Empty => BatteryDecision::Stop,
             BatterySymptom::Charged { .. } => BatteryDecision::Leave,
+            BatterySymptom::CutOff { other, .. } => BatteryDecision::Use(other),
         }))
     }
 
@@ -147,8 +175,33 @@ impl Loop for BatteryMS {
                 context.log(Level::Error, format_args!("is stranded at {block}: its battery is empty"));
             }
             BatteryDecision::Leave => knowledge.energy.may_go(),
+            BatteryDecision::Use(other) => {
+                knowledge.charge_block = other;
+                let others = knowledge.lists.chargers.iter().map(|(_, charger)| *charger);
+                knowledge.routes.use_charger(other, others);
+                context.info(format_args!("charges at {other} from now on"));
+            }
         }
         Ok(())
+    }
+}
+
+impl RobotKnowledge {
+    /// Another charger, where no way leads to the own one any more: the closest of those that nobody uses any more, else the closest at all, where
+    /// robots charge one after the other.
+    fn other_charger(&mut self) -> Option<Block> {
+        if self.routes.between(self.next, self.charge_block) != UNREACHABLE
+            && !self.routes.is_obstacle(self.charge_block)
+        {
+            return None;
+        }
+        let RobotKnowledge { lists, routes, next, .. } = self;
+        let chargers = lists.chargers.iter().filter(|(_, charger)| !routes.is_obstacle(*charger));
+        let chargers: Vec<(bool, Block)> =
+            chargers.map(|(robot, charger)| (lists.is_active(*robot), *charger)).collect();
+        let ways =
+            chargers.into_iter().map(|(used, charger)| (used, routes.between(*next, charger), charger));
+        ways.filter(|(_, way, _)| *way != UNREACHABLE).min().map(|(_, _, charger)| charger)
     }
 }
 

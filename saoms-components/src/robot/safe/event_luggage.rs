@@ -2,7 +2,7 @@ use saoms_api::{
     Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
 };
 
-use crate::grid::Block;
+use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
 
@@ -30,6 +30,8 @@ pub struct EventLuggageMS {
     said_at: Block,
     /// Whether it warned that some luggage is out of its reach.
     warned: bool,
+    /// How often other ways had become necessary when it looked at its way.
+    changes: u32,
     luggage: Publisher<EventLuggage>,
     luggage_heard: Subscription<EventLuggage>,
 }
@@ -57,6 +59,15 @@ pub enum EventLuggageSymptom {
     },
     /// Another robot took what this one was interested in.
     Gone,
+    /// No way leads any more to where this robot has to go.
+    CutOff {
+        /// What it brings.
+        job: Job,
+        /// Where it has to go.
+        to: Block,
+        /// Whether it carries it.
+        carries: bool,
+    },
 }
 
 /// What to do about it.
@@ -84,6 +95,10 @@ pub enum EventLuggageDecision {
     Release(Job),
     /// Look for other luggage.
     Forget,
+    /// Leave what it did not collect yet to others.
+    Return(Job),
+    /// Give up what it carries.
+    GiveUp(Job),
 }
 
 impl Recordable for EventLuggageSymptom {
@@ -102,6 +117,13 @@ impl Recordable for EventLuggageSymptom {
                 record!("has to charge, and said that it would bring luggage {luggage}", luggage)
             }
             EventLuggageSymptom::Gone => record!("another robot takes the luggage"),
+            EventLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
+                record!(
+                    "no way leads to {to} any more, where it has to go for luggage {luggage}",
+                    to,
+                    luggage
+                )
+            }
         }
     }
 }
@@ -125,6 +147,12 @@ impl Recordable for EventLuggageDecision {
                 record!("leaves luggage {luggage} to others", luggage)
             }
             EventLuggageDecision::Forget => record!("looks for other luggage"),
+            EventLuggageDecision::Return(Job { luggage, .. }) => {
+                record!("leaves luggage {luggage} to others", luggage)
+            }
+            EventLuggageDecision::GiveUp(Job { luggage, .. }) => {
+                record!("gives luggage {luggage} up", luggage)
+            }
         }
     }
 }
@@ -159,6 +187,9 @@ impl Loop for EventLuggageMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<EventLuggageSymptom>, Failure> {
+        if let Some(symptom) = self.look_at_way(knowledge) {
+            return Ok(Some(symptom));
+        }
         let variables = &knowledge.variables;
         if variables.busy || variables.critical || knowledge.hooks.running().is_some() {
             return Ok(None);
@@ -166,7 +197,10 @@ impl Loop for EventLuggageMS {
         if knowledge.variables.transporter {
             return Ok(self.look_at_claimed(knowledge));
         }
-        if knowledge.energy.must_charge() || knowledge.variables.asleep || knowledge.relieved {
+        if knowledge.variables.asleep {
+            return Ok(judge(knowledge));
+        }
+        if knowledge.energy.must_charge() || knowledge.relieved {
             return Ok(None);
         }
         if knowledge.offers_help {
@@ -193,6 +227,8 @@ impl Loop for EventLuggageMS {
             EventLuggageSymptom::Alone(job) => EventLuggageDecision::Take(job),
             EventLuggageSymptom::Beaten { job, .. } => EventLuggageDecision::Release(job),
             EventLuggageSymptom::Gone => EventLuggageDecision::Forget,
+            EventLuggageSymptom::CutOff { job, carries: false, .. } => EventLuggageDecision::Return(job),
+            EventLuggageSymptom::CutOff { job, carries: true, .. } => EventLuggageDecision::GiveUp(job),
         }))
     }
 
@@ -237,6 +273,25 @@ impl Loop for EventLuggageMS {
                 knowledge.variables.transporter = false;
                 return Ok(());
             }
+            EventLuggageDecision::Return(job) => {
+                knowledge.drop_job();
+                knowledge.untold = Some((job, LuggageStage::Refused));
+                return knowledge.tell(self.luggage, context);
+            }
+            EventLuggageDecision::GiveUp(job) => {
+                knowledge.drop_job();
+                // With that on board it is of no use, until somebody helps.
+                knowledge.relieved = true;
+                context.count("assistance", 1);
+                let Job { luggage, to, .. } = job;
+                context.log(
+                    Level::Error,
+                    format_args!(
+                        "cannot bring luggage {luggage} any more: no way leads to {to}; needs assistance"
+                    ),
+                );
+                (job, LuggageStage::GivenUp)
+            }
         };
         let (job, stage) = stage;
         context.send(&self.luggage, job.response(knowledge.number, knowledge.block, stage))
@@ -244,6 +299,18 @@ impl Loop for EventLuggageMS {
 }
 
 impl EventLuggageMS {
+    /// Whether a way still leads to where the robot has to go, when something changed about the ways.
+    fn look_at_way(&mut self, knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
+        let changes = knowledge.routes.changes();
+        if std::mem::replace(&mut self.changes, changes) == changes {
+            return None;
+        }
+        let (job, to) = (knowledge.job?, knowledge.destination()?);
+        let reached = knowledge.routes.between(knowledge.next, to) != UNREACHABLE;
+        let carries = knowledge.variables.has_luggage;
+        (!reached).then_some(EventLuggageSymptom::CutOff { job, to, carries })
+    }
+
     /// How what this robot is interested in stands; `None` while it waits for others to take their interest back.
     fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<EventLuggageSymptom> {
         let Some(request) = knowledge.lists.requests.claimed() else {
@@ -271,6 +338,17 @@ impl EventLuggageMS {
             ),
         );
     }
+}
+
+/// Whether the next request that a sleeping robot did not think about yet is out of its reach: others may have to know that nobody can.
+fn judge(knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
+    let requests = knowledge.lists.requests.open_mut();
+    let place = requests.iter().position(|request| !request.judged)?;
+    requests[place].judged = true;
+    let job = requests[place].job;
+    let distance = knowledge.block.distance(job.from);
+    let never = knowledge.means(&job) == Means::Never;
+    never.then_some(EventLuggageSymptom::Waiting { place, job, distance })
 }
 
 /// The request that suits this robot best, and what caused it.
