@@ -1,7 +1,5 @@
 //! What reaches the fleet from outside: scenarios in files, events that anybody publishes, breakdowns.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
-
 use std::fs;
 use std::time::Duration;
 
