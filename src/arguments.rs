@@ -74,6 +74,8 @@ pub(crate) enum Command {
     /// Tell why a robot did what it did, from the report or the journal of a run
     #[command(after_help = WHY_EXIT_CODES)]
     Why(WhyArguments),
+    /// Make a plugin or a composite that works, to start from
+    New(NewArguments),
     /// List the component classes, or describe one: properties, topics, services, references
     Components(ComponentsArguments),
 }
@@ -297,4 +299,39 @@ fn parse_size(text: &str) -> Result<u64, String> {
     let size =
         digits.trim().parse::<u64>().ok().zip(scale).and_then(|(number, scale)| number.checked_mul(scale));
     size.ok_or_else(|| "expected a number of bytes, or a number with one of the units kB, MB, GB".to_owned())
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewArguments {
+    #[command(subcommand)]
+    pub(crate) what: NewWhat,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum NewWhat {
+    /// Make the crate of a plugin: its code, its tests, and a composite that uses it
+    Plugin {
+        /// The folder to make; its name becomes that of the package
+        path: PathBuf,
+
+        /// What the plugin brings: a component, the hardware of a robot, or a loop of robots
+        #[arg(long, value_enum, default_value_t = PluginKind::Component)]
+        kind: PluginKind,
+
+        /// Where saoms-api comes from: a folder with a checkout, a git URL, or a version; by default the checkout that made this program
+        #[arg(long, value_name = "SOURCE")]
+        api: Option<String>,
+    },
+    /// Make a composite with one robot
+    Composite {
+        /// The file to make
+        path: PathBuf,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PluginKind {
+    Component,
+    Robot,
+    Loop,
 }

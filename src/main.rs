@@ -12,6 +12,7 @@ mod expand;
 mod fleet;
 mod fmt;
 mod graph;
+mod new;
 mod output;
 mod paths;
 mod plugins;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::Fmt(arguments) => fmt::fmt(&arguments),
         Command::Graph(arguments) => graph::graph(&arguments),
         Command::Why(arguments) => why::why(&arguments),
+        Command::New(arguments) => new::new(&arguments),
         Command::Components(arguments) => components::components(&arguments),
     };
     ExitCode::from(exit as u8)

@@ -38,6 +38,9 @@ pub struct RobotKnowledge {
     /// What is left in its battery.
     #[entry(name = "battery", unit = "%")]
     pub(super) charge: f64,
+    /// It goes under charge after its job when so much or less is left, also where it would last longer. No loop that ships changes it.
+    #[entry(effector, unit = "%")]
+    pub charge_at: f64,
     /// What it brings, or would.
     #[entry]
     pub job: Option<Job>,
@@ -90,6 +93,7 @@ impl RobotKnowledge {
             charge_block,
             charge: battery.percent(),
             battery,
+            charge_at: 0.0,
             job: None,
             variables: Variables::default(),
             shut_down: false,

@@ -3,14 +3,14 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
 use crate::robot::RobotKnowledge;
 
 /// The battery level at which a robot has to charge, in percent.
-const LOW: u32 = 35;
+const LOW: f64 = 35.0;
 
 /// Uses the battery, and goes under charge when it is low.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.BatteryMS",
     knowledge = RobotKnowledge,
-    senses("block", "chargeBlock"),
+    senses("block", "chargeBlock", "chargeAt"),
     effects("battery", "inCharge", "busy", "asleep", "readyToGoUnderCharge")
 )]
 pub struct BatteryMS;
@@ -78,7 +78,8 @@ impl Loop for BatteryMS {
     ) -> Result<Option<BatterySymptom>, Failure> {
         let (variables, battery) = (&knowledge.variables, &knowledge.battery);
         if !variables.in_charge {
-            let low = battery.is_at_most(LOW) && knowledge.block != knowledge.charge_block;
+            let low = battery.percent() <= LOW.max(knowledge.charge_at)
+                && knowledge.block != knowledge.charge_block;
             let news = low && !variables.ready_to_go_under_charge && !variables.healer;
             return Ok(news.then(|| BatterySymptom::Low(battery.percent())));
         }

@@ -11,7 +11,7 @@ use crate::robot::{RobotKnowledge, Trouble};
 #[looping(
     name = "saoms.BatteryMS",
     knowledge = RobotKnowledge,
-    senses("block", "next", "job"),
+    senses("block", "next", "job", "chargeAt"),
     effects("battery", "inCharge", "chargeBlock")
 )]
 pub struct BatteryMS {

@@ -75,6 +75,9 @@ impl RobotKnowledge {
 
     /// Whether the robot need not turn to its charger yet: enough is left to do so later, or to finish its job before.
     pub(super) fn goes_on(&mut self) -> bool {
+        if !self.variables.busy && self.battery.percent() <= self.charge_at {
+            return false;
+        }
         let left = self.battery.executions_left();
         let reserve = self.energy.reserve;
         if left >= self.home(self.next).saturating_add(reserve) {

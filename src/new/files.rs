@@ -1,0 +1,158 @@
+//! The files that `saoms new` makes.
+
+use std::path::{Path, PathBuf};
+
+use crate::arguments::PluginKind;
+
+/// What a plugin is called in the places where names differ.
+pub(super) struct Names {
+    /// `my-robot`, the package.
+    pub(super) package: String,
+    /// `my_robot`, the library and the first part of the names of its classes.
+    library: String,
+    /// `MyRobot`, the type.
+    class: String,
+}
+
+impl Names {
+    pub(super) fn of(package: &str) -> Result<Names, String> {
+        let starts = package.starts_with(|first: char| first.is_ascii_lowercase());
+        let fits = package
+            .chars()
+            .all(|sign| sign.is_ascii_lowercase() || sign.is_ascii_digit() || "-_".contains(sign));
+        let class: String = package
+            .split(['-', '_'])
+            .filter_map(|word| {
+                let mut signs = word.chars();
+                Some(signs.next()?.to_ascii_uppercase().to_string() + signs.as_str())
+            })
+            .collect();
+        // `loop`, `type` and the like can be no library: they are words of Rust, and cannot be named.
+        const WORDS: &[&str] = &[
+            "as", "box", "crate", "do", "dyn", "else", "enum", "fn", "for", "if", "impl", "in", "let",
+            "loop", "match", "mod", "move", "mut", "pub", "ref", "self", "static", "struct", "super", "test",
+            "trait", "type", "use", "where", "while", "async", "await", "break", "const", "continue", "core",
+            "std", "alloc", "extern", "false", "true", "return", "unsafe", "abstract", "become", "final",
+            "macro", "override", "priv", "try", "typeof", "unsized", "virtual", "yield", "gen",
+        ];
+        if !starts || !fits || WORDS.contains(&package) {
+            return Err(format!(
+                "found the name `{package}`, expected one for a Rust package: a small letter, then small letters, digits and `-`, such as `my-robot`"
+            ));
+        }
+        Ok(Names { package: package.to_owned(), library: package.replace('-', "_"), class })
+    }
+}
+
+/// Where the crates of SAOMS come from, as the end of a dependency: `path = "..."` and the like.
+pub(super) enum Source {
+    /// The checkout that this program was built in.
+    Checkout(PathBuf),
+    /// A git repository.
+    Git(String),
+    /// A version from the registry.
+    Version(String),
+}
+
+pub(super) fn source(api: Option<&str>) -> Result<Source, String> {
+    match api {
+        None => {
+            let checkout = Path::new(env!("CARGO_MANIFEST_DIR"));
+            if checkout.join("saoms-api/Cargo.toml").exists() {
+                return Ok(Source::Checkout(checkout.to_owned()));
+            }
+            Err(format!(
+                "the sources of this program are no longer in `{}`: say where saoms-api comes from, `--api GIT-URL`, `--api FOLDER` or `--api {}`",
+                checkout.display(),
+                env!("CARGO_PKG_VERSION")
+            ))
+        }
+        Some(url) if url.contains("://") || url.ends_with(".git") => Ok(Source::Git(url.to_owned())),
+        Some(version) if version.starts_with(|first: char| first.is_ascii_digit()) => {
+            Ok(Source::Version(version.to_owned()))
+        }
+        Some(folder) => match Path::new(folder).canonicalize() {
+            Ok(folder) if folder.join("saoms-api/Cargo.toml").exists() => Ok(Source::Checkout(folder)),
+            _ => Err(format!(
+                "found `--api {folder}`, expected a folder with `saoms-api` in it, the URL of a git repository, or a version"
+            )),
+        },
+    }
+}
+
+impl Source {
+    fn dependency(&self, package: &str) -> String {
+        match self {
+            Source::Checkout(folder) => format!("{package} = {{ path = {:?} }}", folder.join(package)),
+            Source::Git(url) => format!("{package} = {{ git = {url:?} }}"),
+            Source::Version(version) => format!("{package} = {version:?}"),
+        }
+    }
+}
+
+/// The files of a plugin, by their places in its folder.
+pub(super) fn plugin(names: &Names, kind: PluginKind, source: &Source) -> Vec<(PathBuf, String)> {
+    let (library, fleet, composite, about, components) = match kind {
+        PluginKind::Component => (
+            include_str!("templates/component/lib.rs"),
+            include_str!("templates/component/fleet.rs"),
+            include_str!("templates/component/fleet.composite"),
+            "counts, and says on a topic of its own how far it is",
+            false,
+        ),
+        PluginKind::Robot => (
+            include_str!("templates/robot/lib.rs"),
+            include_str!("templates/robot/fleet.rs"),
+            include_str!("templates/robot/fleet.composite"),
+            "drives a robot: its wheels and its arm",
+            true,
+        ),
+        PluginKind::Loop => (
+            include_str!("templates/loop/lib.rs"),
+            include_str!("templates/loop/fleet.rs"),
+            include_str!("templates/loop/fleet.composite"),
+            "lets a robot watch its battery",
+            true,
+        ),
+    };
+    let fill = |text: &str| {
+        text.replace("my-plugin", &names.package)
+            .replace("my_plugin", &names.library)
+            .replace("MyPlugin", &names.class)
+            .replace("ABOUT", about)
+    };
+    let mut dependencies = source.dependency("saoms-api");
+    if components {
+        dependencies = format!("{dependencies}\n{}", source.dependency("saoms-components"));
+    }
+    let cargo = fill(include_str!("templates/Cargo.toml"))
+        .replace("# DEPENDENCIES", &dependencies)
+        .replace("# TESTKIT", &source.dependency("saoms-testkit"));
+    vec![
+        ("Cargo.toml".into(), cargo),
+        ("README.md".into(), fill(include_str!("templates/README.md"))),
+        (".gitignore".into(), "/target\n".to_owned()),
+        ("src/lib.rs".into(), fill(library)),
+        ("tests/fleet.rs".into(), fill(fleet)),
+        ("fleet.composite".into(), fill(composite)),
+    ]
+}
+
+/// A composite that runs.
+pub(super) fn composite(name: &str) -> String {
+    include_str!("templates/new.composite").replace("my-fleet", name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_follow_from_the_package() {
+        let names = Names::of("my-robot2").unwrap();
+        assert_eq!((names.library.as_str(), names.class.as_str()), ("my_robot2", "MyRobot2"));
+        for wrong in ["", "MyRobot", "2robots", "loop", "mein-röbot", "a/b", "-a"] {
+            assert!(Names::of(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! `saoms new`: a plugin crate or a composite that works, to start from.
+
+mod files;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::Exit;
+use crate::arguments::{NewArguments, NewWhat, PluginKind};
+use crate::output::{eprint, print};
+
+use files::Names;
+
+/// Makes what was asked for. Nothing that is there is touched.
+pub(crate) fn new(arguments: &NewArguments) -> Exit {
+    let made = match &arguments.what {
+        NewWhat::Plugin { path, kind, api } => plugin(path, *kind, api.as_deref()),
+        NewWhat::Composite { path } => composite(path),
+    };
+    match made {
+        Ok(next) => {
+            print(&next);
+            Exit::Done
+        }
+        Err(problem) => {
+            eprint(&format!("error: {problem}\n"));
+            Exit::WrongInput
+        }
+    }
+}
+
+fn plugin(path: &Path, kind: PluginKind, api: Option<&str>) -> Result<String, String> {
+    let names = Names::of(&file_name(path)?)?;
+    let source = files::source(api)?;
+    write_all(path, files::plugin(&names, kind, &source))?;
+    let path = path.display();
+    Ok(format!(
+        "Made the plugin `{}` in {path}. Next:\n\n  cd {path}\n  cargo test\n  cargo build\n  saoms run fleet.composite --virtual --for 10s --plugin target/debug\n",
+        names.package
+    ))
+}
+
+fn composite(path: &Path) -> Result<String, String> {
+    let path = if path.extension().is_some() { path.to_owned() } else { path.with_extension("composite") };
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    if !is_ncname(&stem) {
+        return Err(format!(
+            "found the name `{stem}`, expected a letter and then letters, digits, `-`, `_` or `.`: it becomes the name of the composite"
+        ));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().map(PathBuf::from).unwrap_or_default();
+    write_all(folder, vec![(name, files::composite(&stem))])?;
+    let path = path.display();
+    Ok(format!("Made {path}. Next:\n\n  saoms check {path}\n  saoms run {path} --virtual\n"))
+}
+
+fn file_name(path: &Path) -> Result<String, String> {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    name.ok_or_else(|| format!("found `{}`, expected the folder to make, such as `my-robot`", path.display()))
+}
+
+fn is_ncname(text: &str) -> bool {
+    let mut signs = text.chars();
+    signs.next().is_some_and(|first| first.is_alphabetic() || first == '_')
+        && signs.all(|sign| sign.is_alphanumeric() || matches!(sign, '-' | '_' | '.'))
+}
+
+/// Writes files below a folder, if none of them is there.
+fn write_all(folder: &Path, files: Vec<(PathBuf, String)>) -> Result<(), String> {
+    for (name, _) in &files {
+        let path = folder.join(name);
+        if path.exists() {
+            return Err(format!("`{}` is there already: nothing was made", path.display()));
+        }
+    }
+    for (name, text) in files {
+        let path = folder.join(name);
+        let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&path, text));
+        written.map_err(|error| format!("`{}` cannot be written: {error}", path.display()))?;
+    }
+    Ok(())
+}

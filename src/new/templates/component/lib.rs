@@ -1,0 +1,74 @@
+//! A component that counts, and says on a topic of its own how far it is.
+
+use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
+
+/// How far somebody has counted.
+#[derive(Clone, Debug, Default, PartialEq, Message)]
+pub struct Count {
+    /// The number.
+    pub number: u32,
+}
+
+/// The newest number.
+pub const COUNT: Topic<Count> = Topic::state("COUNT");
+
+/// What a composite can set.
+#[derive(Debug, Properties)]
+pub struct MyPluginProperties {
+    /// By how much it counts on in each period.
+    #[property(default = 1, range = 1..=100)]
+    step: u32,
+}
+
+/// Counts.
+#[derive(Debug, Class)]
+#[class(name = "my_plugin.MyPlugin", periodic, publishes(COUNT))]
+pub struct MyPlugin {
+    properties: MyPluginProperties,
+    number: u32,
+    count: Publisher<Count>,
+}
+
+impl Component for MyPlugin {
+    type Properties = MyPluginProperties;
+
+    fn new(properties: MyPluginProperties) -> Result<Self, Failure> {
+        Ok(MyPlugin { properties, number: 0, count: Publisher::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.count = context.publish(&COUNT)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.number = self.number.wrapping_add(self.properties.step);
+        context.info(format_args!("counts to {}", self.number));
+        context.send(&self.count, Count { number: self.number })
+    }
+}
+
+saoms_api::plugin! {
+    classes: [MyPlugin],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use saoms_testkit::Bench;
+
+    #[test]
+    fn it_counts_in_steps() -> Result<(), Failure> {
+        let mut counter = Bench::of::<MyPlugin>(&[("step", "5")])?;
+        counter.start()?;
+        counter.execute()?;
+        counter.execute()?;
+        assert_eq!(counter.sent(&COUNT), [Count { number: 10 }]);
+        Ok(())
+    }
+
+    #[test]
+    fn it_keeps_what_every_component_keeps() {
+        saoms_testkit::comply::<MyPlugin>(&[]);
+    }
+}

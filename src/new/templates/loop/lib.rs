@@ -1,0 +1,71 @@
+//! A loop of the plugin: lets a robot go under charge early.
+
+use saoms_api::{
+    Context, Effector, Entry, Failure, Knowledge, Loop, LoopClass, Properties, Record, record,
+};
+
+/// What a composite can set.
+#[derive(Debug, Properties)]
+pub struct MyPluginProperties {
+    /// The robot goes under charge when so much is left.
+    #[property(default = 60.0, range = 0.0..=100.0, unit = "%")]
+    threshold: f64,
+}
+
+/// Lets a robot go under charge earlier than it would.
+#[derive(Debug, LoopClass)]
+#[looping(name = "my_plugin.MyPlugin", senses("battery"), effects("chargeAt"))]
+pub struct MyPlugin {
+    properties: MyPluginProperties,
+    battery: Entry<f64>,
+    charge_at: Effector<f64>,
+}
+
+impl Loop for MyPlugin {
+    type Properties = MyPluginProperties;
+    type Knowledge = dyn Knowledge;
+    type Symptom = Record;
+    type Decision = Record;
+
+    fn new(properties: MyPluginProperties) -> Result<Self, Failure> {
+        Ok(MyPlugin { properties, battery: Entry::default(), charge_at: Effector::default() })
+    }
+
+    fn initialize(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+        self.battery = knowledge.entry("battery")?;
+        self.charge_at = knowledge.effector("chargeAt")?;
+        Ok(())
+    }
+
+    fn analyze(
+        &mut self,
+        knowledge: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Record>, Failure> {
+        let (battery, threshold) = (self.battery.get(knowledge)?, self.properties.threshold);
+        let set = self.charge_at.get(knowledge)? == threshold;
+        Ok((!set).then(|| record!("has {battery} % left, and would charge late", battery)))
+    }
+
+    fn plan(
+        &mut self,
+        _: Record,
+        _: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Record>, Failure> {
+        Ok(Some(record!("lets it charge at {threshold} %", threshold = self.properties.threshold)))
+    }
+
+    fn execute(
+        &mut self,
+        _: Record,
+        knowledge: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.charge_at.set(knowledge, self.properties.threshold)
+    }
+}
+
+saoms_api::plugin! {
+    loops: [MyPlugin],
+}

@@ -1,0 +1,93 @@
+//! The hardware of a robot: its wheels and its arm. A robot of the fleet calls it through its reference `world`.
+//!
+//! The calls must not wait: `begin` starts an action, and `poll` asks in each period of the robot how it goes. Here the hardware is
+//! simulated, by counting; put the calls of your motors in its place.
+
+use saoms_api::{Class, Component, Context, Failure, Properties};
+use saoms_components::grid::{Block, Map};
+use saoms_components::hardware::{Action, ActionKind, Area, Hardware, Progress};
+
+/// What a composite can set.
+#[derive(Debug, Properties)]
+pub struct MyPluginProperties {
+    /// How many periods a move from one block to the next takes.
+    #[property(default = 3, range = 1..=1000)]
+    move_periods: u32,
+}
+
+/// Drives one robot.
+#[derive(Debug, Class)]
+#[class(name = "my_plugin.MyPlugin", passive, service("hardware": Hardware))]
+pub struct MyPlugin {
+    properties: MyPluginProperties,
+    block: Block,
+    /// What it does, and how many periods that still takes.
+    running: Option<(Action, u32)>,
+}
+
+impl Component for MyPlugin {
+    type Properties = MyPluginProperties;
+
+    fn new(properties: MyPluginProperties) -> Result<Self, Failure> {
+        Ok(MyPlugin { properties, block: Block::default(), running: None })
+    }
+}
+
+impl Hardware for MyPlugin {
+    fn enter(&mut self, _: &mut Context<'_>, _: u32, _: String, block: Block) -> Result<Block, Failure> {
+        self.block = block;
+        Ok(block)
+    }
+
+    fn area(&mut self, _: &mut Context<'_>) -> Result<Area, Failure> {
+        Ok(Area::from(&Map::new(11, 11)))
+    }
+
+    fn begin(&mut self, _: &mut Context<'_>, _: u32, action: Action) -> Result<Progress, Failure> {
+        let periods = if action.kind == ActionKind::Move { self.properties.move_periods } else { 1 };
+        self.running = Some((action, periods));
+        Ok(Progress::Running)
+    }
+
+    fn poll(&mut self, context: &mut Context<'_>, _: u32) -> Result<Progress, Failure> {
+        match &mut self.running {
+            Some((action, periods)) if *periods <= 1 => {
+                if action.kind == ActionKind::Move {
+                    self.block = action.block;
+                }
+                context.info(format_args!("{:?} at {} is done", action.kind, self.block));
+                self.running = None;
+                Ok(Progress::Done)
+            }
+            Some((_, periods)) => {
+                *periods -= 1;
+                Ok(Progress::Running)
+            }
+            None => Ok(Progress::Done),
+        }
+    }
+
+    fn cancel(&mut self, _: &mut Context<'_>, _: u32) -> Result<(), Failure> {
+        self.running = None;
+        Ok(())
+    }
+
+    fn retire(&mut self, _: &mut Context<'_>, _: u32) -> Result<Block, Failure> {
+        self.running = None;
+        Ok(self.block)
+    }
+}
+
+saoms_api::plugin! {
+    classes: [MyPlugin],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_keeps_what_every_component_keeps() {
+        saoms_testkit::comply::<MyPlugin>(&[]);
+    }
+}
