@@ -127,6 +127,21 @@ fn chargers_are_looked_at_in_the_world_that_they_are_in() {
 }
 
 #[test]
+fn a_charger_outside_the_map_is_shown_where_it_leaves_the_map() {
+    for (properties, wrong) in
+        [([("chargeX", "33"), ("chargeY", "2")], "33"), ([("chargeX", "2"), ("chargeY", "22")], "22")]
+    {
+        let text =
+            fleet(&[("World", "saoms.World", &[], false), ("Robot1", "saoms.Robot", &properties, true)]);
+        let found = Fleet::of_text(text.clone()).diagnostics();
+        let mut place = found.split([' ', ':']).filter_map(|word| word.parse::<usize>().ok());
+        let (line, column) = (place.next().unwrap(), place.next().unwrap());
+        let rest = &text.lines().nth(line - 1).unwrap()[column - 1..];
+        assert!(rest.starts_with(wrong), "{found}: {rest}");
+    }
+}
+
+#[test]
 fn robots_of_one_number_are_found_with_and_without_a_world() {
     fn robot<'a>(name: &'a str, class: &'a str, properties: &'a [(&'a str, &'a str)]) -> Component<'a> {
         (name, class, properties, false)

@@ -1,8 +1,9 @@
 //! The answer for people.
 
+use std::collections::HashSet;
 use std::fmt::Write;
 
-use saoms_api::{Phase, Time};
+use saoms_api::{Cause, Phase, Time};
 use saoms_core::journal::{Chain, Document, Entry, Why};
 
 /// How many reasons are shown; of a longer chain, the first and the last ones.
@@ -19,9 +20,9 @@ pub(super) fn human(robot: &str, asked: Option<Time>, why: &Why<'_>, document: &
         }
         None => format!("What {robot} did at {time}, and what led to it:\n"),
     };
-    for chain in &why.chains {
+    for (place, chain) in why.chains.iter().enumerate() {
         text.push('\n');
-        text.push_str(&table(chain));
+        text.push_str(&table(chain, &why.chains[..place]));
     }
     if !why.knowledge.is_empty() {
         let when = asked.or(document.end).unwrap_or(time);
@@ -62,15 +63,30 @@ struct Row<'a> {
     text: String,
 }
 
-fn table(chain: &Chain<'_>) -> String {
+/// How much of a chain is shown: up to the first record, that one included, which an earlier one goes through as well.
+fn shown_anew(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> usize {
+    let told: HashSet<Cause> = earlier
+        .iter()
+        .flat_map(|chain| chain.acts.iter().chain(&chain.reasons))
+        .map(|one| one.id())
+        .collect();
+    let all = chain.reasons.len();
+    let common = chain.reasons.iter().position(|reason| told.contains(&reason.id()));
+    // The line that says so takes the place of two at least.
+    common.map(|common| common + 1).filter(|anew| anew + 1 < all).unwrap_or(all)
+}
+
+/// A chain line by line. What earlier ones told is not told again.
+fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     let mut rows: Vec<Row<'_>> = Vec::new();
     for (place, act) in chain.acts.iter().enumerate() {
         let number = if place == 0 { "1".to_owned() } else { String::new() };
         rows.push(Row { number, entry: Some(act), text: act.text() });
     }
-    let elided = chain.reasons.len().saturating_sub(SHOWN);
+    let anew = shown_anew(chain, earlier);
+    let elided = anew.saturating_sub(SHOWN);
     let kept = SHOWN - LAST;
-    for (place, reason) in chain.reasons.iter().enumerate() {
+    for (place, reason) in chain.reasons[..anew].iter().enumerate() {
         if elided > 0 && place == kept {
             let text = format!("... {elided} more, all of them with --format json ...");
             rows.push(Row { number: String::new(), entry: None, text });
@@ -79,7 +95,9 @@ fn table(chain: &Chain<'_>) -> String {
             rows.push(Row { number: (place + 2).to_string(), entry: Some(reason), text: reason.text() });
         }
     }
-    if chain.missing.is_some() {
+    if anew < chain.reasons.len() {
+        rows.push(Row { number: String::new(), entry: None, text: "... and so on as above ...".to_owned() });
+    } else if chain.missing.is_some() {
         let text = "... what led to this is not in the journal any more ...".to_owned();
         rows.push(Row { number: String::new(), entry: None, text });
     }

@@ -6,6 +6,7 @@ mod critical;
 mod figures;
 mod fleet;
 mod master;
+mod reasons;
 mod run;
 mod scenario1;
 mod scenario2;

@@ -247,7 +247,7 @@ pub struct Variables {
     /// It helps another robot, or would.
     #[entry]
     pub healer: bool,
-    /// It takes no jobs until somebody awakes it.
+    /// It takes no jobs until it awakes.
     #[entry]
     pub asleep: bool,
     /// It is broken, and shuts down.

@@ -23,7 +23,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         let Some(area) = areas.iter().find(|area| Some(area.index) == robot.world) else { continue };
         let Some(problem) = area.problem(robot.charger) else { continue };
         let message = format!("the charger of robot {} is at {}, {problem}", robot.number, robot.charger);
-        let finding = Finding::new(robot.charger_place(fleet), message);
+        let in_columns = u32::try_from(robot.charger.x).is_ok_and(|column| column < area.map.width());
+        let place = if in_columns { robot.charger_place(fleet) } else { robot.column_place(fleet) };
+        let finding = Finding::new(place, message);
         let help =
             "give it a free block: `chargeX` is its column, `chargeY` its row, by default the robot's number";
         findings.push(area.explain(finding.help(help), robot.charger));

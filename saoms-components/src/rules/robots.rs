@@ -44,6 +44,11 @@ impl Known {
         self.first_given(fleet, &["chargeY", "chargeX", "ID"])
     }
 
+    /// Where the composite says in which column its charger is, as far as it does.
+    pub(super) fn column_place(&self, fleet: &FleetView<'_>) -> Place {
+        self.first_given(fleet, &["chargeX", "chargeY", "ID"])
+    }
+
     /// Where the composite says its number.
     pub(super) fn number_place(&self, fleet: &FleetView<'_>) -> Place {
         let name = if self.properties.number.is_some() { "number" } else { "ID" };

@@ -109,7 +109,8 @@ impl Loop for AwakeAsleepMS {
         knowledge: &mut MasterRobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<Workload>, Failure> {
-        let released = knowledge.end_shifts();
+        let (released, started) = knowledge.end_shifts();
+        context.because(started);
         let (mut pieces, mut needed) = (0_u32, 0_u32);
         for (header, event) in context.receive(&self.events).with_headers() {
             context.because(header.cause);
@@ -141,14 +142,15 @@ impl Loop for AwakeAsleepMS {
         knowledge: &mut MasterRobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        let cause = context.cause();
         match decision {
             AwakeAsleepDecision::Awake { robots, stay } => {
                 let awaked = self.call(robots, true, knowledge, context)?;
-                knowledge.start_shift(stay.saturating_add(awaked));
+                knowledge.start_shift(stay.saturating_add(awaked), cause);
             }
             AwakeAsleepDecision::Asleep { robots, stay } => {
                 self.call(robots, false, knowledge, context)?;
-                knowledge.start_shift(stay);
+                knowledge.start_shift(stay, cause);
             }
         }
         Ok(())
@@ -169,11 +171,11 @@ impl AwakeAsleepMS {
             let next = if awake { knowledge.next_to_awake() } else { knowledge.next_to_charge() };
             let Some(robot) = next else { break };
             knowledge.note_call(robot, awake);
-            context.send(&self.states, RobotState { robot, awake, emulate: 0 })?;
             context.effect(match awake {
                 true => record!("awakes robot {robot}", robot),
                 false => record!("sends robot {robot} under charge", robot),
             });
+            context.send(&self.states, RobotState { robot, awake, emulate: 0 })?;
             called.push(robot);
         }
         let what = if awake { "awakes" } else { "sends under charge" };

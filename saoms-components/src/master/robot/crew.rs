@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use saoms_api::{Extras, Knowledge};
+use saoms_api::{Cause, Extras, Knowledge};
 
 use crate::messages::RobotList;
 
@@ -41,6 +41,8 @@ pub struct Shift {
     pub robots: u32,
     /// For how many periods of the master they are still needed.
     pub left: u32,
+    /// Why it was started.
+    pub cause: Cause,
 }
 
 impl MasterRobotKnowledge {
@@ -100,22 +102,25 @@ impl MasterRobotKnowledge {
         self.called.insert(robot, awake);
     }
 
-    /// Counts a period down, and ends the shifts that are over; how many robots those had.
-    pub fn end_shifts(&mut self) -> u32 {
-        let mut ended = 0;
+    /// Counts a period down, and ends the shifts that are over; how many robots those had, and why they were there.
+    pub fn end_shifts(&mut self) -> (u32, Cause) {
+        let (mut ended, mut why) = (0, Cause::default());
         self.shifts.retain_mut(|shift| {
             shift.left = shift.left.saturating_sub(1);
-            ended += if shift.left == 0 { shift.robots } else { 0 };
+            if shift.left == 0 {
+                ended += shift.robots;
+                why = shift.cause;
+            }
             shift.left > 0
         });
         self.count_shifts();
-        ended
+        (ended, why)
     }
 
     /// Starts a shift of so many robots.
-    pub fn start_shift(&mut self, robots: u32) {
+    pub fn start_shift(&mut self, robots: u32, cause: Cause) {
         if robots > 0 {
-            self.shifts.push(Shift { robots, left: self.counter });
+            self.shifts.push(Shift { robots, left: self.counter, cause });
         }
         self.count_shifts();
     }

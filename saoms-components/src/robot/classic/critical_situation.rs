@@ -33,6 +33,8 @@ pub struct CriticalSituationMS {
     positions: Publisher<Position>,
     /// Why something in the robot broke.
     cause: Cause,
+    /// Why it would heal another robot: what it decides about that next follows from this.
+    said: Cause,
 }
 
 /// What there is to do about critical situations.
@@ -136,6 +138,7 @@ impl Loop for CriticalSituationMS {
             return Ok(Some(CriticalSymptom::Broken(knowledge.critical_kind())));
         }
         if variables.healer {
+            context.because(self.said);
             let closest = helps.claimed().filter(|help| is_closest(knowledge, help));
             let symptom = closest.map(|help| CriticalSymptom::Closest(help.situation.critical));
             return Ok(symptom.or(Some(CriticalSymptom::Beaten)));
@@ -217,7 +220,7 @@ impl CriticalSituationMS {
     }
 
     fn intend(
-        &self,
+        &mut self,
         robot: u32,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
@@ -225,6 +228,7 @@ impl CriticalSituationMS {
         let Some(help) = knowledge.lists.helps.claim(robot) else { return Ok(()) };
         let situation = help.situation.clone();
         (knowledge.variables.healer, knowledge.variables.busy) = (true, true);
+        self.said = context.cause();
         context.console(format_args!("Robot{} is a new healer for Robot{robot}", knowledge.number));
         self.respond(situation, CriticalStage::Intention, knowledge, context)
     }
@@ -244,8 +248,8 @@ impl CriticalSituationMS {
             context.console(format_args!("{name} is a healer and awakes another robot"));
             if let Some(robot) = best_charged(knowledge, critical) {
                 let state = RobotState { robot, awake: true, emulate: critical };
-                context.send(&self.states, state)?;
                 context.effect(record!("awakes robot {robot}", robot));
+                context.send(&self.states, state)?;
             } else {
                 context.effect(record!("finds no robot that it could awake"));
             }

@@ -1,6 +1,8 @@
 use std::cmp::Reverse;
 
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{
+    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
+};
 
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
@@ -20,6 +22,8 @@ use crate::robot::{Job, Request, RobotKnowledge};
 pub struct EventLuggageMS {
     luggage: Publisher<EventLuggage>,
     luggage_heard: Subscription<EventLuggage>,
+    /// Why it took an interest: what it decides about that luggage next follows from this.
+    said: Cause,
 }
 
 /// What there is to decide.
@@ -109,6 +113,7 @@ impl Loop for EventLuggageMS {
         }
         // Others dropped what it took an interest in, so that it decides about that whatever happened since.
         if variables.transporter {
+            context.because(self.said);
             let request = knowledge.lists.requests.claimed();
             let closest = request.filter(|request| is_closest(knowledge, request));
             let symptom = closest.map(|request| EventLuggageSymptom::Closest(request.job));
@@ -146,6 +151,7 @@ impl Loop for EventLuggageMS {
                 let Some(request) = knowledge.lists.requests.claim(0) else { return Ok(()) };
                 let job = request.job;
                 knowledge.variables.transporter = true;
+                self.said = context.cause();
                 let name = &knowledge.name;
                 context.console(format_args!("{name} is bringing luggage from {} to {}", job.from, job.to));
                 (job, LuggageStage::Interest)

@@ -15,7 +15,7 @@ use crate::robot::actions::Outcome;
 #[looping(
     name = "saoms.classic.PathFollowerMS",
     knowledge = RobotKnowledge,
-    senses("chargeBlock", "readyToGoUnderCharge"),
+    senses("chargeBlock", "readyToGoUnderCharge", "busy"),
     effects("block", "next", "job", "busy", "transporter", "hasLuggage", "reachingCharge", "inCharge"),
     publishes(POSITION, EVENT_LUGGAGE, CRITICAL_SITUATION)
 )]

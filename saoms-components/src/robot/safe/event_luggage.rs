@@ -28,6 +28,8 @@ const PATIENCE: u64 = 4;
 pub struct EventLuggageMS {
     /// From where the robot said that it is interested.
     said_at: Block,
+    /// Why: what it decides about that luggage next follows from this.
+    said: Cause,
     /// Whether it warned that some luggage is out of its reach.
     warned: bool,
     /// How often other ways had become necessary when it looked at its way.
@@ -195,6 +197,7 @@ impl Loop for EventLuggageMS {
             return Ok(None);
         }
         if knowledge.variables.transporter {
+            context.because(self.said);
             return Ok(self.look_at_claimed(knowledge));
         }
         if knowledge.variables.asleep {
@@ -242,7 +245,7 @@ impl Loop for EventLuggageMS {
             EventLuggageDecision::TakeInterest { place, job } => {
                 knowledge.lists.requests.claim(place);
                 knowledge.variables.transporter = true;
-                self.said_at = knowledge.block;
+                (self.said_at, self.said) = (knowledge.block, context.cause());
                 let name = &knowledge.name;
                 context.console(format_args!("{name} is bringing luggage from {} to {}", job.from, job.to));
                 (job, LuggageStage::Interest)

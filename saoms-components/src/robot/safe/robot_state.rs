@@ -1,12 +1,15 @@
 use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
 
 use crate::messages::{ROBOT_STATE, RobotState};
-use crate::robot::RobotKnowledge;
+use crate::robot::{Request, RobotKnowledge};
+
+/// For so many executions a sleeping robot leaves luggage to whoever could be awaked for it.
+const TURN: u32 = 5;
 
 /// Awakes the robot and lets it sleep, as others ask.
 ///
 /// A robot that is sent to sleep finishes its job, goes to its charger and takes no jobs until it is awaked. It goes on to listen and to make
-/// way. It awakes by itself where a robot needs help and no other robot is awake.
+/// way. It awakes by itself where a robot needs help, or luggage waits, and no other robot is awake.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.RobotMS",
@@ -18,6 +21,8 @@ use crate::robot::RobotKnowledge;
 pub struct RobotMS {
     states: Subscription<RobotState>,
     called: Option<(RobotState, Cause)>,
+    /// Why it sleeps once it is at its charger.
+    sent: Cause,
 }
 
 /// Why to be awake, or asleep.
@@ -34,6 +39,11 @@ pub enum RobotSymptom {
     NobodyAwake {
         /// The robot.
         critical: u32,
+    },
+    /// Luggage waits, and nobody is awake.
+    NobodyForLuggage {
+        /// The luggage.
+        luggage: u32,
     },
     /// The robot was sent to sleep, and is at its charger.
     AtRest,
@@ -63,6 +73,9 @@ impl Recordable for RobotSymptom {
             RobotSymptom::SentToSleep => record!("is sent to sleep"),
             RobotSymptom::NobodyAwake { critical } => {
                 record!("robot {critical} needs help, and no robot is awake", critical)
+            }
+            RobotSymptom::NobodyForLuggage { luggage } => {
+                record!("luggage {luggage} waits, and no robot is awake", luggage)
             }
             RobotSymptom::AtRest => record!("is at its charger and was sent to sleep"),
         }
@@ -122,12 +135,17 @@ impl Loop for RobotMS {
             return Ok(Some(if state.awake { symptom } else { RobotSymptom::SentToSleep }));
         }
         if knowledge.variables.asleep {
-            return Ok(knowledge.has_to_help().map(|(critical, cause)| {
+            if let Some((critical, cause)) = knowledge.has_to_help() {
                 context.because(cause);
-                RobotSymptom::NobodyAwake { critical }
+                return Ok(Some(RobotSymptom::NobodyAwake { critical }));
+            }
+            return Ok(knowledge.has_to_bring(context).map(|(luggage, cause)| {
+                context.because(cause);
+                RobotSymptom::NobodyForLuggage { luggage }
             }));
         }
         let rests = knowledge.relieved && knowledge.is_free() && knowledge.is_at_charger();
+        context.because(self.sent);
         Ok(rests.then_some(RobotSymptom::AtRest))
     }
 
@@ -144,6 +162,7 @@ impl Loop for RobotMS {
             }
             RobotSymptom::Awaked { .. } => Some(RobotDecision::StayAwake),
             RobotSymptom::NobodyAwake { critical } => Some(RobotDecision::Awake { emulate: critical }),
+            RobotSymptom::NobodyForLuggage { .. } => Some(RobotDecision::Awake { emulate: 0 }),
             RobotSymptom::SentToSleep => (!asleep).then_some(RobotDecision::Finish),
             RobotSymptom::AtRest => Some(RobotDecision::Sleep),
         })
@@ -158,11 +177,14 @@ impl Loop for RobotMS {
         match decision {
             RobotDecision::Awake { emulate } => {
                 (knowledge.variables.asleep, knowledge.relieved) = (false, false);
+                self.sent = Cause::default();
                 knowledge.stands_in_for = Some(emulate).filter(|emulate| *emulate > 0);
                 context.info(format_args!("awakes"));
             }
             RobotDecision::StayAwake => {}
-            RobotDecision::Finish => knowledge.relieved = true,
+            RobotDecision::Finish => {
+                (knowledge.relieved, self.sent) = (true, context.cause());
+            }
             RobotDecision::Sleep => {
                 (knowledge.variables.asleep, knowledge.relieved) = (true, false);
                 context.info(format_args!("sleeps"));
@@ -184,5 +206,18 @@ impl RobotKnowledge {
         let first = self.lists.sleepers().all(|other| self.number < other.robot);
         let first = first && !self.lists.anybody_awake();
         first.then_some((request.situation.critical, request.cause))
+    }
+
+    /// The luggage for which nobody is awake and that is in reach, if it is this robot's turn: sleepers of lower numbers are asked first.
+    fn has_to_bring(&self, context: &Context<'_>) -> Option<(u32, Cause)> {
+        if self.lists.anybody_awake() {
+            return None;
+        }
+        let ahead = self.lists.sleepers().filter(|other| other.robot < self.number).count();
+        let turn = u32::try_from(ahead + 1).unwrap_or(u32::MAX).saturating_mul(TURN);
+        let patience = context.period().saturating_mul(turn);
+        let waits = |request: &&Request| request.judged && context.now().since(request.since) >= patience;
+        let request = self.lists.requests.open().iter().find(waits)?;
+        Some((request.job.luggage, request.cause))
     }
 }

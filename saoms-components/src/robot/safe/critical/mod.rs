@@ -47,9 +47,13 @@ pub struct CriticalSituationMS {
     cause: Cause,
     /// From where it said that it would help.
     said_at: Block,
+    /// Why: what it decides about that robot next follows from this.
+    said: Cause,
     /// Whether it brought another robot's luggage already then.
     was_healer: bool,
     substitution: Option<Substitution>,
+    /// Why another robot has to be awaked.
+    missing: Cause,
     /// Whether it was in charge in the last execution.
     was_in_charge: bool,
 }
@@ -114,6 +118,7 @@ impl Loop for CriticalSituationMS {
         let starts_to_charge = knowledge.variables.in_charge && !self.was_in_charge;
         self.was_in_charge = knowledge.variables.in_charge;
         if knowledge.offers_help {
+            context.because(self.said);
             return Ok(self.look_at_claimed(knowledge));
         }
         if knowledge.variables.asleep {
@@ -127,6 +132,7 @@ impl Loop for CriticalSituationMS {
         if let Some(substitution) = &mut self.substitution {
             let symptom = substitution.look(knowledge);
             if symptom.is_some() {
+                context.because(self.missing);
                 return Ok(symptom);
             }
             if !substitution.is_waiting() {
@@ -187,7 +193,7 @@ impl Loop for CriticalSituationMS {
                 knowledge.offers_help = true;
                 self.was_healer = std::mem::replace(&mut knowledge.variables.healer, true);
                 knowledge.variables.busy = true;
-                self.said_at = knowledge.block;
+                (self.said_at, self.said) = (knowledge.block, context.cause());
                 self.respond(knowledge, context, situation, CriticalStage::Intention)?;
             }
             CriticalDecision::Postpone { critical, needs } => {
@@ -215,6 +221,7 @@ impl Loop for CriticalSituationMS {
             }
             CriticalDecision::AskForSubstitute => {
                 self.substitution = Some(Substitution::of(knowledge.number));
+                self.missing = context.cause();
                 context.send(&self.situations, knowledge.situation(CriticalKind::Idle))?;
             }
             CriticalDecision::Awake { sleeper, robot } => {
@@ -289,6 +296,7 @@ impl CriticalSituationMS {
             context.info(format_args!("takes over luggage {luggage} from robot {critical}"));
         }
         self.substitution = Some(Substitution::of(critical));
+        self.missing = context.cause();
         self.respond(knowledge, context, situation, CriticalStage::Taken)
     }
 
