@@ -1,7 +1,7 @@
 //! What the engine costs beside the components: `cargo bench -p saoms-core --bench engine`.
 //!
 //! In virtual time, on one core, the best of seven: ns per execution of an empty component, ns per delivery of a message from `send` to `receive`, and
-//! bytes per idle component. A delivery is one message that one reader has received; its cost is the time of a fleet that sends, less that of
+//! bytes per idle component, and what the journal costs. A delivery is one message that one reader has received; its cost is the time of a fleet that sends, less that of
 //! the same fleet when it does not, the digest of the trace included.
 
 use std::hint::black_box;
@@ -9,8 +9,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use saoms_api::{
-    Class, Component, Context, Failure, Message, Properties, PropertyValue, Publisher, Registration,
-    Subscription, Time, Topic,
+    Class, Component, Context, DynLoop, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
+    Properties, PropertyValue, Publisher, Record, Registration, Subscription, Time, Topic, record,
 };
 use saoms_core::assembly::{Assembly, ComponentSpec, TaskSettings};
 use saoms_core::registry::Registry;
@@ -36,6 +36,12 @@ struct Load {
     receives: bool,
     #[property(default = false)]
     state: bool,
+    /// How many records to write in each execution.
+    #[property(default = 0)]
+    writes: u32,
+    /// How many loops find the same symptom and come to the same decision in each execution.
+    #[property(default = 0)]
+    loops: u32,
 }
 
 /// Sends and receives.
@@ -46,13 +52,67 @@ struct Robot {
     publisher: Publisher<Position>,
     subscription: Subscription<Position>,
     sum: i64,
+    mind: Mind,
+    loops: Loops,
+}
+
+/// Four entries.
+#[derive(Default, Knowledge)]
+#[knowledge(name = "load.Mind")]
+struct Mind {
+    #[entry]
+    x: i32,
+    #[entry]
+    y: i32,
+    #[entry]
+    busy: bool,
+    #[entry]
+    battery: f64,
+    #[extras]
+    extras: Extras,
+}
+
+/// Goes on as before.
+#[derive(LoopClass)]
+#[looping(name = "load.Steady")]
+struct Steady;
+
+impl Loop for Steady {
+    type Properties = ();
+    type Knowledge = Mind;
+    type Symptom = Record;
+    type Decision = Record;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Steady)
+    }
+
+    fn analyze(&mut self, mind: &mut Mind, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        Ok(Some(record!("has {battery} % left at {block}", battery = mind.battery, block = (mind.x, mind.y))))
+    }
+
+    fn plan(&mut self, _: Record, _: &mut Mind, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        Ok(Some(record!("waits until it is charged")))
+    }
+
+    fn execute(&mut self, _: Record, _: &mut Mind, _: &mut Context<'_>) -> Result<(), Failure> {
+        Ok(())
+    }
 }
 
 impl Component for Robot {
     type Properties = Load;
 
     fn new(load: Load) -> Result<Self, Failure> {
-        Ok(Robot { load, publisher: Publisher::default(), subscription: Subscription::default(), sum: 0 })
+        let steady = (0..load.loops).map(|number| (number.to_string(), Box::new(Steady) as Box<dyn DynLoop>));
+        Ok(Robot {
+            loops: Loops::of(steady),
+            load,
+            publisher: Publisher::default(),
+            subscription: Subscription::default(),
+            sum: 0,
+            mind: Mind::default(),
+        })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -61,7 +121,7 @@ impl Component for Robot {
         if self.load.receives {
             self.subscription = context.subscribe(topic)?;
         }
-        Ok(())
+        self.loops.initialize(&mut self.mind, context)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -71,8 +131,11 @@ impl Component for Robot {
         for number in 0..self.load.sends {
             context.send(&self.publisher, Position { robot: number, x: 1, y: 2 })?;
         }
+        for number in 0..self.load.writes {
+            context.effect(record!("moves to {block} for the piece {number}", block = (1, 2), number));
+        }
         black_box(self.sum);
-        Ok(())
+        self.loops.adapt(&mut self.mind, context)
     }
 }
 
@@ -84,20 +147,34 @@ struct Shape {
     all: bool,
     sends: u32,
     state: bool,
+    writes: u32,
+    loops: u32,
 }
+
+/// So many components that do nothing.
+const IDLE: Shape =
+    Shape { senders: 0, receivers: 0, all: false, sends: 0, state: false, writes: 0, loops: 0 };
 
 #[expect(clippy::print_stdout, reason = "a benchmark tells its result")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // First, while the process has no memory to use again.
     let (before, count) = (resident(), 10_000);
-    let fleet = start(&Shape { senders: count, receivers: 0, all: true, sends: 0, state: false })?;
+    let fleet = start(&Shape { senders: count, all: true, ..IDLE })?;
     fleet.run_until(Time::from_nanos(5_000_000_000));
     println!("{:6.0} bytes per idle component, its assembly included", (resident() - before) / count as f64);
     drop(fleet);
     for count in [1, 10, 100, 1000, 10_000] {
-        let shape = Shape { senders: count, receivers: 0, all: false, sends: 0, state: false };
+        let shape = Shape { senders: count, ..IDLE };
         println!("{:6.1} ns per execution, {count} components", best([&shape])?[0] / count as f64);
     }
+    let quiet = Shape { senders: 100, ..IDLE };
+    let [writing, silent] = best([&Shape { writes: 16, ..quiet }, &quiet])?;
+    println!("{:6.1} ns per record of the journal, 100 components", (writing - silent) / 1600.0);
+    let [steady, silent] = best([&Shape { loops: 7, ..quiet }, &quiet])?;
+    println!(
+        "{:6.1} ns per execution of a loop that goes on as before, 100 components with 7 each",
+        (steady - silent) / 700.0
+    );
     let shapes = [
         ("1 -> 1", 1, 1, false),
         ("1 -> 10", 1, 10, false),
@@ -107,7 +184,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (name, senders, receivers, all) in shapes {
         // Of a state each reader gets only the newest message of each publisher.
         for (sends, state) in [(1, false), (16, false), (1, true)] {
-            let shape = Shape { senders, receivers, all, sends, state };
+            let shape = Shape { senders, receivers, all, sends, state, ..IDLE };
             let [busy, silent] = best([&shape, &Shape { sends: 0, ..shape }])?;
             let net = busy - silent;
             let kind = if state { "states" } else { "events" };
@@ -156,6 +233,8 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
             ("sends", sends.to_string()),
             ("receives", receives.to_string()),
             ("state", shape.state.to_string()),
+            ("writes", shape.writes.to_string()),
+            ("loops", shape.loops.to_string()),
         ];
         components.push(ComponentSpec {
             path: format!("Robot{number}"),
