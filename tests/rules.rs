@@ -70,6 +70,8 @@ fn found(components: &[Component<'_>]) -> Vec<String> {
     found.lines().map(plain).collect()
 }
 
+const MASTER: Component<'_> = ("Master", "saoms.MasterEnvironment", &[], false);
+
 const ROBOT: Component<'_> = ("Robot1", "saoms.Robot", &[], true);
 
 /// What is found with this scenario on this map, and one robot.
@@ -77,6 +79,7 @@ fn with_scenario(map: &str, scenario: &str) -> Vec<String> {
     found(&[
         ("World", "saoms.World", &[("map", map)], false),
         ("Environment", "saoms.Environment", &[("scenario", scenario)], false),
+        MASTER,
         ROBOT,
     ])
 }
@@ -100,8 +103,11 @@ fn luggage_is_looked_at_wherever_it_may_be() {
         with_scenario(map, "at 1s luggage (0,0)..(5,1) to (4,2)"),
         ["warning S5001 the blocks from (0,0) to (5,1) reach beyond the map, which ends at (4,2)"]
     );
-    let without =
-        [("Environment", "saoms.Environment", &[("scenario", "at 1s luggage random to (70,7)")][..], false)];
+    let without = [
+        ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage random to (70,7)")][..], false),
+        MASTER,
+        ("Robot1", "saoms.Robot", &[], false),
+    ];
     assert_eq!(
         found(&without),
         ["error S5001 `random` needs an area to draw from, and nothing in the fleet says one"]
@@ -170,6 +176,7 @@ fn events_of_unknown_robots_are_found() {
         let environment = [("scenario", scenario)];
         found(&[
             ("Environment", "saoms.Environment", &environment, false),
+            MASTER,
             ("Robot1", "saoms.Robot", &[], false),
             ("Lift5", "saoms.Robot", &[("number", "2")], false),
         ])
@@ -219,10 +226,82 @@ fn parts_of_a_map_without_a_charger_are_found() {
     let two = found(&[
         ("World", "saoms.World", &[("map", map)], false),
         ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (0,0) to (4,0)")], false),
+        MASTER,
         ROBOT,
         ("Robot2", "saoms.Robot", &[("chargeX", "4"), ("chargeY", "1")], true),
     ]);
     assert_eq!(two, ["error S5007 no way on the map leads from where the luggage is to where it has to go"]);
+}
+
+#[test]
+fn scenarios_of_which_nothing_comes_are_told() {
+    fn with<'a>(scenario: &'a [(&'a str, &'a str)], others: &[Component<'a>]) -> Vec<String> {
+        found(&[&[("Environment", "saoms.Environment", scenario, false)], others].concat())
+    }
+    const KEEPER: Component<'_> = ("Keeper", "saoms.MasterRobot", &[], false);
+    const SLEEPER: Component<'_> = ("Robot1", "saoms.Robot", &[("asleep", "true")], false);
+    let luggage = [("scenario", "at 1s luggage (1,0) to (4,0)")];
+    let landing = [("scenario", "at 1s landing 2; at 2s luggage (1,0) to (4,0)")];
+    let robot = ("Robot2", "saoms.Robot", &[][..], false);
+    let sleep = "warning S5008 all robots sleep, and none is awaked to bring the luggage of this scenario";
+    assert_eq!(
+        with(&luggage, &[robot]),
+        ["warning S5008 nobody passes the events of this scenario on to the robots"]
+    );
+    assert_eq!(
+        with(&luggage, &[MASTER]),
+        ["warning S5008 no robot is there to bring the luggage of this scenario"]
+    );
+    assert_eq!(with(&luggage, &[MASTER, KEEPER, SLEEPER]), [sleep]);
+    assert_eq!(with(&landing, &[MASTER, SLEEPER]), [sleep], "nobody listens to landings");
+    assert!(with(&landing, &[MASTER, KEEPER, SLEEPER]).is_empty());
+    assert!(with(&luggage, &[MASTER, SLEEPER, robot]).is_empty());
+    assert!(with(&[("scenario", "at 9s end")], &[]).is_empty());
+    let broker =
+        ("Robot1", "saoms.Robot", &[("useJMS", "true"), ("url", "tcp://localhost:61616")][..], false);
+    assert!(!with(&luggage, &[broker]).concat().contains("S5008"), "masters may be in other programs");
+}
+
+#[test]
+fn a_world_that_no_robot_knows_is_told_where_that_makes_a_difference() {
+    let blocked: &[(&str, &str)] = &[("blocked", "(3,1)")];
+    let unwired = ("Robot1", "saoms.Robot", &[][..], false);
+    let message = "warning S5009 no robot is wired to this world, so robots move through its blocked blocks";
+    assert_eq!(found(&[("World", "saoms.World", blocked, false), unwired]), [message]);
+    assert!(found(&[("World", "saoms.World", &[], false), unwired]).is_empty());
+    assert!(found(&[("World", "saoms.World", blocked, false), ROBOT]).is_empty());
+}
+
+#[test]
+fn what_is_wrong_whatever_a_faulty_component_is_comes_with_its_fault() {
+    let luggage: &[(&str, &str)] = &[("scenario", "at 1s luggage (3,1) to (3,11); at 2s breakdown Robot1")];
+    let environment = ("Environment", "saoms.Environment", luggage, false);
+    let world = ("World", "saoms.World", &[("width", "5")][..], false);
+    let low = ("Robot1", "saoms.Robot", &[("battery", "-1")][..], true);
+    let outside =
+        "error S5001 luggage cannot be at (3,11): it is outside the map, which goes from (0,0) to (4,10)";
+    let battery =
+        "error S3008 property `battery`: `-1` is out of range: expected a number from 0.0 to 100.0 [%]";
+    assert_eq!(found(&[world, environment, low]), [outside, battery], "robot 1 is no unknown robot");
+    let far = ("Robot2", "saoms.Robot", &[("chargeX", "7")][..], true);
+    assert_eq!(
+        found(&[world, low, far]),
+        [
+            battery,
+            "error S5002 the charger of robot 2 is at (7,2), outside the map, which goes from (0,0) to (4,10)"
+        ]
+    );
+    let no_world = ("World", "saoms.World", &[("width", "0")][..], false);
+    let width =
+        "error S3008 property `width`: `0` is out of range: expected a whole number from 1 to 8192 [blocks]";
+    assert_eq!(found(&[no_world, environment, far]), [width], "how large the area is, nobody knows");
+}
+
+#[test]
+fn several_blocked_blocks_in_one_text_are_told_how_to_write_them() {
+    let text = fleet(&[("World", "saoms.World", &[("blocked", "(3,1) (0,2)")], false)]);
+    let shown = Fleet::of_text(text).shown();
+    assert!(shown.contains("`<value>(3,1)</value><value>(0,2)</value>`"), "{shown}");
 }
 
 #[test]

@@ -41,7 +41,8 @@ pub struct Code {
 
 /// A rule over a whole fleet, which a crate of components adds to the checker: what no component can see alone.
 ///
-/// It is asked when every component is resolved, before anything runs, and is pure: the same fleet, the same findings.
+/// It is asked before anything runs, and is pure: the same fleet, the same findings. Where a component has a fault of its own, only the
+/// rules are asked that can judge the others without it (see [`FleetRule::judges_parts`]).
 ///
 /// ```
 /// use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
@@ -60,6 +61,7 @@ pub struct Code {
 ///         severity: Severity::Warning,
 ///         rule: None,
 ///     },
+///     judges_parts: true,
 ///     check: one_clock,
 /// };
 /// saoms_api::fleet_rules!(ONE_CLOCK);
@@ -68,6 +70,9 @@ pub struct Code {
 pub struct FleetRule {
     /// The code of its findings.
     pub code: Code,
+    /// Whether what it finds holds whatever the components are that [`FleetView::misses`] tells of. A rule that looks for something that
+    /// should be there can judge whole fleets only.
+    pub judges_parts: bool,
     /// What it finds in a fleet.
     pub check: fn(&FleetView<'_>) -> Vec<Finding>,
 }
@@ -100,12 +105,25 @@ macro_rules! fleet_rules {
 #[derive(Clone, Copy, Debug)]
 pub struct FleetView<'a> {
     components: &'a [ComponentView<'a>],
+    missing: &'a [Option<&'a str>],
 }
 
 impl<'a> FleetView<'a> {
     /// For hosts: a view of these components.
     pub fn new(components: &'a [ComponentView<'a>]) -> FleetView<'a> {
-        FleetView { components }
+        FleetView { components, missing: &[] }
+    }
+
+    /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their classes, as far
+    /// as they are known.
+    #[must_use]
+    pub fn without(self, missing: &'a [Option<&'a str>]) -> FleetView<'a> {
+        FleetView { missing, ..self }
+    }
+
+    /// Whether a component that is, or may be, of this class is left out for a fault of its own.
+    pub fn misses<C: Class>(&self) -> bool {
+        self.missing.iter().any(|declaration| declaration.is_none_or(|one| one == C::DECLARATION))
     }
 
     /// The components in document order; the place of one here is its index.

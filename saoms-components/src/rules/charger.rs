@@ -13,6 +13,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         severity: Severity::Error,
         rule: None,
     },
+    judges_parts: true,
     check,
 };
 

@@ -15,6 +15,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         severity: Severity::Error,
         rule: None,
     },
+    judges_parts: false,
     check,
 };
 

@@ -1,10 +1,11 @@
 //! Luggage from or to a block where no robot can be.
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+use saoms_api::{Code, ComponentView, Finding, FleetRule, FleetView, Severity};
 
 use super::map::{Area, Luggage, area, luggage};
 use crate::environment::{Spot, Written, blocks};
 use crate::messages::AREA;
+use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -14,15 +15,15 @@ pub(super) static RULE: FleetRule = FleetRule {
         severity: Severity::Error,
         rule: None,
     },
+    judges_parts: true,
     check,
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let area = area(fleet);
-    let is_said = fleet
-        .components()
-        .iter()
-        .any(|component| component.has_broker || component.publishes.contains(&AREA.name()));
+    let says =
+        |component: &ComponentView<'_>| component.has_broker || component.publishes.contains(&AREA.name());
+    let is_said = fleet.misses::<World>() || fleet.components().iter().any(says);
     let mut findings = Vec::new();
     for piece in luggage(fleet) {
         for spot in [&piece.from, &piece.to] {

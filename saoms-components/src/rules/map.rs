@@ -21,10 +21,10 @@ pub(super) fn areas(fleet: &FleetView<'_>) -> Vec<Area> {
         .collect()
 }
 
-/// The map of the fleet; `None` where there is no world, or where several leave open which one is meant.
+/// The map of the fleet; `None` where there is no world, or where several, or one with a fault, leave open which one is meant.
 pub(super) fn area(fleet: &FleetView<'_>) -> Option<Area> {
     let mut areas = areas(fleet);
-    (fleet.all::<World>().count() == 1).then(|| areas.pop()).flatten()
+    (fleet.all::<World>().count() == 1 && !fleet.misses::<World>()).then(|| areas.pop()).flatten()
 }
 
 impl Area {

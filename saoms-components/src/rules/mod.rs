@@ -12,6 +12,8 @@ mod robots;
 mod start;
 mod sustain;
 mod unknown_robot;
+mod unserved;
+mod unused_world;
 
 saoms_api::fleet_rules!(
     luggage::RULE,
@@ -21,4 +23,6 @@ saoms_api::fleet_rules!(
     unknown_robot::RULE,
     sustain::RULE,
     divided::RULE,
+    unserved::RULE,
+    unused_world::RULE,
 );

@@ -14,6 +14,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         severity: Severity::Error,
         rule: None,
     },
+    judges_parts: true,
     check,
 };
 

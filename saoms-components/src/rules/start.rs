@@ -6,6 +6,7 @@ use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
 
 use super::robots::{Known, robots};
 use crate::grid::Block;
+use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -15,10 +16,15 @@ pub(super) static RULE: FleetRule = FleetRule {
         severity: Severity::Error,
         rule: None,
     },
+    judges_parts: true,
     check,
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    // Two robots may be in two worlds, of which nothing is known.
+    if fleet.misses::<World>() {
+        return Vec::new();
+    }
     let robots = robots(fleet);
     let mut first: HashMap<(Option<usize>, Block), &Known> = HashMap::new();
     let mut findings = Vec::new();

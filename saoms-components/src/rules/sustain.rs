@@ -20,6 +20,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         severity: Severity::Error,
         rule: None,
     },
+    judges_parts: false,
     check,
 };
 

@@ -26,6 +26,9 @@ pub struct WorldProperties {
     pub(super) handling_time: Duration,
 }
 
+/// What to do with several blocks in one text.
+const SEVERAL: &str = "write several blocks as `many=\"true\"` and a `<value>` for each: `<value>(3,1)</value><value>(0,2)</value>`";
+
 impl WorldProperties {
     /// The map with all blocked blocks, or everything that is wrong with it.
     pub(crate) fn map(&self) -> Result<Map, Vec<Finding>> {
@@ -41,7 +44,9 @@ impl WorldProperties {
                 (Ok(_), None) => None,
             };
             let Some(problem) = problem else { continue };
-            findings.push(TextFault::new(0..text.len(), problem).finding("blocked", value));
+            let fault = TextFault::new(0..text.len(), problem);
+            let fault = if text.matches('(').count() > 1 { fault.help(SEVERAL) } else { fault };
+            findings.push(fault.finding("blocked", value));
         }
         map.filter(|_| findings.is_empty()).ok_or(findings)
     }

@@ -11,7 +11,7 @@ use super::report::Report;
 use super::wires::Wiring;
 use crate::diagnostic::{Diagnostic, Severity};
 
-/// Asks the rules, once every component is resolved: a part of a fleet is no fleet to judge.
+/// Asks the rules about the components that are resolved; where some are not, only the rules that can judge a part of a fleet.
 pub(super) fn check<'s>(
     fleet: &'s Fleet<'_>,
     classes: &'s [ClassIndex<'_>],
@@ -23,14 +23,19 @@ pub(super) fn check<'s>(
     // Components that composites implement are not there in a run.
     let runs = |member: &Member<'_>| !matches!(member.kind, Kind::Composite(_));
     let mut places = Vec::with_capacity(fleet.members.len());
+    let mut missing = Vec::new();
     let mut subjects: Vec<Subject<'s>> = Vec::new();
     let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
     for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
-        places.push(parts.len());
-        if !runs(member) {
+        let class = fleet.class_of(place, classes);
+        let (true, Some(resolved), Some(class)) = (runs(member), resolved, class) else {
+            places.push(None);
+            if runs(member) {
+                missing.push(class.map(|class| class.class.declaration_json()));
+            }
             continue;
-        }
-        let (Some(resolved), Some(class)) = (resolved, fleet.class_of(place, classes)) else { return };
+        };
+        places.push(Some(parts.len()));
         subjects.push(Subject { name: member.path(), ..resolved.subject(member) });
         parts.push((place, resolved, class));
     }
@@ -42,7 +47,8 @@ pub(super) fn check<'s>(
             let declaration = class.class.declaration();
             let references = class.references.iter().zip(&wiring[*place]);
             let wires = references.flat_map(|(reference, providers)| {
-                providers.iter().map(|provider| (reference.name.as_str(), places[provider.member]))
+                let known = providers.iter().filter_map(|provider| places[provider.member]);
+                known.map(|place| (reference.name.as_str(), place))
             });
             let own = declaration.publishes.iter();
             let of_loops = resolved.loops.iter().flat_map(|one| &one.spec.class.declaration().publishes);
@@ -59,8 +65,8 @@ pub(super) fn check<'s>(
             }
         })
         .collect();
-    let view = FleetView::new(&views);
-    for rule in rules {
+    let view = FleetView::new(&views).without(&missing);
+    for rule in rules.iter().filter(|rule| rule.judges_parts || missing.is_empty()) {
         let findings = match contained(|| (rule.check)(&view)) {
             Ok(findings) => findings,
             Err(failure) => {

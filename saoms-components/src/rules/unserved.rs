@@ -1,0 +1,86 @@
+//! Scenarios of which nothing comes, so that a run would wait for ever.
+
+use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
+
+use super::robots::{may_be_others, robots};
+use crate::environment::{Environment, Happening, Scenario};
+use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
+use crate::robot::Robot;
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5008",
+        name: "unserved",
+        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them sleep and none is awaked.",
+        severity: Severity::Warning,
+        rule: None,
+    },
+    judges_parts: false,
+    check,
+};
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    if may_be_others(fleet) {
+        return Vec::new();
+    }
+    let scenarios = fleet.all::<Environment>();
+    let scenarios: Vec<(usize, Happenings)> =
+        scenarios.map(|(index, properties)| (index, Happenings::of(&properties.scenario))).collect();
+    let is_awaked = scenarios.iter().any(|(_, has)| has.airplanes);
+    let judged = scenarios.iter().filter_map(|(index, has)| {
+        let (message, help) = judge(fleet, has, is_awaked)?;
+        Some(Finding::new(Place::property("scenario").in_component(*index), message).help(help))
+    });
+    judged.collect()
+}
+
+/// What happens in a scenario.
+struct Happenings {
+    events: bool,
+    luggage: bool,
+    airplanes: bool,
+}
+
+impl Happenings {
+    fn of(texts: &[String]) -> Happenings {
+        let (scenario, _) = Scenario::read_partly(texts);
+        let any = |is: fn(&Happening) -> bool| scenario.lines().iter().any(|line| is(&line.happening));
+        Happenings {
+            events: any(|one| *one != Happening::End),
+            luggage: any(|one| matches!(one, Happening::Luggage { .. })),
+            airplanes: any(|one| matches!(one, Happening::Landing(_) | Happening::Takeoff(_))),
+        }
+    }
+}
+
+/// Why nothing comes of a scenario, and what to do.
+fn judge(fleet: &FleetView<'_>, has: &Happenings, is_awaked: bool) -> Option<(&'static str, &'static str)> {
+    if has.events && !publishes_beside_robots(fleet, EVENT_LUGGAGE.name()) {
+        return Some((
+            "nobody passes the events of this scenario on to the robots",
+            "add a `saoms.MasterEnvironment`",
+        ));
+    }
+    let robots = robots(fleet);
+    if !has.luggage || robots.iter().any(|robot| !robot.properties.asleep) {
+        return None;
+    }
+    if robots.is_empty() {
+        return Some(("no robot is there to bring the luggage of this scenario", "add a `saoms.Robot`"));
+    }
+    let message = "all robots sleep, and none is awaked to bring the luggage of this scenario";
+    if !publishes_beside_robots(fleet, ROBOT_STATE.name()) {
+        let help = "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for landings and take-offs";
+        return Some((message, help));
+    }
+    let help =
+        "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are awaked";
+    (!is_awaked).then_some((message, help))
+}
+
+/// Whether somebody else than a robot publishes on a topic.
+fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> bool {
+    let robots: Vec<usize> = fleet.all::<Robot>().map(|(index, _)| index).collect();
+    let mut components = fleet.components().iter().enumerate();
+    components.any(|(index, component)| component.publishes.contains(&topic) && !robots.contains(&index))
+}
