@@ -10,7 +10,7 @@ pub(super) const COLUMN: f64 = 284.0;
 
 /// Letters of a robot's name and of what it did that fit into a column.
 const NAME: usize = 26;
-const DEEDS: usize = 34;
+pub(super) const DEEDS: usize = 34;
 
 /// One line of the legend.
 pub(super) enum Entry {

@@ -3,7 +3,7 @@
 use super::density::Shades;
 use super::glyphs::Incident;
 use super::lanes::Sharing;
-use super::legend::{Entry, Group, Sign};
+use super::legend::{DEEDS, Entry, Group, Sign};
 use super::marks::Marks;
 use super::palette::look;
 use super::path::{Path, Robot};
@@ -36,11 +36,14 @@ pub(super) fn of(
 pub(super) fn deeds(robot: &Robot, path: &Path) -> String {
     let blocks = counted(usize::try_from(path.moves).unwrap_or(usize::MAX), "block");
     let delivered = &robot.delivered;
-    match delivered.numbers(5) {
-        Some(none) if none.is_empty() => format!("delivered nothing \u{b7} {blocks}"),
-        Some(numbers) => format!("delivered {numbers} \u{b7} {blocks}"),
-        None => format!("delivered {} pieces \u{b7} {blocks}", delivered.count),
+    if delivered.count == 0 {
+        return format!("delivered nothing \u{b7} {blocks}");
     }
+    let numbers = delivered.numbers(5).map(|numbers| format!("delivered {numbers} \u{b7} {blocks}"));
+    numbers.filter(|deeds| deeds.chars().count() <= DEEDS).unwrap_or_else(|| {
+        let pieces = counted(delivered.count, "piece");
+        format!("delivered {pieces} \u{b7} {blocks}")
+    })
 }
 
 fn named(style: &Style, robots: &[Moved<'_>]) -> Vec<Entry> {

@@ -123,6 +123,8 @@ impl Recording {
                     robot.delivered.add(event.luggage);
                 }
             }
+            // The master says that nobody can bring it.
+            LuggageStage::GivenUp if event.robot == 0 => {}
             // The robot responds, and says where it is.
             _ => self.robot_at(event.robot, component, event.block),
         }

@@ -199,6 +199,30 @@ fn a_robot_that_stands_with_an_empty_battery_is_marked() {
     assert_eq!(picture.all("wait").len(), 1 + 1, "its luggage is not delivered");
 }
 
+/// One robot, and this scenario.
+fn alone(test: &str, scenario: &str) -> String {
+    let composite = crowd(test, 1, (13, 10), "");
+    let text = fs::read_to_string(&composite).unwrap();
+    let (before, rest) = text.split_once("at 1s luggage").unwrap();
+    let rest = rest.split_once("</property>").unwrap().1;
+    fs::write(&composite, format!("{before}{scenario}</property>{rest}")).unwrap();
+    drawn(&composite, ENOUGH)
+}
+
+#[test]
+fn a_master_that_gives_luggage_up_is_no_robot() {
+    let text = alone("given-up", "at 1s luggage (2,5) to (10,9); at 2s breakdown 1");
+    assert!(text.contains(">Robot1<") && !text.contains(">Master<"));
+    let document = Document::parse(&text).unwrap();
+    assert_eq!(Picture::of(&document).all("wait").len(), 1 + 1, "its luggage, and the legend");
+}
+
+#[test]
+fn what_does_not_fit_into_the_legend_is_said_in_fewer_words() {
+    let text = alone("many", "from 1s every 100ms 5 times luggage (2,5) to (10,9)");
+    assert!(text.contains(">delivered 5 pieces \u{b7} ") && !text.contains('\u{2026}'));
+}
+
 #[test]
 fn a_place_that_cannot_be_written_is_told_before_anything_starts() {
     let output =
