@@ -12,6 +12,7 @@ pub mod hardware;
 pub mod manual;
 pub mod master;
 pub mod messages;
+mod refusal;
 pub mod robot;
 mod rules;
 pub mod text;

@@ -1,6 +1,6 @@
 use saoms_api::{Cause, Class, Component, Context, Failure, Header, Level, Publisher, Subscription};
 
-use super::gate::{Gate, Refusal};
+use super::gate::Gate;
 use super::open::Open;
 use crate::console::Timestamp;
 use crate::hardware::Area;
@@ -8,6 +8,7 @@ use crate::messages::{
     AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent,
     FAULT, Fault, ROBOT_LIST, RobotList,
 };
+use crate::refusal::ignore;
 
 /// Sorts the events of the environment to their topics: luggage and faults to the robots, exceptional events to the master of the robots.
 ///
@@ -112,7 +113,7 @@ impl MasterEnvironment {
                 }
                 Err(refusal) => {
                     context.count("luggage.ignored", 1);
-                    ignore(context, header, &refusal);
+                    ignore(context, header, &refusal.reason);
                     if refusal.is_lost {
                         context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
                     }
@@ -128,17 +129,9 @@ impl MasterEnvironment {
                     self.open.break_down(fault.robot);
                     context.send(&self.faults, fault.clone())?;
                 }
-                Err(refusal) => ignore(context, header, &refusal),
+                Err(refusal) => ignore(context, header, &refusal.reason),
             }
         }
         Ok(())
     }
-}
-
-fn ignore(context: &mut Context<'_>, header: Header, refusal: &Refusal) {
-    let sender = match context.sender_name(header) {
-        Some(name) => format!("`{name}`"),
-        None => format!("component {}", header.sender),
-    };
-    context.log(Level::Error, format_args!("ignores what {sender} sent: {}", refusal.reason));
 }

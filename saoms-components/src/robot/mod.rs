@@ -6,6 +6,7 @@
 mod actions;
 mod battery;
 pub mod classic;
+mod heard;
 mod hooks;
 mod job;
 mod knowledge;

@@ -125,6 +125,14 @@ impl Routes {
         }
     }
 
+    /// Whether the block is in the area, as far as that is known.
+    pub(super) fn contains(&self, block: Block) -> bool {
+        match &self.area {
+            Some(area) => area.map.contains(block),
+            None => block.x >= 0 && block.y >= 0,
+        }
+    }
+
     /// Whether a robot can stand on the block.
     #[inline]
     pub fn is_free(&self, block: Block) -> bool {

@@ -90,7 +90,7 @@ impl Loop for CollisionMS {
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        knowledge.lists.peers.hear(context.receive(&self.positions));
+        knowledge.hear_positions(self.positions, context);
         Ok(())
     }
 

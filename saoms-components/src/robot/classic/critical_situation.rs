@@ -116,7 +116,9 @@ impl Loop for CriticalSituationMS {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
-            knowledge.lists.helps.hear(situation, header);
+            if knowledge.lets_in(situation, header, context) {
+                knowledge.lists.helps.hear(situation, header);
+            }
         }
         knowledge.lists.helps.drop_contested();
         let mut faults = context.receive(&self.faults).with_headers();

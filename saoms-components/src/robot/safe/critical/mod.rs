@@ -89,6 +89,9 @@ impl Loop for CriticalSituationMS {
             }
         }
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
+            if !knowledge.lets_in(situation, header, context) {
+                continue;
+            }
             // A robot that only charges looks for its substitute itself.
             if situation.critical != knowledge.number {
                 knowledge.lists.helps.hear(situation, header);
