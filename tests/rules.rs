@@ -239,7 +239,8 @@ fn scenarios_of_which_nothing_comes_are_told() {
         found(&[&[("Environment", "saoms.Environment", scenario, false)], others].concat())
     }
     const KEEPER: Component<'_> = ("Keeper", "saoms.MasterRobot", &[], false);
-    const SLEEPER: Component<'_> = ("Robot1", "saoms.Robot", &[("asleep", "true")], false);
+    const SLEEPER: Component<'_> =
+        ("Robot1", "saoms.Robot", &[("asleep", "true"), ("policy", "classic")], false);
     let luggage = [("scenario", "at 1s luggage (1,0) to (4,0)")];
     let landing = [("scenario", "at 1s landing 2; at 2s luggage (1,0) to (4,0)")];
     let robot = ("Robot2", "saoms.Robot", &[][..], false);
@@ -256,6 +257,8 @@ fn scenarios_of_which_nothing_comes_are_told() {
     assert_eq!(with(&landing, &[MASTER, SLEEPER]), [sleep], "nobody listens to landings");
     assert!(with(&landing, &[MASTER, KEEPER, SLEEPER]).is_empty());
     assert!(with(&luggage, &[MASTER, SLEEPER, robot]).is_empty());
+    let safe = ("Robot2", "saoms.Robot", &[("asleep", "true")][..], false);
+    assert!(with(&luggage, &[MASTER, safe]).is_empty(), "it awakes by itself");
     assert!(with(&[("scenario", "at 9s end")], &[]).is_empty());
     let broker =
         ("Robot1", "saoms.Robot", &[("useJMS", "true"), ("url", "tcp://localhost:61616")][..], false);

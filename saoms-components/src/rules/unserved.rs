@@ -2,16 +2,16 @@
 
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
-use super::robots::{may_be_others, robots};
+use super::robots::{Known, may_be_others, robots};
 use crate::environment::{Environment, Happening, Scenario};
 use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
-use crate::robot::Robot;
+use crate::robot::{Policy, Robot};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",
-        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them sleep and none is awaked.",
+        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them are classic ones that sleep, and none is awaked.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -62,7 +62,9 @@ fn judge(fleet: &FleetView<'_>, has: &Happenings, is_awaked: bool) -> Option<(&'
         ));
     }
     let robots = robots(fleet);
-    if !has.luggage || robots.iter().any(|robot| !robot.properties.asleep) {
+    // Safe robots awake for luggage by themselves, classic ones do not.
+    let comes = |robot: &Known| !robot.properties.asleep || robot.properties.policy == Policy::Safe;
+    if !has.luggage || robots.iter().any(comes) {
         return None;
     }
     if robots.is_empty() {
