@@ -1,5 +1,7 @@
 //! What led to what robots did goes back to what began it, in another component.
 
+use saoms_testkit::Fleet;
+
 use crate::fleet::fleet;
 use crate::run::Run;
 
@@ -73,4 +75,33 @@ fn luggage_for_which_nobody_is_awake_awakes_a_robot() {
     assert_eq!(run.count("luggage", "delivered"), 1);
     assert_eq!(run.log("Robot002"), [""; 0], "one is enough");
     assert_eq!(begin_outside(&run, &["RobotMS"], &["luggage 1 waits, and no robot is awake"]), 1);
+}
+
+#[test]
+fn luggage_that_no_battery_lasts_for_is_given_up_in_the_end() {
+    // A move takes two executions, which only who drives finds out: too much for the way to (9,8) and back.
+    let component = |id: &str, class: &str, more: &str| {
+        format!(
+            r#"<component name="{id}"><implementation.java class="{class}"/><property name="ID">{id}</property>
+            <property name="period">100</property>{more}</component>"#
+        )
+    };
+    let scenario = "at 1s luggage (3,1) to (9,8); at 30s luggage (1,1) to (1,3)";
+    let text = format!(
+        r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="slow" targetNamespace="urn:slow">{}{}{}{}</composite>"#,
+        component("World", "saoms.World", r#"<property name="moveTime">150ms</property>"#),
+        component("MEMS", "saoms.MasterEnvironment", ""),
+        component(
+            "Environment",
+            "saoms.Environment",
+            &format!(r#"<property name="scenario">{scenario}</property>"#)
+        ),
+        component("Robot001", "saoms.Robot", r#"<reference name="world" target="World"/>"#),
+    );
+    let run = Run::with(&Fleet::of_text(text), 300);
+    assert_eq!((run.count("luggage", "delivered"), run.count("luggage", "open")), (0, 2));
+    let given_up = |line: &String| line.contains("no full battery lasts for the way to (9,8)");
+    assert_eq!(run.log("Robot001").iter().filter(|line| given_up(line)).count(), 1);
+    // With that on board it takes nothing else.
+    assert!(run.log("MEMS").iter().any(|line| line.contains("gives up luggage 2")));
 }

@@ -71,6 +71,8 @@ pub struct RobotKnowledge {
     pub(super) failures: u32,
     /// What it delivered, or could not collect, and did not tell yet.
     pub(super) untold: Option<(Job, LuggageStage)>,
+    /// Whether it still holds luggage that it gave up, so that it cannot take any other.
+    pub(super) is_loaded: bool,
     /// How long its battery lasts.
     pub(super) energy: Energy,
     /// Who is around it.
@@ -108,6 +110,7 @@ impl RobotKnowledge {
             trouble: None,
             failures: 0,
             untold: None,
+            is_loaded: false,
             energy: Energy::default(),
             traffic: Traffic::default(),
             leg: Leg::default(),

@@ -12,6 +12,9 @@ const RESERVE: u32 = 14;
 /// Executions that are always kept back.
 const LEAST_RESERVE: u32 = 2;
 
+/// A robot that turned back so often during one job asks itself whether it can be done at all.
+const IN_VAIN: u32 = 3;
+
 /// A robot in charge makes way for others when its battery lasts for so many executions.
 const YIELD_FROM: u32 = 15;
 
@@ -96,6 +99,9 @@ impl RobotKnowledge {
 
     /// What the battery allows of a job that starts here and now.
     pub(super) fn means(&mut self, job: &Job) -> Means {
+        if self.is_loaded {
+            return Means::Never;
+        }
         let (left, full) = (self.battery.executions_left(), self.battery.executions_when_full());
         let usual = self.executions_for(job, false).saturating_add(self.usual_reserve());
         if usual <= left {
@@ -138,6 +144,19 @@ impl RobotKnowledge {
             self.set_out(&job);
         }
         may
+    }
+
+    /// What the robot brings and where it has to go for that, if it is at its charger again with a full battery, turned back from there again and
+    /// again, and knows its speed by now: no battery lasts for that.
+    pub(super) fn strives_in_vain(&mut self) -> Option<(Job, Block)> {
+        let (job, to) = (self.job?, self.destination()?);
+        let charged = self.is_at_charger() && self.battery.is_full();
+        if !charged || self.energy.returns < IN_VAIN {
+            return None;
+        }
+        let full = self.battery.executions_when_full();
+        let rest = Job { from: to, ..job };
+        (!self.is_within(&rest, full)).then_some((job, to))
     }
 
     /// How many executions another robot may take for one move.

@@ -70,6 +70,15 @@ pub enum EventLuggageSymptom {
         /// Whether it carries it.
         carries: bool,
     },
+    /// Charged and turned back again and again, it knows by now that no full battery lasts.
+    TooFar {
+        /// What it brings.
+        job: Job,
+        /// Where it has to go.
+        to: Block,
+        /// Whether it carries it.
+        carries: bool,
+    },
 }
 
 /// What to do about it.
@@ -126,6 +135,13 @@ impl Recordable for EventLuggageSymptom {
                     luggage
                 )
             }
+            EventLuggageSymptom::TooFar { job: Job { luggage, .. }, to, .. } => {
+                record!(
+                    "turned back from the way to {to} again and again: no full battery lasts to bring luggage {luggage}",
+                    to,
+                    luggage
+                )
+            }
         }
     }
 }
@@ -140,7 +156,7 @@ impl Recordable for EventLuggageDecision {
                 record!("charges first: that takes {needs} executions", needs)
             }
             EventLuggageDecision::Refuse(Job { luggage, .. }) => {
-                record!("leaves luggage {luggage} to others: its battery never lasts for that", luggage)
+                record!("leaves luggage {luggage} to others: it can never bring that", luggage)
             }
             EventLuggageDecision::Take(Job { luggage, from, to }) => {
                 record!("brings luggage {luggage} from {from} to {to}", luggage, from, to)
@@ -192,6 +208,10 @@ impl Loop for EventLuggageMS {
         if let Some(symptom) = self.look_at_way(knowledge) {
             return Ok(Some(symptom));
         }
+        if let Some((job, to)) = knowledge.strives_in_vain() {
+            let carries = knowledge.variables.has_luggage;
+            return Ok(Some(EventLuggageSymptom::TooFar { job, to, carries }));
+        }
         let variables = &knowledge.variables;
         if variables.busy || variables.critical || knowledge.hooks.running().is_some() {
             return Ok(None);
@@ -230,8 +250,14 @@ impl Loop for EventLuggageMS {
             EventLuggageSymptom::Alone(job) => EventLuggageDecision::Take(job),
             EventLuggageSymptom::Beaten { job, .. } => EventLuggageDecision::Release(job),
             EventLuggageSymptom::Gone => EventLuggageDecision::Forget,
-            EventLuggageSymptom::CutOff { job, carries: false, .. } => EventLuggageDecision::Return(job),
-            EventLuggageSymptom::CutOff { job, carries: true, .. } => EventLuggageDecision::GiveUp(job),
+            EventLuggageSymptom::CutOff { job, carries, .. }
+            | EventLuggageSymptom::TooFar { job, carries, .. } => {
+                if carries {
+                    EventLuggageDecision::GiveUp(job)
+                } else {
+                    EventLuggageDecision::Return(job)
+                }
+            }
         }))
     }
 
@@ -256,7 +282,9 @@ impl Loop for EventLuggageMS {
             }
             EventLuggageDecision::Refuse(job) => {
                 knowledge.lists.requests.refuse(job.luggage);
-                self.warn(&job, knowledge, context);
+                if !knowledge.is_loaded {
+                    self.warn(&job, knowledge, context);
+                }
                 (job, LuggageStage::Refused)
             }
             EventLuggageDecision::Take(job) => {
@@ -284,14 +312,17 @@ impl Loop for EventLuggageMS {
             EventLuggageDecision::GiveUp(job) => {
                 knowledge.drop_job();
                 // With that on board it is of no use, until somebody helps.
-                knowledge.relieved = true;
+                (knowledge.relieved, knowledge.is_loaded) = (true, true);
                 context.count("assistance", 1);
                 let Job { luggage, to, .. } = job;
+                let why = if knowledge.routes.between(knowledge.next, to) == UNREACHABLE {
+                    "no way leads"
+                } else {
+                    "no full battery lasts for the way"
+                };
                 context.log(
                     Level::Error,
-                    format_args!(
-                        "cannot bring luggage {luggage} any more: no way leads to {to}; needs assistance"
-                    ),
+                    format_args!("cannot bring luggage {luggage} any more: {why} to {to}; needs assistance"),
                 );
                 (job, LuggageStage::GivenUp)
             }
