@@ -3,17 +3,15 @@ use std::time::Duration;
 
 use crate::contain::contained;
 use crate::{
-    Cause, Context, Failure, Header, Host, Level, Phase, Record, SharedMessage, Time, TopicDeclaration,
-    TopicKind, Work,
+    Cause, Failure, Header, Host, Level, Phase, Record, SharedMessage, Time, TopicDeclaration, TopicKind,
+    Work,
 };
 
 use super::data::PropertyViews;
 use super::guard::{guarded, guarded_call, guarded_value};
 use super::looping::give_loop;
 use super::service::BytesCall;
-use super::{
-    Bytes, Inbox, LoopInstance, MessageView, PropertyView, RecordView, ReportView, Sink, Status, ValueView,
-};
+use super::{Bytes, Inbox, LoopInstance, PropertyView, RecordView, ReportView, Sink, Status, ValueView};
 
 /// What a component is lent for the time of a call: the functions of its context, and what arrived.
 #[repr(C)]
@@ -43,7 +41,7 @@ pub struct TopicView {
     pub kind: u32,
 }
 
-/// The functions of a component's context; [`Context`] says what they mean.
+/// The functions of a component's context; [`Context`](crate::Context) says what they mean.
 #[repr(C)]
 #[derive(Debug)]
 #[expect(missing_docs, reason = "named as the functions of `Context`, which says what they mean")]
@@ -106,59 +104,6 @@ pub type LoopVisitor = unsafe extern "C" fn(*mut c_void, Bytes, Bytes, *const Pr
 
 /// The levels of [`HostFunctions::log`] in their order; behind them comes the console.
 pub(super) const LEVELS: [Level; 4] = [Level::Error, Level::Warning, Level::Info, Level::Debug];
-
-/// What [`HostHandle`] needs to lend the messages of a period: used again and again, so that nothing is allocated once it has grown.
-#[derive(Debug, Default)]
-pub(super) struct Lent {
-    messages: Vec<MessageView>,
-    inboxes: Vec<Inbox>,
-}
-
-// SAFETY: between two calls of `with_handle` the lists are empty, so no pointer goes from thread to thread.
-unsafe impl Send for Lent {}
-
-/// Lends a context to code on the other side.
-pub(super) fn with_handle<T>(
-    context: &mut Context<'_>,
-    lent: &mut Lent,
-    code: impl FnOnce(&HostHandle) -> T,
-) -> T {
-    let (host, inboxes) = context.parts();
-    if inboxes.iter().any(|inbox| !inbox.is_empty()) {
-        lend(inboxes, lent);
-    }
-    let mut host: &mut dyn Host = host;
-    let handle = HostHandle {
-        state: (&raw mut host).cast(),
-        functions: &FUNCTIONS,
-        inboxes: lent.inboxes.as_ptr(),
-        inbox_count: lent.inboxes.len(),
-    };
-    let result = code(&handle);
-    lent.inboxes.clear();
-    lent.messages.clear();
-    result
-}
-
-fn lend(inboxes: &[Vec<SharedMessage>], lent: &mut Lent) {
-    for message in inboxes.iter().flatten() {
-        let header = message.header();
-        lent.messages.push(MessageView {
-            bytes: Bytes::lend(message.bytes()),
-            sent: header.sent.as_nanos(),
-            cause: header.cause.0,
-            key: message.key().unwrap_or(0),
-            sender: header.sender,
-            has_key: u32::from(message.key().is_some()),
-        });
-    }
-    let mut rest = &lent.messages[..];
-    for inbox in inboxes {
-        let (own, others) = rest.split_at(inbox.len());
-        lent.inboxes.push(Inbox { messages: own.as_ptr(), count: own.len() });
-        rest = others;
-    }
-}
 
 /// # Safety
 /// `state` comes from the [`HostHandle`] of a call that still goes on.
@@ -464,7 +409,7 @@ fn warn(host: &mut dyn Host, what: &str, failure: &Failure) {
 }
 
 /// The functions of this program.
-static FUNCTIONS: HostFunctions = HostFunctions {
+pub(super) static FUNCTIONS: HostFunctions = HostFunctions {
     size: size_of::<HostFunctions>(),
     name,
     sender,

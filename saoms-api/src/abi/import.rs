@@ -6,7 +6,7 @@ use crate::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue
 use super::component::call;
 use super::data::PropertyViews;
 use super::guard::call_outcome;
-use super::host::{Lent, with_handle};
+use super::lend::{Lent, with_handle};
 use super::{Bytes, ClassTable, HostHandle, Sink, Status};
 
 /// A class of the other side.

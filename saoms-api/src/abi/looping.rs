@@ -12,7 +12,7 @@ use super::component::{Desk, call};
 use super::data::PropertyViews;
 use super::entries::{GivenEntries, Remote, RemoteKnowledge, give, with_knowledge};
 use super::guard::{guarded, guarded_value};
-use super::host::{Lent, with_handle};
+use super::lend::{Lent, with_handle};
 use super::{Bytes, EntriesHandle, HostHandle, PropertyView, Sink, Status};
 
 /// A function of a loop: the loop, its component's knowledge, the host, where an error goes.

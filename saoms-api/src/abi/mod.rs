@@ -23,6 +23,7 @@ mod entries;
 mod guard;
 mod host;
 mod import;
+mod lend;
 mod link;
 mod looping;
 mod metadata;

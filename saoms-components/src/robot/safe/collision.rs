@@ -6,7 +6,7 @@ use crate::robot::RobotKnowledge;
 
 /// Lets the robot enter the block that it wants only once nobody else holds or wants it.
 ///
-/// The right of way is that of [`Traffic`](super::Traffic).
+/// The right of way is that of `Traffic`.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.CollisionMS",
