@@ -125,7 +125,10 @@ impl Loop for CriticalSituationMS {
             return Ok(self.look_at_claimed(knowledge));
         }
         if knowledge.variables.asleep {
-            return Ok(None);
+            return Ok(look_for_hopeless_requests(knowledge).map(|(symptom, cause)| {
+                context.because(cause);
+                symptom
+            }));
         }
         if let Some(emulates) = knowledge.stands_in_for
             && !knowledge.needs_help(emulates)
@@ -367,6 +370,20 @@ fn look_for_help_requests(knowledge: &mut RobotKnowledge) -> Option<(CriticalSym
     let (situation, cause) = (request.situation.clone(), request.cause);
     let distance = knowledge.block.distance(start(&situation));
     Some((CriticalSymptom::NeedsHelp { situation, distance }, cause))
+}
+
+/// A request with a job that is out of this robot's reach: others may have to know that nobody can do it, also where this one sleeps.
+fn look_for_hopeless_requests(knowledge: &mut RobotKnowledge) -> Option<(CriticalSymptom, Cause)> {
+    let open = knowledge.lists.helps.open().len();
+    (0..open).find_map(|place| {
+        let request = knowledge.lists.helps.open().get(place)?;
+        let (situation, cause) = (request.situation.clone(), request.cause);
+        if knowledge.means(&situation.job()?) != Means::Never {
+            return None;
+        }
+        let distance = knowledge.block.distance(start(&situation));
+        Some((CriticalSymptom::NeedsHelp { situation, distance }, cause))
+    })
 }
 
 /// A robot that would help and is closer; at the same distance the lower number is.
