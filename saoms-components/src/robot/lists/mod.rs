@@ -25,7 +25,7 @@ pub struct Lists {
     pub helps: Helps,
     /// Where the other robots are and go.
     pub peers: Peers,
-    /// The chargers of the other robots, also of those that are not active any more.
+    /// The chargers of the other robots, also of those that are not active any more, by number.
     pub chargers: Vec<(u32, Block)>,
     /// Robots that cannot move any more, until it is known where they are.
     pub lost: Vec<u32>,
@@ -71,9 +71,9 @@ impl Lists {
         if robot.robot == self.number {
             return;
         }
-        match self.chargers.iter_mut().find(|(known, _)| *known == robot.robot) {
-            Some((_, charger)) => *charger = robot.charger,
-            None => self.chargers.push((robot.robot, robot.charger)),
+        match self.chargers.binary_search_by_key(&robot.robot, |(known, _)| *known) {
+            Ok(place) => self.chargers[place].1 = robot.charger,
+            Err(place) => self.chargers.insert(place, (robot.robot, robot.charger)),
         }
         match (self.active.binary_search_by_key(&robot.robot, |known| known.robot), robot.active) {
             (Ok(place), true) => self.active[place].clone_from(robot),

@@ -30,6 +30,10 @@ impl Leg {
     /// The more urgent way goes first; of two alike, the one that lasts longer. It stays the same on the whole way: robots that swap their
     /// priorities would push each other to and fro.
     pub(super) fn priority(&self, robot: u32) -> Priority {
+        if self.urgency == Urgency::None {
+            // Who rests has nothing to compare, and nothing new to say when it rests for another reason.
+            return Priority { rank: 0, robot };
+        }
         const MOST: u64 = (1 << 56) - 1;
         // Quarters of microseconds: the time of a run fits for more than 500 years.
         let age = MOST - (self.since.as_nanos() >> 8).min(MOST);

@@ -119,6 +119,9 @@ impl Loop for PathFollowerMS {
             return Ok((!said).then_some(PathSymptom::Bound { block }));
         }
         knowledge.set_leg(context.now());
+        if self.rests(knowledge) {
+            return Ok(None);
+        }
         Ok(Some(match knowledge.leg.goal {
             Some(goal) if knowledge.leg.urgency != Urgency::None => {
                 PathSymptom::OnTheWay { at: knowledge.next, goal }
@@ -179,6 +182,27 @@ impl Loop for PathFollowerMS {
 }
 
 impl PathFollowerMS {
+    /// Whether the robot is where it wants to be, in nobody's way, and the others know it: then there is nothing to do.
+    fn rests(&self, knowledge: &mut RobotKnowledge) -> bool {
+        let at = knowledge.next;
+        let on_the_way = knowledge.leg.urgency != Urgency::None || knowledge.block != at;
+        if on_the_way || knowledge.traffic.wanted(at).is_some() {
+            return false;
+        }
+        let own = knowledge.leg.priority(knowledge.number);
+        let holds = knowledge.job_here().is_some() || knowledge.holds_charger();
+        if !holds && knowledge.traffic.inherited(own, at) != own {
+            return false;
+        }
+        let priority = if holds { IMMOVABLE } else { own };
+        let rests = self.said == Some(Position { priority, ..knowledge.position() });
+        if rests {
+            knowledge.traffic.stay(at);
+            knowledge.energy.pace().note_way(false, false);
+        }
+        rests
+    }
+
     fn say(&mut self, context: &mut Context<'_>, position: Position) -> Result<(), Failure> {
         self.said = Some(position.clone());
         context.send(&self.positions, position)
