@@ -195,7 +195,7 @@ fn the_classic_console_shows_local_time_or_that_of_the_figures() {
     let fleet = file(&folder("date"), "one.composite", ONE_ROBOT);
     let first = |arguments: &[&str]| {
         let arguments = [&["run", &fleet, "--for", "50ms", "--console", "classic"], arguments].concat();
-        let shown = stdout(&command(&arguments).env("TZ", "XXX5").output().unwrap());
+        let shown = stdout(&command(&arguments).env("TZ", "EST5").output().unwrap());
         shown.lines().find(|line| line.starts_with("Execution 0 of")).unwrap().to_owned()
     };
     assert_eq!(first(&["--virtual"]), "Execution 0 of Robot001 starts at 2015-01-23 14:32:35.0");
