@@ -1,7 +1,7 @@
 //! Attributes: which there are, and what their values say.
 
 use super::Loader;
-use super::vocabulary::{Kind, OWN_ATTRIBUTES};
+use super::vocabulary::{self, Kind};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, Policy, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Text};
@@ -14,7 +14,7 @@ impl Loader<'_> {
         for attribute in element.attributes() {
             let is_own = match attribute.namespace() {
                 "" if kind.has(attribute.name(), self.version) => continue,
-                SAOMS_NAMESPACE if OWN_ATTRIBUTES.contains(&(kind.name, attribute.local_name())) => continue,
+                SAOMS_NAMESPACE if vocabulary::is_own(kind, attribute.local_name()) => continue,
                 "" | SAOMS_NAMESPACE => true,
                 namespace if namespace == self.namespace || Version::from_namespace(namespace).is_some() => {
                     !kind.has(attribute.local_name(), self.version)

@@ -22,7 +22,7 @@ mod shelf;
 #[cfg(test)]
 mod tests;
 mod values;
-mod vocabulary;
+pub mod vocabulary;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,4 +1,5 @@
 mod reading;
+mod vocabulary;
 
 use std::fmt::Write as _;
 

@@ -1,0 +1,155 @@
+//! What SCA's elements can have and hold, and what SAOMS adds to them (the XML schemas of SCA 1.0 and SCA Assembly 1.1).
+//!
+//! The loader holds files to these tables; the XML schema for editors is made of them, too. Where the schemas of the two versions differ and both
+//! could be meant, what either allows is known.
+
+mod elements;
+
+pub use elements::{
+    BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
+    COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
+    IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, LOOP,
+    OTHERS, OWN_ATTRIBUTES, OWN_ELEMENTS, VARIANTS, WIRE,
+};
+
+use crate::model::Version;
+
+/// An element whose attributes and content are known.
+#[derive(Debug)]
+pub struct Kind {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is for, in a sentence or two.
+    pub doc: &'static str,
+    /// Its attributes.
+    pub attributes: &'static [Known],
+    /// The SCA elements that it can hold; a name that ends with a dot stands for all that start so.
+    pub children: &'static [&'static str],
+}
+
+/// An attribute that is known.
+#[derive(Debug)]
+pub struct Known {
+    /// Its name.
+    pub name: &'static str,
+    /// What its value is.
+    pub holds: Holds,
+    /// What it says, in a sentence or two.
+    pub doc: &'static str,
+    /// Whether the element has to have it.
+    pub required: bool,
+    /// Whether it is of 1.0 alone: a mistake in 1.1. Those of 1.1 alone are understood in 1.0 as well.
+    pub only_1_0: bool,
+}
+
+/// What the value of an attribute is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Holds {
+    /// A name that its author gives: without blanks and `/`.
+    Name,
+    /// The name of a property of the class.
+    PropertyName,
+    /// The name of a service of the class.
+    ServiceName,
+    /// The name of a reference of the class.
+    ReferenceName,
+    /// The name of a class of components.
+    Class,
+    /// The name of an interface.
+    Interface,
+    /// The name of a loop within a component.
+    LoopName,
+    /// The name of a class of loops.
+    LoopClass,
+    /// The name of a composite, with the prefix of its namespace.
+    Composite,
+    /// A component, or a component and one of its services or references: `Robot001/world`.
+    End,
+    /// Any number of such ends between blanks.
+    Ends,
+    /// The value of a property.
+    Value,
+    /// Where the value of a property comes from: `$name`, with a path where it is complex.
+    Source,
+    /// `true` or `false`.
+    Boolean,
+    /// `0..1`, `1..1`, `0..n` or `1..n`.
+    Multiplicity,
+    /// A URI.
+    Uri,
+    /// Names with prefixes, between blanks.
+    Names,
+    /// Any text.
+    Text,
+}
+
+impl Kind {
+    /// Whether an element of this version has the attribute.
+    pub fn has(&self, name: &str, version: Version) -> bool {
+        self.of(version).any(|known| known.name == name)
+    }
+
+    /// The attributes in this version.
+    pub fn of(&self, version: Version) -> impl Iterator<Item = &'static Known> {
+        self.attributes.iter().filter(move |known| !(known.only_1_0 && version.is_1_1()))
+    }
+
+    /// The names of the attributes in this version.
+    pub(super) fn names(&self, version: Version) -> impl Iterator<Item = &'static str> {
+        self.of(version).map(|known| known.name)
+    }
+
+    /// What an element of this name is inside this one; `None` where it cannot stand, or where its parts are not known.
+    pub fn child(&self, name: &str) -> Option<&'static Kind> {
+        let is_top = std::ptr::eq(self, &COMPOSITE);
+        let found = match (name, is_top) {
+            ("component", _) => &COMPONENT,
+            ("include", _) => &INCLUDE,
+            ("wire", _) => &WIRE,
+            ("property", true) => &COMPOSITE_PROPERTY,
+            ("property", false) => &COMPONENT_PROPERTY,
+            ("service", true) => &COMPOSITE_SERVICE,
+            ("service", false) => &COMPONENT_SERVICE,
+            ("reference", true) => &COMPOSITE_REFERENCE,
+            ("reference", false) => &COMPONENT_REFERENCE,
+            ("callback", _) => &CALLBACK,
+            ("implementation.java", _) => &IMPLEMENTATION_JAVA,
+            ("implementation.composite", _) => &IMPLEMENTATION_COMPOSITE,
+            ("implementation.rust", _) => &IMPLEMENTATION_RUST,
+            ("interface.java", _) => &INTERFACE_JAVA,
+            ("interface.rust", _) => &INTERFACE_RUST,
+            ("interface.wsdl", _) => &INTERFACE_WSDL,
+            ("binding.sca", _) => &BINDING_SCA,
+            _ => return None,
+        };
+        children(self).any(|child| child == name).then_some(found)
+    }
+}
+
+/// The elements that `kind` can hold, all variants by name.
+pub fn children(kind: &Kind) -> impl Iterator<Item = &'static str> {
+    kind.children.iter().flat_map(|child| {
+        match VARIANTS.iter().find(|(prefix, _)| prefix == child) {
+            Some((_, variants)) => *variants,
+            None => std::slice::from_ref(child),
+        }
+        .iter()
+        .copied()
+    })
+}
+
+/// What an element is for whose parts are not known here.
+pub fn other(name: &str) -> Option<&'static str> {
+    OTHERS.iter().find(|(known, _)| *known == name).map(|(_, doc)| *doc)
+}
+
+/// Whether SAOMS adds the attribute to the element.
+pub(super) fn is_own(kind: &Kind, attribute: &str) -> bool {
+    OWN_ATTRIBUTES.iter().any(|(of, known)| *of == kind.name && known.name == attribute)
+}
+
+/// Whether SCA has an element of this name somewhere in a composite.
+pub(super) fn is_known(name: &str) -> bool {
+    let all = [&COMPOSITE, &COMPONENT, &COMPONENT_SERVICE, &BINDING_SCA, &COMPONENT_PROPERTY];
+    name == "composite" || all.into_iter().flat_map(children).any(|known| known == name)
+}
