@@ -44,7 +44,7 @@ pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Resul
     }
     let mut contribution = Contribution::of(composites);
     load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
-    let options = Options { settings, assume_classes };
+    let options = Options { settings, assume_classes, ..Options::default() };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
     Ok(Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() })
 }

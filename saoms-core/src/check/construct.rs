@@ -8,14 +8,25 @@ use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use saoms_api::{Failure, contain::contained};
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
-pub(super) fn component(subject: Subject<'_>, class: &ClassIndex<'_>, report: &mut Report<'_>) {
+pub(super) fn component(
+    subject: Subject<'_>,
+    class: &ClassIndex<'_>,
+    without_plugin_code: bool,
+    report: &mut Report<'_>,
+) {
+    if without_plugin_code && class.class.origin().is_some() {
+        return;
+    }
     judge(|| class.class.construct(subject.values).map(drop), subject, class.class.name(), report);
 }
 
 /// The same for a loop that the composite says something about.
-pub(super) fn looping(one: &Resolved<'_>, report: &mut Report<'_>) {
+pub(super) fn looping(one: &Resolved<'_>, without_plugin_code: bool, report: &mut Report<'_>) {
     let Some(subject) = one.subject() else { return };
     let class = &one.spec.class;
+    if without_plugin_code && class.origin().is_some() {
+        return;
+    }
     judge(|| class.construct(subject.values).map(drop), subject, class.name(), report);
 }
 

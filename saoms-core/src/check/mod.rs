@@ -99,8 +99,9 @@ pub fn check(
     saoms_api::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
         if let (Kind::Class(class), Some(resolved)) = (member.kind, resolved) {
-            construct::component(resolved.subject(member), &classes[class], report);
-            resolved.loops.iter().for_each(|one| construct::looping(one, report));
+            let without = options.without_plugin_code;
+            construct::component(resolved.subject(member), &classes[class], without, report);
+            resolved.loops.iter().for_each(|one| construct::looping(one, without, report));
         }
     }
     rules::check(&fleet, &classes, &resolved, &wiring, registry.rules(), report);

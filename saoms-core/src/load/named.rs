@@ -7,7 +7,7 @@ use super::shelf::Shelf;
 use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostics, nearest_few, quoted};
 use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
-use crate::source::Sources;
+use crate::source::{Sources, identity};
 
 /// Names that are offered in place of one that is not found.
 const OFFERED: usize = 3;
@@ -27,7 +27,7 @@ pub fn load_named(
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) {
-    let mut shelf = Shelf::default();
+    let mut shelf = Shelf::new(sources.open().clone());
     // By their paths, so that one file is one composite; `None` for one that could not be read.
     let mut known: HashMap<PathBuf, Option<usize>> = HashMap::new();
     for (place, composite) in contribution.composites().iter().enumerate() {
@@ -54,7 +54,9 @@ pub fn load_named(
             })
             .collect();
         let described = described(composite);
-        if wanted.is_empty() && described.is_empty() || !path.is_file() {
+        if wanted.is_empty() && described.is_empty()
+            || !(path.is_file() || sources.open().get(&path).is_some())
+        {
             continue;
         }
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -117,11 +119,6 @@ struct Wanted {
     prefix: String,
     namespaces: Option<Vec<String>>,
     local: String,
-}
-
-/// One path for one file, however it is written.
-fn identity(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 fn missing(shelf: &mut Shelf, folder: &Path, wanted: &Wanted) -> Missing {

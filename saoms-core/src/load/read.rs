@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::{encoding, missing};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
-use crate::source::{FileId, Location, Sources, Span};
+use crate::source::{FileId, Location, OpenTexts, Sources, Span};
 
 /// The size in bytes above which a file is refused unless something else is set: 256 MB.
 pub const MAX_SIZE: u64 = 256_000_000;
@@ -25,7 +25,7 @@ pub fn read(
     diagnostics: &mut Diagnostics,
 ) -> Option<FileId> {
     let max_size = max_size.min(LIMIT);
-    add(path, bytes(path, max_size), max_size, sources, diagnostics)
+    add(path, bytes(path, max_size, sources.open()), max_size, sources, diagnostics)
 }
 
 /// Reads the text of `input` as [`read`] does that of a file; `name` is what diagnostics call it.
@@ -80,9 +80,14 @@ fn add(
 ///
 /// # Errors
 /// What to say there when there is no such file or it is no text in UTF-8.
-pub(super) fn value(path: &Path, max_size: u64, named: Location) -> Result<String, Box<Diagnostic>> {
+pub(super) fn value(
+    path: &Path,
+    max_size: u64,
+    named: Location,
+    open: &OpenTexts,
+) -> Result<String, Box<Diagnostic>> {
     let max_size = max_size.min(LIMIT);
-    let bytes = bytes(path, max_size)
+    let bytes = bytes(path, max_size, open)
         .map_err(|failure| Box::new(failure.diagnostic(path, max_size, named, &VALUE)))?;
     text(path, bytes, &VALUE).map_err(|wrong| {
         let Wrong { code, message, help, .. } = *wrong;
@@ -163,7 +168,10 @@ fn with_help(diagnostic: Diagnostic, help: Option<String>) -> Diagnostic {
     }
 }
 
-fn bytes(path: &Path, max_size: u64) -> Result<Vec<u8>, Failure> {
+fn bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failure> {
+    if let Some(text) = open.get(path) {
+        return limited(text.as_bytes(), Vec::with_capacity(text.len()), max_size);
+    }
     let about = fs::metadata(path).map_err(Failure::Io)?;
     if about.is_dir() {
         return Err(Failure::Directory);

@@ -1,5 +1,6 @@
 //! Finding composites in folders by their names, without reading more than is needed.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::fs::{self, File};
 use std::io::Read;
@@ -9,6 +10,7 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use crate::diagnostic::quoted;
+use crate::source::OpenTexts;
 
 /// Entries of folders that are looked at in all.
 const MOST_ENTRIES: usize = 20_000;
@@ -25,6 +27,7 @@ pub(super) struct Shelf {
     heads: HashMap<PathBuf, Option<Head>>,
     roots: HashMap<PathBuf, PathBuf>,
     left: usize,
+    open: OpenTexts,
 }
 
 /// The composites in a folder, and the folders in it, sorted.
@@ -42,13 +45,18 @@ pub(super) struct Head {
     pub(super) local: String,
 }
 
-impl Default for Shelf {
-    fn default() -> Self {
-        Self { folders: HashMap::new(), heads: HashMap::new(), roots: HashMap::new(), left: MOST_ENTRIES }
-    }
-}
-
 impl Shelf {
+    /// Nothing is known yet but the texts that count in place of files.
+    pub(super) fn new(open: OpenTexts) -> Self {
+        Self {
+            folders: HashMap::new(),
+            heads: HashMap::new(),
+            roots: HashMap::new(),
+            left: MOST_ENTRIES,
+            open,
+        }
+    }
+
     /// The file of the composite with this name in one of these namespaces, or in any, as a file in `folder` means it.
     pub(super) fn find(
         &mut self,
@@ -143,14 +151,22 @@ impl Shelf {
                 _ => {}
             }
         }
+        for path in self.open.inside(here) {
+            // It need not be on disk.
+            let path = path.file_name().map_or_else(|| path.to_owned(), |name| folder.join(name));
+            if path.extension().is_some_and(|ending| ending == "composite") {
+                listing.composites.push(path);
+            }
+        }
         listing.composites.sort_unstable();
+        listing.composites.dedup();
         listing.folders.sort_unstable();
         self.folders.insert(folder.to_owned(), listing.clone());
         listing
     }
 
     fn head(&mut self, path: &Path) -> &Option<Head> {
-        self.heads.entry(path.to_owned()).or_insert_with(|| head(path))
+        self.heads.entry(path.to_owned()).or_insert_with(|| head(path, &self.open))
     }
 }
 
@@ -170,14 +186,18 @@ fn root(folder: &Path) -> PathBuf {
 }
 
 /// The name and namespace of the composite in a file; `None` when its first tag is no `composite`.
-fn head(path: &Path) -> Option<Head> {
+fn head(path: &Path, open: &OpenTexts) -> Option<Head> {
     let mut bytes = Vec::new();
-    // What is no file, as a pipe, might never come to an end.
-    if !fs::metadata(path).ok()?.is_file() {
-        return None;
-    }
-    File::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = if let Some(open) = open.get(path) {
+        Cow::Borrowed(&**open)
+    } else {
+        // What is no file, as a pipe, might never come to an end.
+        if !fs::metadata(path).ok()?.is_file() {
+            return None;
+        }
+        File::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
+        String::from_utf8_lossy(&bytes)
+    };
     let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
     loop {
         match reader.read_event().ok()? {

@@ -32,7 +32,7 @@ pub fn read_values(
         let Some(file) = &details.file else { continue };
         let path = folder.join(file.as_str());
         if !known.contains_key(&path) {
-            match read::value(&path, max_size, file.location) {
+            match read::value(&path, max_size, file.location, sources.open()) {
                 Ok(text) => _ = known.insert(path.clone(), add(&path, text, sources)),
                 Err(diagnostic) => diagnostics.push(*diagnostic),
             }

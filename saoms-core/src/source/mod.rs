@@ -6,6 +6,7 @@
 
 mod lines;
 mod located;
+mod open;
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +15,7 @@ use std::sync::{Arc, OnceLock};
 use lines::LineIndex;
 pub use lines::{LineColumn, LineRange};
 pub use located::{Located, Text};
+pub use open::{OpenTexts, identity};
 
 /// A file of a [`Sources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -127,12 +129,23 @@ impl SourceFile {
 #[derive(Debug, Default)]
 pub struct Sources {
     files: Vec<SourceFile>,
+    open: OpenTexts,
 }
 
 impl Sources {
     /// No texts yet.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// No texts yet; those that an editor holds will be read in place of their files.
+    pub fn with_open(open: OpenTexts) -> Self {
+        Self { files: Vec::new(), open }
+    }
+
+    /// The texts that are read in place of files.
+    pub fn open(&self) -> &OpenTexts {
+        &self.open
     }
 
     /// Adds a text under the name that users know it by.

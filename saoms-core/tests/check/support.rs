@@ -62,7 +62,7 @@ pub(crate) fn nested(
     let files: Vec<_> = texts.iter().map(|text| sources.add(name(text), *text)).collect();
     let settings =
         settings.iter().filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics));
-    let options = Options { settings: settings.collect(), assume_classes };
+    let options = Options { settings: settings.collect(), assume_classes, ..Options::default() };
     let mut composites: Vec<_> =
         files.iter().filter_map(|file| load_file(*file, &sources, &mut diagnostics)).collect();
     let others = composites.split_off(1);

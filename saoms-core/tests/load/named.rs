@@ -6,7 +6,7 @@ use std::path::Path;
 use saoms_core::diagnostic::Diagnostics;
 use saoms_core::load::{MAX_SIZE, load, load_named};
 use saoms_core::model::{Contribution, Link, Naming};
-use saoms_core::source::Sources;
+use saoms_core::source::{OpenTexts, Sources};
 
 fn composite(namespace: &str, name: &str, inside: &str) -> String {
     format!(
@@ -146,4 +146,29 @@ fn circles_of_links_and_large_folders_end() {
     let mut all = Contribution::of(vec![first]);
     load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
     assert_eq!(all.composites().len(), 1);
+}
+
+#[test]
+fn what_an_editor_holds_counts_in_place_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("outer.composite"), composite("urn:a", "outer", "<include name='other'/>")).unwrap();
+    fs::write(path("inner.composite"), composite("urn:a", "inner", "")).unwrap();
+    fs::write(path("value.txt"), "saved").unwrap();
+    let component = "<component name='c'><implementation.java class='C'/><property name='p' file='value.txt'/></component>";
+    let inside = format!("<include name='inner'/><include name='new'/>{component}");
+    let mut open = OpenTexts::default();
+    open.insert(&path("./outer.composite"), composite("urn:a", "outer", &inside));
+    open.insert(&path("inner.composite"), composite("urn:a", "renamed", ""));
+    open.insert(&path("new.composite"), composite("urn:a", "new", ""));
+    open.insert(&path("value.txt"), " typed ");
+    let (mut sources, mut diagnostics) = (Sources::with_open(open), Diagnostics::new());
+    let outer = load(&path("outer.composite"), &mut sources, &mut diagnostics).unwrap();
+    assert_eq!(outer.components[0].properties[0].from_file().unwrap(), &"typed");
+    let mut all = Contribution::of(vec![outer]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let link = |place: usize| all.link(all.composites()[0].includes[place].origin).unwrap();
+    assert!(matches!(link(0), Link::Missing(_)), "it has another name now");
+    assert_eq!(*link(1), Link::To(1), "it is not on disk");
+    assert!(diagnostics.is_empty());
 }
