@@ -1,5 +1,7 @@
 //! Attributes: which there are, and what their values say.
 
+use std::borrow::Cow;
+
 use super::Loader;
 use super::vocabulary::{self, Kind};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
@@ -43,6 +45,9 @@ impl Loader<'_> {
     ) {
         let name = attribute.name();
         let location = attribute.name_span().in_file(element.document().file());
+        if attribute.namespace() == SAOMS_NAMESPACE {
+            return self.unknown_own(element, attribute, kind);
+        }
         let meant = nearest(name, free.iter().copied()).or_else(|| nearest(name, kind.names(self.version)));
         // The schema of SCA 1.0 lets any attribute pass; tools put some of their own there.
         let passes = meant.is_none()
@@ -59,12 +64,39 @@ impl Loader<'_> {
             Some(meant) => {
                 one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
             }
+            None if vocabulary::own_names(kind).any(|known| known == name) => one.help(format!(
+                "it is an attribute of SAOMS: write `saoms:{name}`, and `xmlns:saoms=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
+            )),
             None => {
                 let names: Vec<String> = kind.names(self.version).map(quoted).collect();
                 one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", ")))
             }
         };
         self.report(one);
+    }
+
+    /// An attribute in the namespace of SAOMS that is none of SAOMS.
+    fn unknown_own(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind) {
+        let name = attribute.local_name();
+        let location = attribute.name_span().in_file(element.document().file());
+        if self.diagnostics.skip(&codes::UNKNOWN_ATTRIBUTE, Severity::Error, location) {
+            return;
+        }
+        let message = format!("{} has no attribute {}", quoted(element.name()), quoted(attribute.name()));
+        let one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message);
+        let prefix = attribute.prefix().unwrap_or_default();
+        let names: Vec<String> =
+            vocabulary::own_names(kind).map(|known| quoted(&format!("{prefix}:{known}"))).collect();
+        self.report(match nearest(name, vocabulary::own_names(kind)) {
+            Some(meant) => {
+                let meant = format!("{prefix}:{meant}");
+                let description = format!("replace {} with {}", quoted(attribute.name()), quoted(&meant));
+                one.suggest(description, location, meant)
+            }
+            None if kind.has(name, self.version) => one.suggest("remove the prefix", location, name),
+            None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
+            None => one.help(format!("of SAOMS it has {}", names.join(", "))),
+        });
     }
 
     /// An attribute of SCA with a prefix: SCA's attributes have none.
@@ -81,6 +113,17 @@ impl Loader<'_> {
     /// The value of an attribute, white space at its ends left out.
     pub(super) fn optional(&self, element: Element<'_>, name: &str) -> Option<Text> {
         element.attribute(name).map(Attribute::trimmed)
+    }
+
+    /// The value of an attribute of SAOMS on an element of SCA.
+    pub(super) fn own(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
+        let attribute = element.attribute_in(SAOMS_NAMESPACE, name)?;
+        let value = attribute.trimmed();
+        if value.is_empty() {
+            self.value_fault(attribute, format!("the attribute {} is empty", quoted(attribute.name())), None);
+            return None;
+        }
+        Some(value)
     }
 
     /// The value of an attribute that has to be there, and not be empty.
@@ -118,8 +161,10 @@ impl Loader<'_> {
         };
         // The usual name is plain: a look at its bytes is enough.
         let is_odd = |byte: u8| byte <= b' ' || byte == b'/' || byte >= 0x80;
-        if name.bytes().any(is_odd)
-            && let Some(bad) = name.chars().find(|c| c.is_whitespace() || *c == '/')
+        let plain =
+            if self.is_replicated { without_expressions(&name) } else { Cow::Borrowed(name.as_str()) };
+        if plain.bytes().any(is_odd)
+            && let Some(bad) = plain.chars().find(|c| c.is_whitespace() || *c == '/')
         {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
             let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));
@@ -173,7 +218,12 @@ impl Loader<'_> {
 
     /// The words of an attribute that is a list.
     pub(super) fn list(&self, element: Element<'_>, name: &str) -> Vec<Text> {
-        element.attribute(name).map(|attribute| attribute.words().collect()).unwrap_or_default()
+        let Some(attribute) = element.attribute(name) else { return Vec::new() };
+        if self.is_replicated {
+            attribute.words_with_expressions().collect()
+        } else {
+            attribute.words().collect()
+        }
     }
 
     /// `requires` and `policySets`.
@@ -192,6 +242,16 @@ impl Loader<'_> {
         }
         self.report(one);
     }
+}
+
+/// A text of a replicated component without its expressions, in which blanks and slashes are nothing odd.
+fn without_expressions(text: &str) -> Cow<'_, str> {
+    let mut plain = Cow::Borrowed(text);
+    while let Some(start) = plain.find("${") {
+        let end = plain[start..].find('}').map_or(plain.len(), |length| start + length + 1);
+        plain.to_mut().replace_range(start..end, "");
+    }
+    plain
 }
 
 /// Whether an attribute of the element could be a misspelt `name`.

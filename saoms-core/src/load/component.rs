@@ -7,7 +7,7 @@ use super::vocabulary::{
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Component, Implementation, ImplementationKind, Origin, SAOMS_NAMESPACE};
+use crate::model::{Component, Implementation, ImplementationKind, Origin, Replicas, SAOMS_NAMESPACE};
 use crate::source::Text;
 use crate::xml::Element;
 
@@ -15,10 +15,15 @@ impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> Component {
         self.check_attributes(element, &COMPONENT);
         self.no_text(element);
+        let condition = self.own(element, "if").map(Box::new);
+        let replicas = self.replicas(element);
+        self.is_replicated = replicas.is_some();
         let mut component = Component {
             origin: Origin::of(element),
             name: self.name(element),
             path: self.path(element),
+            condition,
+            replicas,
             autowire: self.boolean(element, "autowire"),
             constraining_type: self.optional(element, "constrainingType").map(Box::new),
             implementation: None,
@@ -75,11 +80,24 @@ impl Loader<'_> {
         component.properties = self.gathered.properties.drain(..).collect();
         component.services = self.gathered.services.drain(..).collect();
         component.references = self.gathered.references.drain(..).collect();
+        self.is_replicated = false;
         // An element that was not read to its end may have had one.
         if component.implementation.is_none() && !has_faulty && element.is_closed() {
             self.missing_implementation(element, &component.name);
         }
         component
+    }
+
+    /// What a component says about its replicas.
+    fn replicas(&mut self, element: Element<'_>) -> Option<Box<Replicas>> {
+        let replicas = Replicas {
+            count: self.own(element, "count"),
+            from: self.own(element, "from"),
+            overrides: self.own(element, "overrides"),
+            table: None,
+        };
+        let is_given = replicas.count.is_some() || replicas.from.is_some() || replicas.overrides.is_some();
+        is_given.then(|| Box::new(replicas))
     }
 
     /// The path that a component of an expanded composite keeps.

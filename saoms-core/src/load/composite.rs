@@ -82,6 +82,7 @@ impl Loader<'_> {
             origin: Origin::of(element),
             name: name.unwrap_or_else(|| Located::new("".into(), element.name_location())),
             uri: self.optional(element, "uri"),
+            condition: self.own(element, "if"),
         }
     }
 
@@ -94,6 +95,7 @@ impl Loader<'_> {
             source: self.required(element, "source"),
             target: self.required(element, "target"),
             replace: self.boolean(element, "replace"),
+            condition: self.own(element, "if"),
         }
     }
 }

@@ -75,6 +75,7 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
             namespace: String::new(),
             diagnostics,
             gathered: Gathered::default(),
+            is_replicated: false,
         };
         if loader.root(document.root()) {
             composite = Some(loader.composite(&Arc::new(document)));
@@ -97,6 +98,8 @@ struct Loader<'d> {
     diagnostics: &'d mut Diagnostics,
     /// Where parts of the component at hand are gathered, so that each list is allocated once and in its size.
     gathered: Gathered,
+    /// Whether the component at hand is replicated, so that its texts can hold expressions.
+    is_replicated: bool,
 }
 
 #[derive(Default)]

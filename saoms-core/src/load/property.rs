@@ -53,6 +53,7 @@ impl Loader<'_> {
             must_supply: self.boolean(element, "mustSupply"),
             source: self.optional(element, "source"),
             file: self.optional(element, "file"),
+            env: self.own(element, "env"),
             from_file: None,
             values,
             content,

@@ -3,7 +3,7 @@
 use smol_str::SmolStr;
 
 use super::origin::parts;
-use super::{Loop, Origin, Policy, Property, Reference, Service};
+use super::{Loop, Origin, Policy, Property, Reference, Replicas, Service};
 use crate::source::{Located, Text};
 
 /// A component: a configured use of an implementation.
@@ -15,6 +15,10 @@ pub struct Component {
     pub name: Text,
     /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
     pub path: Option<Box<Text>>,
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub condition: Option<Box<Text>>,
+    /// What is said about its replicas, in the namespace of SAOMS; `None` for a component that stands for itself alone.
+    pub replicas: Option<Box<Replicas>>,
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
     /// `constrainingType` (1.0).

@@ -51,6 +51,8 @@ pub struct Include {
     pub name: Text,
     /// `uri`: the file of the composite, as Tuscany understands it.
     pub uri: Option<Text>,
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub condition: Option<Text>,
 }
 
 /// A wire from a reference to a service.
@@ -64,6 +66,8 @@ pub struct Wire {
     pub target: Option<Text>,
     /// `replace` (1.1)
     pub replace: Option<Located<bool>>,
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub condition: Option<Text>,
 }
 
 parts!(Composite, Include, Wire);

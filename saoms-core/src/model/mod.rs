@@ -14,6 +14,7 @@ mod looping;
 mod origin;
 mod policy;
 mod property;
+mod replicas;
 mod version;
 
 pub use component::{Component, Implementation, ImplementationKind};
@@ -27,4 +28,5 @@ pub use looping::Loop;
 pub use origin::{Origin, Part};
 pub use policy::Policy;
 pub use property::{Property, PropertyDetails, PropertyValue};
+pub use replicas::{Replicas, Row, Table};
 pub use version::{SAOMS_NAMESPACE, Version};

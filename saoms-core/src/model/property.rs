@@ -37,6 +37,8 @@ pub struct PropertyDetails {
     pub source: Option<Text>,
     /// `file`: a file that holds the value.
     pub file: Option<Text>,
+    /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
+    pub env: Option<Text>,
     /// What that file holds; `None` until [`read_values`](crate::load::read_values), and where it cannot be read.
     pub from_file: Option<Text>,
     /// Its `<value>` elements.
@@ -87,6 +89,11 @@ impl Property {
     /// `file`: a file that holds the value.
     pub fn file(&self) -> Option<&Text> {
         self.details.as_ref()?.file.as_ref()
+    }
+
+    /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
+    pub fn env(&self) -> Option<&Text> {
+        self.details.as_ref()?.env.as_ref()
     }
 
     /// What the file that `file` names holds, once it is read.

@@ -321,6 +321,23 @@ impl<'a> Attribute<'a> {
             .map(move |word| self.located(word))
     }
 
+    /// The same, where blanks between `${` and `}` do not separate.
+    pub fn words_with_expressions(self) -> impl Iterator<Item = Text> + use<'a> {
+        let mut rest = self.raw_value();
+        std::iter::from_fn(move || {
+            rest = rest.trim_start_matches(value::is_space);
+            let mut end = 0;
+            while let Some(next) = rest[end..].chars().next().filter(|next| !value::is_space(*next)) {
+                let inside = rest[end..].strip_prefix("${").and_then(|inside| inside.find('}'));
+                end += inside.map_or(next.len_utf8(), |length| length + 3);
+            }
+            let word;
+            (word, rest) = rest.split_at(end);
+            (!word.is_empty()).then_some(word)
+        })
+        .map(move |word| self.located(word))
+    }
+
     /// A part of the value as written, resolved.
     fn located(self, part: &str) -> Text {
         let whole = self.raw_value();

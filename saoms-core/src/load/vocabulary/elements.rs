@@ -447,16 +447,3 @@ pub const OTHERS: &[(&str, &str)] = &[
     ("operationSelector.jmsDefault", "The usual way in which messages of JMS name operations."),
     ("operationSelector.jmsdefault", "The usual way in which messages of JMS name operations."),
 ];
-
-/// The attributes that SAOMS adds in its own namespace, each with the element that has it.
-pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[(
-    "component",
-    known(
-        "path",
-        Holds::Text,
-        "The path that the component had before `saoms expand` resolved the composites around it.",
-    ),
-)];
-
-/// The elements that SAOMS adds in its own namespace.
-pub const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust", "loop"];

@@ -4,13 +4,15 @@
 //! could be meant, what either allows is known.
 
 mod elements;
+mod own;
 
 pub use elements::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, LOOP,
-    OTHERS, OWN_ATTRIBUTES, OWN_ELEMENTS, VARIANTS, WIRE,
+    OTHERS, VARIANTS, WIRE,
 };
+pub use own::{OWN_ATTRIBUTES, OWN_ELEMENTS};
 
 use crate::model::Version;
 
@@ -79,6 +81,12 @@ pub enum Holds {
     Uri,
     /// Names with prefixes, between blanks.
     Names,
+    /// An expression that comes to a whole number, as `2 * robots`.
+    Number,
+    /// An expression that comes to true or false, as `robots > 10`.
+    Condition,
+    /// The name of an environment variable.
+    Variable,
     /// Any text.
     Text,
 }
@@ -143,9 +151,20 @@ pub fn other(name: &str) -> Option<&'static str> {
     OTHERS.iter().find(|(known, _)| *known == name).map(|(_, doc)| *doc)
 }
 
+/// The attributes that SAOMS adds to an element.
+pub fn own_attributes(kind: &'static Kind) -> impl Iterator<Item = &'static Known> {
+    let place = if std::ptr::eq(kind, &COMPOSITE_PROPERTY) { "composite/property" } else { kind.name };
+    OWN_ATTRIBUTES.iter().filter(move |(of, _)| *of == place).map(|(_, known)| known)
+}
+
+/// Their names.
+pub(super) fn own_names(kind: &'static Kind) -> impl Iterator<Item = &'static str> {
+    own_attributes(kind).map(|known| known.name)
+}
+
 /// Whether SAOMS adds the attribute to the element.
-pub(super) fn is_own(kind: &Kind, attribute: &str) -> bool {
-    OWN_ATTRIBUTES.iter().any(|(of, known)| *of == kind.name && known.name == attribute)
+pub(super) fn is_own(kind: &'static Kind, attribute: &str) -> bool {
+    own_names(kind).any(|known| known == attribute)
 }
 
 /// Whether SCA has an element of this name somewhere in a composite.

@@ -1,0 +1,38 @@
+//! Components that stand for several.
+
+use crate::source::{FileId, Text};
+
+/// What a component says about its replicas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replicas {
+    /// `count`: an expression; how many there are. `None` when only the others are given.
+    pub count: Option<Text>,
+    /// `from`: an expression; the index of the first.
+    pub from: Option<Text>,
+    /// `overrides`: the file of the table.
+    pub overrides: Option<Text>,
+    /// What that file holds; `None` until [`read_values`](crate::load::read_values), and where it cannot be read.
+    pub table: Option<Table>,
+}
+
+/// A table of what differs from one replica to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// The file.
+    pub file: FileId,
+    /// What the first column says: `index` or `name`.
+    pub key: Text,
+    /// The properties of the other columns.
+    pub properties: Vec<Text>,
+    /// The lines below the first.
+    pub rows: Vec<Row>,
+}
+
+/// A line of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Which replica it is about.
+    pub key: Text,
+    /// A value for each property; `None` for a replica that has its own.
+    pub values: Vec<Option<Text>>,
+}
