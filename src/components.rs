@@ -110,6 +110,9 @@ fn described(class: &Class) -> String {
     if class.is_alias() {
         let _ = writeln!(text, "  another name of {}", declaration.name);
     }
+    if !declaration.extends.is_empty() {
+        let _ = writeln!(text, "  extends {}", declaration.extends.join(", which extends "));
+    }
     for line in wrapped(&declaration.doc, 100) {
         let _ = writeln!(text, "  {line}");
     }

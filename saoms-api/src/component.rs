@@ -110,6 +110,78 @@ pub trait Component: Send + Sized + 'static {
 /// | `also("robot.Robot001", number = 1)` | a further name, with properties preset to literals |
 ///
 /// Linked classes register themselves: [`Registration::linked`](crate::Registration::linked) lists them.
+///
+/// # Extending a class
+/// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the topics, services, references,
+/// knowledge and loops of the other one and those that it declares itself; composites change its loops as those of the other, and rules over
+/// fleets take it for one. It calls the functions of the other where the work of the other belongs, shutdown included, and `flatten` gives it the
+/// same properties:
+///
+/// ```
+/// use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
+/// # #[derive(Properties)]
+/// # struct RobotProperties { #[property(default = 1)] number: u32 }
+/// # #[derive(Class)]
+/// # #[class(name = "example.Robot", periodic)]
+/// # struct Robot { number: u32 }
+/// # impl Component for Robot {
+/// #     type Properties = RobotProperties;
+/// #     fn new(properties: RobotProperties) -> Result<Self, Failure> { Ok(Robot { number: properties.number }) }
+/// # }
+///
+/// /// What a horn did.
+/// #[derive(Clone, Debug, Message)]
+/// struct Honk {
+///     execution: u64,
+/// }
+///
+/// const HONK: Topic<Honk> = Topic::event("HONK");
+///
+/// #[derive(Properties)]
+/// struct LoudRobotProperties {
+///     #[property(flatten)]
+///     robot: RobotProperties,
+///     /// It honks each so many executions.
+///     #[property(default = 10, range = 1..)]
+///     every: u64,
+/// }
+///
+/// /// A robot with a horn.
+/// #[derive(Class)]
+/// #[class(name = "example.LoudRobot", periodic, publishes(HONK))]
+/// struct LoudRobot {
+///     #[extends]
+///     robot: Robot,
+///     every: u64,
+///     horn: Publisher<Honk>,
+/// }
+///
+/// impl Component for LoudRobot {
+///     type Properties = LoudRobotProperties;
+///
+///     fn new(properties: LoudRobotProperties) -> Result<Self, Failure> {
+///         let robot = Robot::new(properties.robot)?;
+///         Ok(LoudRobot { robot, every: properties.every, horn: Publisher::default() })
+///     }
+///
+///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+///         self.horn = context.publish(&HONK)?;
+///         self.robot.initialize(context)
+///     }
+///
+///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+///         self.robot.execute(context)?;
+///         if context.execution() % self.every == 0 {
+///             context.send(&self.horn, Honk { execution: context.execution() })?;
+///         }
+///         Ok(())
+///     }
+///
+///     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+///         self.robot.shutdown(context)
+///     }
+/// }
+/// ```
 pub trait Class: Component {
     /// Name, properties, topics, services and references as one JSON text; its shape is described in [`crate::declaration`].
     const DECLARATION: &'static str;

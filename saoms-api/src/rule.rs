@@ -1,5 +1,6 @@
 use std::time::Duration;
 
+use crate::property::values_of;
 use crate::{Class, Finding, Properties, PropertyValue};
 
 /// How bad it is.
@@ -105,7 +106,7 @@ macro_rules! fleet_rules {
 #[derive(Clone, Copy, Debug)]
 pub struct FleetView<'a> {
     components: &'a [ComponentView<'a>],
-    missing: &'a [Option<&'a str>],
+    missing: &'a [Option<Vec<&'a str>>],
 }
 
 impl<'a> FleetView<'a> {
@@ -114,16 +115,18 @@ impl<'a> FleetView<'a> {
         FleetView { components, missing: &[] }
     }
 
-    /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their classes, as far
-    /// as they are known.
+    /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their classes and
+    /// of those that these extend, as far as they are known.
     #[must_use]
-    pub fn without(self, missing: &'a [Option<&'a str>]) -> FleetView<'a> {
+    pub fn without(self, missing: &'a [Option<Vec<&'a str>>]) -> FleetView<'a> {
         FleetView { missing, ..self }
     }
 
-    /// Whether a component that is, or may be, of this class is left out for a fault of its own.
+    /// Whether a component that is, or may be, of this class or one that extends it is left out for a fault of its own.
     pub fn misses<C: Class>(&self) -> bool {
-        self.missing.iter().any(|declaration| declaration.is_none_or(|one| one == C::DECLARATION))
+        self.missing
+            .iter()
+            .any(|declaration| declaration.as_ref().is_none_or(|all| all.contains(&C::DECLARATION)))
     }
 
     /// The components in document order; the place of one here is its index.
@@ -131,7 +134,7 @@ impl<'a> FleetView<'a> {
         self.components
     }
 
-    /// The components of a class, with their indices and properties.
+    /// The components of a class, and of those that extend it, with their indices and properties.
     pub fn all<C: Class>(&self) -> impl Iterator<Item = (usize, C::Properties)> + use<'a, C> {
         let components = self.components.iter().enumerate();
         components.filter_map(|(index, component)| Some((index, component.properties::<C>()?)))
@@ -147,6 +150,8 @@ pub struct ComponentView<'a> {
     pub class: &'a str,
     /// The declaration of its class.
     pub declaration: &'a str,
+    /// The declarations of the classes that its class extends, the nearest first.
+    pub extends: Vec<&'a str>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: &'a [(String, PropertyValue)],
     /// From one execution to the next, where it is periodic.
@@ -162,9 +167,13 @@ pub struct ComponentView<'a> {
 }
 
 impl ComponentView<'_> {
-    /// Its properties, where it is of this class.
+    /// Its properties, where it is of this class. Of a component whose class extends this one they are those that the two have in common.
     pub fn properties<C: Class>(&self) -> Option<C::Properties> {
-        (self.declaration == C::DECLARATION).then(|| C::Properties::from_values(self.values).ok()).flatten()
+        if self.declaration == C::DECLARATION {
+            return C::Properties::from_values(self.values).ok();
+        }
+        let extends = self.extends.contains(&C::DECLARATION);
+        extends.then(|| C::Properties::from_values(&values_of(self.values, C::Properties::NAMES)).ok())?
     }
 
     /// The index of the component that this reference leads to.

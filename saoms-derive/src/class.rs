@@ -4,7 +4,7 @@ use syn::ext::IdentExt;
 use syn::meta::ParseNestedMeta;
 use syn::parse::ParseStream;
 use syn::spanned::Spanned;
-use syn::{DeriveInput, Error, Expr, Ident, LitStr, Path, Result, Token, parenthesized};
+use syn::{Data, DeriveInput, Error, Expr, Ident, LitStr, Path, Result, Token, Type, parenthesized};
 
 use crate::docs::docs;
 use crate::field::no_generics;
@@ -25,6 +25,13 @@ struct Declared {
     knowledge: Option<Path>,
     loops: Option<DefaultLoops>,
     also: Vec<Also>,
+    base: Option<Base>,
+}
+
+/// The component that this one wraps, and from whose class it has what it does not declare itself.
+struct Base {
+    field: Ident,
+    of: Type,
 }
 
 /// A further name of the class, with preset properties.
@@ -54,8 +61,16 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
             const _: () = ::core::assert!(::saoms_api::generated::contains(<#properties>::NAMES, #name), #message);
         }
     });
+    let no_such_service = match &declared.base {
+        Some(Base { field, of }) => quote! {
+            _ => <#of as ::saoms_api::Class>::serve(&mut self.#field, invocation, context),
+        },
+        None => quote! {
+            other => ::core::result::Result::Err(::saoms_api::generated::no_service(#class, other)),
+        },
+    };
     let loops = match (&declared.loops, &declared.knowledge) {
-        (None, _) => TokenStream::new(),
+        (None, _) => declared.base.iter().map(Base::loops).collect(),
         (Some(loops), Some(knowledge)) => loops.registrations(&properties, knowledge),
         (Some(_), None) => {
             let message = "a class with loops says what they work on: `knowledge = RobotKnowledge`";
@@ -79,7 +94,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
                     let _ = &context;
                     match invocation.service {
                         #(#arms)*
-                        other => ::core::result::Result::Err(::saoms_api::generated::no_service(#class, other)),
+                        #no_such_service
                     }
                 }
             }
@@ -98,6 +113,11 @@ impl Declared {
             input.attrs.iter().filter(|attribute| attribute.path().is_ident("class")).collect();
         for attribute in &attributes {
             attribute.parse_nested_meta(|meta| declared.take(&meta))?;
+        }
+        declared.base = Base::of(input)?;
+        if let (Some(_), Some(knowledge)) = (&declared.base, &declared.knowledge) {
+            let message = "the class has the knowledge and the loops of what it extends";
+            return Err(Error::new_spanned(knowledge, message));
         }
         let place = attributes.first().map_or(input.ident.span(), |attribute| attribute.span());
         if declared.name.is_none() {
@@ -203,8 +223,40 @@ impl Declared {
         if let Some(loops) = &self.loops {
             loops.declare(&mut text);
         }
+        if let Some(Base { of, .. }) = &self.base {
+            text.plain(",\"extends\":");
+            text.json(quote_spanned!(of.span()=> <#of as ::saoms_api::Class>::DECLARATION));
+        }
         text.plain("}");
         Ok(text)
+    }
+}
+
+impl Base {
+    /// The field with `#[extends]`.
+    fn of(input: &DeriveInput) -> Result<Option<Base>> {
+        let Data::Struct(data) = &input.data else { return Ok(None) };
+        let mut base = None;
+        for field in &data.fields {
+            let mut marks = field.attrs.iter().filter(|attribute| attribute.path().is_ident("extends"));
+            let Some(mark) = marks.next() else { continue };
+            mark.meta.require_path_only()?;
+            let Some(ident) = &field.ident else {
+                return Err(Error::new_spanned(mark, "`extends` needs a field with a name"));
+            };
+            if base.replace(Base { field: ident.clone(), of: field.ty.clone() }).is_some() {
+                return Err(Error::new_spanned(mark, "a component extends one other"));
+            }
+        }
+        Ok(base)
+    }
+
+    /// The constant of the class that brings the loops.
+    fn loops(&self) -> TokenStream {
+        let of = &self.of;
+        quote! {
+            const LOOPS: &'static [::saoms_api::LoopRegistration] = <#of as ::saoms_api::Class>::LOOPS;
+        }
     }
 }
 

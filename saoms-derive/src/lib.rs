@@ -47,7 +47,7 @@ pub fn property_field(input: TokenStream) -> TokenStream {
 }
 
 /// See `saoms_api::Class`.
-#[proc_macro_derive(Class, attributes(class))]
+#[proc_macro_derive(Class, attributes(class, extends))]
 pub fn class(input: TokenStream) -> TokenStream {
     finish(class::class(&parse_macro_input!(input as DeriveInput)))
 }

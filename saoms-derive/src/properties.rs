@@ -15,6 +15,13 @@ use crate::json::{self, Json};
 use crate::literal::Literal;
 use crate::range::Range;
 
+/// A field.
+enum Member<'a> {
+    Own(Property<'a>),
+    /// The fields of another property struct in the place of this one.
+    Flat(&'a Ident, &'a Type),
+}
+
 /// One field with its attributes.
 struct Property<'a> {
     field: &'a Ident,
@@ -32,33 +39,46 @@ struct Property<'a> {
 /// `#[derive(Properties)]`.
 pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
     struct_fields(input, "a property struct")?;
-    let mut properties: Vec<Property<'_>> = Vec::new();
+    let mut members: Vec<Member<'_>> = Vec::new();
     let mut fields = HashMap::new();
     if let Data::Struct(data) = &input.data
         && let Fields::Named(named) = &data.fields
     {
         for field in &named.named {
             let Some(ident) = &field.ident else { continue };
+            if is_flat(&field.attrs)? {
+                members.push(Member::Flat(ident, &field.ty));
+                continue;
+            }
             let property = Property::of(ident, &field.ty, &field.attrs)?;
             if let Some(other) = fields.insert(property.name.clone(), ident) {
                 let message = format!("field `{other}` is the property `{}`, too", property.name);
                 return Err(Error::new_spanned(ident, message));
             }
-            properties.push(property);
+            members.push(Member::Own(property));
         }
     }
-    let mut text = Json::default();
-    text.list(&properties, Property::declare);
-    let declaration = json::flat(&text.into_text());
-    let names: Vec<_> = properties.iter().map(|property| &property.name).collect();
-    let reads = properties.iter().map(Property::read);
-    let checks = properties.iter().map(Property::checks);
+    let declaration = declaration(&members);
+    let names = members.iter().map(Member::names);
+    let reads = members.iter().map(Member::read);
     let ident = &input.ident;
+    let checks = members.iter().map(|member| match member {
+        Member::Own(property) => property.checks(),
+        Member::Flat(field, _) => quote_spanned! {field.span()=>
+            const _: () = ::core::assert!(
+                ::saoms_api::generated::are_distinct(<#ident as ::saoms_api::Properties>::NAMES),
+                "one of the properties in here is a property beside it, too",
+            );
+        },
+    });
     Ok(quote! {
         #[automatically_derived]
         impl ::saoms_api::Properties for #ident {
             const DECLARATION: &'static str = #declaration;
-            const NAMES: &'static [&'static str] = &[#(#names),*];
+            const NAMES: &'static [&'static str] = {
+                const PARTS: &[&[&str]] = &[#(#names),*];
+                &::saoms_api::generated::all_names::<{ ::saoms_api::generated::count(PARTS) }>(PARTS)
+            };
 
             fn from_values(
                 values: &[(::std::string::String, ::saoms_api::PropertyValue)],
@@ -88,6 +108,88 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
 
         #(#checks)*
     })
+}
+
+/// The JSON array.
+fn declaration(members: &[Member<'_>]) -> TokenStream {
+    let mut text = Json::default();
+    if !members.iter().any(|member| matches!(member, Member::Flat(..))) {
+        let own = members.iter().filter_map(|member| match member {
+            Member::Own(property) => Some(property),
+            Member::Flat(..) => None,
+        });
+        text.list(own, Property::declare);
+        return json::flat(&text.into_text());
+    }
+    // Each with a comma before it, which the first one loses.
+    for member in members {
+        match member {
+            Member::Own(property) => {
+                text.plain(",");
+                Property::declare(&mut text, property);
+            }
+            Member::Flat(_, of) => {
+                let inner = quote_spanned!(of.span()=> <#of as ::saoms_api::Properties>::DECLARATION);
+                text.text(quote!(::saoms_api::declaration::Text::Joined(
+                    &::saoms_api::generated::continued(#inner)
+                )));
+            }
+        }
+    }
+    let items = json::flat(&text.into_text());
+    json::flat(&quote!({
+        const ITEMS: &str = #items;
+        const PARTS: &[::saoms_api::declaration::Text] = &::saoms_api::generated::list(ITEMS);
+        ::saoms_api::declaration::Text::Joined(PARTS)
+    }))
+}
+
+/// Whether the attributes of a field are `#[property(flatten)]`.
+fn is_flat(attributes: &[Attribute]) -> Result<bool> {
+    let mut flat = None;
+    let mut others = 0;
+    for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("property")) {
+        attribute.parse_nested_meta(|meta| {
+            if meta.path.is_ident("flatten") {
+                flat = Some(meta.path.span());
+                return Ok(());
+            }
+            others += 1;
+            // What else is said is read by `Property::of`.
+            while !meta.input.is_empty() && !meta.input.peek(Token![,]) {
+                meta.input.parse::<proc_macro2::TokenTree>()?;
+            }
+            Ok(())
+        })?;
+    }
+    match flat {
+        Some(span) if others > 0 => {
+            Err(Error::new(span, "`flatten` stands alone: the inner properties say the rest themselves"))
+        }
+        found => Ok(found.is_some()),
+    }
+}
+
+impl Member<'_> {
+    /// An expression of type `&[&str]`.
+    fn names(&self) -> TokenStream {
+        match self {
+            Member::Own(Property { name, .. }) => quote!(&[#name]),
+            Member::Flat(_, of) => quote!(<#of as ::saoms_api::Properties>::NAMES),
+        }
+    }
+
+    /// The field's initialiser in `from_values`.
+    fn read(&self) -> TokenStream {
+        match self {
+            Member::Own(property) => property.read(),
+            Member::Flat(field, of) => quote! {
+                #field: <#of as ::saoms_api::Properties>::from_values(
+                    &::saoms_api::generated::values_of(values, <#of as ::saoms_api::Properties>::NAMES),
+                )?
+            },
+        }
+    }
 }
 
 impl<'a> Property<'a> {
@@ -128,7 +230,7 @@ impl<'a> Property<'a> {
                     property.required_text = true;
                 } else {
                     return Err(meta.error(
-                        "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`",
+                        "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`, `flatten`",
                     ));
                 }
                 Ok(())

@@ -17,7 +17,8 @@
 //!   "services": [{"name": "move", "interface": {"name": "resources.robotEnvironment.Robot", "operations": []}}],
 //!   "references": [{"name": "world", "interface": {"name": "saoms.World", "operations": []}, "optional": true, "many": true}],
 //!   "knowledge": {"name": "saoms.Robot", "entries": []},
-//!   "loops": {"property": "policy", "lists": {"safe": ["saoms.CollisionMS"], "classic": []}}
+//!   "loops": {"property": "policy", "lists": {"safe": ["saoms.CollisionMS"], "classic": []}},
+//!   "extends": {"contract": 1, "class": "saoms.Machine", "kind": "periodic"}
 //! }
 //! ```
 //! - `contract` is the version of this shape.
@@ -26,6 +27,8 @@
 //! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`.
 //! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in their order: either
 //!   `{"default": [...]}`, or one list for each value of a property. A class without loops has neither.
+//! - `extends` is the whole declaration of the class that this one extends; absent where there is none. The class has the topics, services
+//!   and references of that one, too, and its knowledge and loops; it has neither `knowledge` nor `loops` itself. `properties` are all of its own.
 //! - `doc`, here and below, is absent where the author wrote none.
 //!
 //! # A loop

@@ -1,9 +1,11 @@
+mod flat;
 mod read;
 mod shape;
 #[cfg(test)]
 mod tests;
 mod types;
 
+pub use flat::{all_names, are_distinct, continued, count, list, values_of};
 pub use read::{chosen, complex, only_known, property};
 pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits, equal};
 
@@ -78,6 +80,7 @@ impl From<&str> for PropertyValue {
 /// | `allowed("a", "b")` | for strings |
 /// | `unique = "robot"` | no two components of a composite have the same value for properties with this word |
 /// | `required_text` | for strings: not empty, not blank |
+/// | `flatten` | the field is a property struct itself, whose properties stand here |
 ///
 /// A property without a default is required, unless its type is an `Option` or a `Vec`.
 ///

@@ -4,5 +4,6 @@
 mod adaptation;
 mod boundary;
 mod calls;
+mod extends;
 mod host;
 mod messages;

@@ -2,6 +2,8 @@
 //!
 //! A robot is [`RobotKnowledge`] and an ordered list of MAPE-K loops that share it, one for each concern. The policy tells which: those of
 //! [`safe`] (jobs, energy, right of way) or those of [`classic`] (the rules of the manual). Both drive the same hooks.
+//!
+//! A component that is a robot and something more [extends](Class#extending-a-class) [`Robot`].
 
 mod actions;
 mod battery;
@@ -139,6 +141,11 @@ impl Component for Robot {
 }
 
 impl Robot {
+    /// What it knows: for components that extend it.
+    pub fn knowledge(&self) -> &RobotKnowledge {
+        &self.knowledge
+    }
+
     /// Says to the world that the robot is there, and learns the map; `false` while the world cannot be reached.
     fn enter(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
         let knowledge = &mut self.knowledge;

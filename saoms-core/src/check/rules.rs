@@ -31,7 +31,10 @@ pub(super) fn check<'s>(
         let (true, Some(resolved), Some(class)) = (runs(member), resolved, class) else {
             places.push(None);
             if runs(member) {
-                missing.push(class.map(|class| class.class.declaration_json()));
+                missing.push(class.map(|class| {
+                    let own = std::iter::once(class.class.declaration_json());
+                    own.chain(class.class.extended_json()).collect()
+                }));
             }
             continue;
         };
@@ -56,6 +59,7 @@ pub(super) fn check<'s>(
                 path: subject.name,
                 class: &declaration.name,
                 declaration: class.class.declaration_json(),
+                extends: class.class.extended_json().collect(),
                 values: &resolved.values,
                 period: resolved.task.as_ref().map(|task| task.period),
                 has_broker: resolved.task.as_ref().is_some_and(|task| task.url.is_some()),

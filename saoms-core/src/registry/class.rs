@@ -16,6 +16,7 @@ pub struct Class {
     pub(super) declaration: Arc<ClassDeclaration>,
     pub(super) presets: Vec<(String, PropertyValue)>,
     pub(super) text: Arc<str>,
+    pub(super) extended: Arc<[Arc<str>]>,
     pub(super) provider: Arc<dyn Provider>,
 }
 
@@ -38,6 +39,11 @@ impl Class {
     /// The declaration as its author's build wrote it: a JSON object in the shape of [`saoms_api::declaration`].
     pub fn declaration_json(&self) -> &str {
         &self.text
+    }
+
+    /// The same of the classes that it extends, the nearest first.
+    pub fn extended_json(&self) -> impl Iterator<Item = &str> {
+        self.extended.iter().map(AsRef::as_ref)
     }
 
     /// The values that this name presets, for properties that a composite does not give.

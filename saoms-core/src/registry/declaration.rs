@@ -44,6 +44,9 @@ pub struct ClassDeclaration {
     /// The loops that its components have unless a composite says otherwise.
     #[serde(default)]
     pub loops: DefaultLoops,
+    /// The names of the classes that it extends, the nearest first. What they have is among the above.
+    #[serde(skip)]
+    pub extends: Vec<String>,
 }
 
 /// Whether components of a class are executed.

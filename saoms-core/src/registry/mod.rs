@@ -6,6 +6,7 @@
 mod class;
 mod declaration;
 mod error;
+mod extend;
 mod looping;
 mod read;
 mod team;

@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 
 use super::{
     Class, ClassDeclaration, LoopClass, LoopDeclaration, LoopProvider, Provider, RegistryError, error,
-    validate,
+    extend, validate,
 };
 
 /// What every version of a declaration has.
@@ -20,15 +20,26 @@ struct Head {
 /// A class under each of its names, the declared one first.
 pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Class>, RegistryError> {
     let malformed = |class: String, message| RegistryError::Malformed { class, message };
-    let declaration: ClassDeclaration = declaration(text, malformed)?;
-    validate::class(&declaration).map_err(|message| malformed(declaration.name.clone(), message))?;
-    let declaration = Arc::new(declaration);
+    let mut own: ClassDeclaration = declaration(text, malformed)?;
+    let extended = extend::lineage(text).map_err(|message| malformed(own.name.clone(), message))?;
+    let mut base: Option<ClassDeclaration> = None;
+    // From the most general one on.
+    for text in extended.iter().rev() {
+        let mut next: ClassDeclaration = declaration(text, malformed)?;
+        inherit(&mut next, base.take())?;
+        base = Some(next);
+    }
+    inherit(&mut own, base)?;
+    validate::class(&own).map_err(|message| malformed(own.name.clone(), message))?;
+    let extended: Arc<[Arc<str>]> = extended.into_iter().map(Arc::from).collect();
+    let declaration = Arc::new(own);
     let text: Arc<str> = text.into();
     let class = |name: &str, presets| Class {
         name: name.to_owned(),
         declaration: Arc::clone(&declaration),
         presets,
         text: Arc::clone(&text),
+        extended: Arc::clone(&extended),
         provider: Arc::clone(provider),
     };
     let also = declaration.also.iter().map(|alias| {
@@ -36,6 +47,12 @@ pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Clas
         class(&alias.name, presets.collect())
     });
     Ok(std::iter::once(class(&declaration.name, Vec::new())).chain(also).collect())
+}
+
+fn inherit(class: &mut ClassDeclaration, base: Option<ClassDeclaration>) -> Result<(), RegistryError> {
+    let Some(base) = base else { return Ok(()) };
+    let inherited = extend::inherit(class, base);
+    inherited.map_err(|message| RegistryError::Malformed { class: class.name.clone(), message })
 }
 
 pub(super) fn looping(text: &str, provider: Arc<dyn LoopProvider>) -> Result<LoopClass, RegistryError> {
