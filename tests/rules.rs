@@ -21,7 +21,7 @@ fn every_rule_is_documented_with_an_example() {
     let registry = Registry::linked().unwrap();
     let mut part = String::new();
     for rule in registry.rules() {
-        let (id, name, meaning) = (rule.code.id, rule.code.name, rule.code.meaning);
+        let (id, name, meaning) = (rule.code().id, rule.code().name, rule.code().meaning);
         assert!(id.len() == 5 && id.starts_with("S50") && meaning.ends_with('.'), "{id}");
         let file = format!("tests/rules/{id}.composite");
         let text = fs::read_to_string(root().join(&file)).unwrap_or_else(|_| panic!("there is no {file}"));
@@ -30,7 +30,7 @@ fn every_rule_is_documented_with_an_example() {
         assert_eq!(ids, [id], "{file} has to have this fault alone:\n{found}");
         let shown = Fleet::of_text(text).shown().replace("text.composite", &format!("{id}.composite"));
         assert!(shown.contains("help:"), "{id} does not say what to do");
-        let severity = rule.code.severity.name();
+        let severity = rule.code().severity.name();
         let _ = write!(part, "\n## {id} {name}\n\n*{severity}.* {meaning}\n\n```text\n{shown}```\n");
     }
     let path = root().join("docs/diagnostics.md");

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::mem;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
@@ -23,23 +24,32 @@ thread_local! {
 /// What the code has left half changed is only seen by itself: a component that panicked is never called again.
 #[inline]
 pub fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
-    let outer = CAPTURING.replace(true);
-    let result = panic::catch_unwind(AssertUnwindSafe(code));
-    CAPTURING.set(outer);
-    result.map_err(|payload| describe(payload.as_ref()))
+    // Looked up once: in a library that takes a call.
+    CAPTURING.with(|capturing| {
+        let outer = capturing.replace(true);
+        let result = panic::catch_unwind(AssertUnwindSafe(code)).map_err(describe);
+        capturing.set(outer);
+        result
+    })
 }
 
 #[cold]
-fn describe(payload: &(dyn Any + Send)) -> Failure {
+fn describe(payload: Box<dyn Any + Send>) -> Failure {
     let message = payload
         .downcast_ref::<String>()
         .map(String::as_str)
         .or_else(|| payload.downcast_ref::<&str>().copied())
         .unwrap_or("panicked without a message");
-    match PLACE.take() {
+    let failure = match PLACE.take() {
         Some(place) => Failure::new(format!("panicked at {place}: {message}")),
         None => Failure::new(format!("panicked: {message}")),
+    };
+    // Dropping it can panic, too; what that leaves is not dropped.
+    if let Err(again) = panic::catch_unwind(AssertUnwindSafe(|| drop(payload))) {
+        mem::forget(again);
+        PLACE.take();
     }
+    failure
 }
 
 /// Makes panics inside [`contained`] silent, once in the life of the process. All others go to the hook that was there before.

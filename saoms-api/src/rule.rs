@@ -122,6 +122,11 @@ impl<'a> FleetView<'a> {
         FleetView { missing, ..self }
     }
 
+    /// What [`without`](FleetView::without) left out.
+    pub(crate) fn missing(&self) -> &'a [Option<Vec<&'a str>>] {
+        self.missing
+    }
+
     /// Whether a component that is, or may be, of this class or one that extends it is left out for a fault of its own.
     pub fn misses<C: Class>(&self) -> bool {
         self.missing

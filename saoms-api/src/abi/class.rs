@@ -3,8 +3,15 @@ use std::ffi::c_void;
 use crate::{Class, Properties};
 
 use super::component::Instance;
-use super::guard::guarded;
-use super::{Bytes, ComponentTable, LoopClassTable, PropertyView, Sink, Status, VERSION};
+use super::guard::guarded_construct;
+use super::{
+    Bytes, ComponentTable, FindingSink, LoopClassTable, PropertyView, RuleTable, Sink, Status, VERSION,
+};
+
+/// Makes a component or a loop from the values that the composite gives: a list and its length, where it goes, where findings and an error
+/// go.
+pub type Construct =
+    unsafe extern "C" fn(*const PropertyView, usize, *mut *mut c_void, FindingSink, Sink) -> Status;
 
 /// A class: how to make components of it, and their functions.
 #[repr(C)]
@@ -12,10 +19,10 @@ use super::{Bytes, ComponentTable, LoopClassTable, PropertyView, Sink, Status, V
 pub struct ClassTable {
     /// The size of this table in bytes.
     pub size: usize,
-    /// Makes a component from the values that the composite gives: a list and its length, where the component goes, where an error goes.
-    pub construct: unsafe extern "C" fn(*const PropertyView, usize, *mut *mut c_void, Sink) -> Status,
+    /// Makes a component of it.
+    pub construct: Construct,
     /// The functions of its components.
-    pub component: ComponentTable,
+    pub component: *const ComponentTable,
 }
 
 impl ClassTable {
@@ -24,28 +31,31 @@ impl ClassTable {
         ClassTable {
             size: size_of::<ClassTable>(),
             construct: construct::<C>,
-            component: Instance::<C>::TABLE,
+            component: &Instance::<C>::TABLE,
         }
     }
 }
+
+// SAFETY: what the pointer leads to is constant.
+unsafe impl Sync for ClassTable {}
 
 unsafe extern "C" fn construct<C: Class>(
     values: *const PropertyView,
     count: usize,
     instance: *mut *mut c_void,
+    findings: FindingSink,
     error: Sink,
 ) -> Status {
-    // SAFETY: the host lends the values to this call, and a place for the pointer.
-    unsafe {
-        guarded(error, || {
-            let values = PropertyView::read(values, count)?;
-            *instance = Instance::into_pointer(C::new(C::Properties::from_values(&values)?)?);
-            Ok(())
-        })
-    }
+    let make = || {
+        // SAFETY: the host lends the values to this call.
+        let values = unsafe { PropertyView::read(values, count) }?;
+        Ok(Instance::into_pointer(C::new(C::Properties::from_values(&values)?)?))
+    };
+    // SAFETY: the host waits for the call with its sinks, and has a place for the pointer.
+    unsafe { guarded_construct(findings, error, make, instance) }
 }
 
-/// What a library offers, in the order of its metadata.
+/// What a library offers, each list in the order of its metadata.
 #[repr(C)]
 #[derive(Debug)]
 pub struct PluginTable {
@@ -56,13 +66,17 @@ pub struct PluginTable {
     /// The metadata, as it also lies in its own section of the library.
     pub metadata: Bytes,
     /// The classes.
-    pub classes: *const ClassTable,
+    pub classes: *const *const ClassTable,
     /// How many there are.
     pub class_count: usize,
     /// The loops.
-    pub loops: *const LoopClassTable,
+    pub loops: *const *const LoopClassTable,
     /// How many there are.
     pub loop_count: usize,
+    /// The rules over whole fleets.
+    pub rules: *const *const RuleTable,
+    /// How many there are.
+    pub rule_count: usize,
 }
 
 // SAFETY: what the pointers lead to is constant.
@@ -73,17 +87,20 @@ impl PluginTable {
     #[doc(hidden)]
     pub const fn new(
         metadata: &'static [u8],
-        classes: &'static [ClassTable],
-        loops: &'static [LoopClassTable],
+        classes: &'static [&'static ClassTable],
+        loops: &'static [&'static LoopClassTable],
+        rules: &'static [&'static RuleTable],
     ) -> PluginTable {
         PluginTable {
             size: size_of::<PluginTable>(),
             version: VERSION,
             metadata: Bytes::lend(metadata),
-            classes: classes.as_ptr(),
+            classes: classes.as_ptr().cast(),
             class_count: classes.len(),
-            loops: loops.as_ptr(),
+            loops: loops.as_ptr().cast(),
             loop_count: loops.len(),
+            rules: rules.as_ptr().cast(),
+            rule_count: rules.len(),
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::contain::contained;
 use crate::{Context, DynComponent, Failure, Header, Invocation, SharedMessage};
 
 use super::data::MessageView;
-use super::guard::{guarded, guarded_call, outcome};
+use super::guard::{guarded, guarded_call};
 use super::link::Link;
 use super::service::BytesCall;
 use super::{Bytes, HostHandle, Sink, Status};
@@ -182,11 +182,4 @@ unsafe fn copy(view: &MessageView) -> Result<SharedMessage, Failure> {
     // SAFETY: as the caller promises.
     let bytes = unsafe { view.bytes.get() }?;
     Ok(SharedMessage::from_bytes(header, (view.has_key != 0).then_some(view.key), bytes.to_vec()))
-}
-
-/// What is left over from a call of the other side: its text, if it said one.
-pub(super) fn call(code: impl FnOnce(Sink) -> Status) -> Result<(), Failure> {
-    let mut error = Vec::new();
-    let status = code(Sink::into(&mut error));
-    outcome(status, &error)
 }

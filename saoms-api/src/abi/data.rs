@@ -64,6 +64,24 @@ impl Bytes {
     }
 }
 
+/// A list that is lent for the time of a call.
+///
+/// # Errors
+/// It is longer than [`MAX_BYTES`].
+///
+/// # Safety
+/// It is readable for as long as the result is used.
+pub(super) unsafe fn list<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Failure> {
+    if count.saturating_mul(size_of::<T>()) > MAX_BYTES {
+        return Err(Failure::new(format!("found a list of {count}, which is more than {MAX_BYTES} bytes")));
+    }
+    if first.is_null() || count == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: the caller promises that it is readable; the length was checked.
+    Ok(unsafe { slice::from_raw_parts(first, count) })
+}
+
 /// Where a callee puts text or bytes for its caller. What is put is copied at once; putting again appends.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -74,17 +92,49 @@ pub struct Sink {
     pub put: unsafe extern "C" fn(state: *mut c_void, bytes: Bytes),
 }
 
+/// What a callee put.
+#[derive(Debug, Default)]
+pub(super) struct Buffer {
+    pub(super) bytes: Vec<u8>,
+    /// Whether it was more than [`MAX_BYTES`].
+    overflowed: bool,
+}
+
+impl Buffer {
+    /// # Safety
+    /// The bytes are readable.
+    pub(super) unsafe fn take(&mut self, bytes: Bytes) {
+        // SAFETY: as the caller promises.
+        match unsafe { bytes.get() } {
+            Ok(bytes) if self.bytes.len() + bytes.len() <= MAX_BYTES => self.bytes.extend_from_slice(bytes),
+            _ => self.overflowed = true,
+        }
+    }
+
+    /// All that was put.
+    pub(super) fn get(&self) -> Result<&[u8], Failure> {
+        if self.overflowed {
+            return Err(Failure::new(format!(
+                "found more than {MAX_BYTES} bytes, or bytes that cannot be read"
+            )));
+        }
+        Ok(&self.bytes)
+    }
+
+    /// Makes it empty; memory for more than this many bytes is given back.
+    pub(super) fn reset(&mut self, kept: usize) {
+        self.bytes.clear();
+        self.bytes.shrink_to(kept);
+        self.overflowed = false;
+    }
+}
+
 impl Sink {
-    /// A sink into a buffer, which has to outlive the call that it is given to.
-    pub fn into(buffer: &mut Vec<u8>) -> Sink {
+    /// A sink into a buffer, for a callee that is known to put only while it is called.
+    pub(super) fn into(buffer: &mut Buffer) -> Sink {
         unsafe extern "C" fn put(state: *mut c_void, bytes: Bytes) {
             // SAFETY: `state` is the buffer of `Sink::into`, which only this call uses; the callee lends the bytes to it.
-            let (buffer, bytes) = unsafe { (&mut *state.cast::<Vec<u8>>(), bytes.get()) };
-            if let Ok(bytes) = bytes
-                && buffer.len() + bytes.len() <= MAX_BYTES
-            {
-                buffer.extend_from_slice(bytes);
-            }
+            unsafe { (*state.cast::<Buffer>()).take(bytes) }
         }
         Sink { state: ptr::from_mut(buffer).cast(), put }
     }
@@ -187,13 +237,10 @@ impl PropertyView {
         list: *const PropertyView,
         count: usize,
     ) -> Result<Vec<(String, PropertyValue)>, Failure> {
-        if count == 0 {
-            return Ok(Vec::new());
-        }
         // SAFETY: as the caller promises.
-        let list = unsafe { slice::from_raw_parts(list, count) };
-        let mut values = Vec::with_capacity(count);
-        for view in list {
+        let views = unsafe { super::data::list(list, count) }?;
+        let mut values = Vec::with_capacity(views.len());
+        for view in views {
             // SAFETY: as the caller promises.
             let (name, text, children) = unsafe {
                 (

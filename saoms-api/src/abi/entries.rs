@@ -5,8 +5,8 @@ use crate::adaptation::no_entry;
 use crate::contain::contained;
 use crate::{DynEntries, EntryDeclaration, Extras, Failure, Knowledge, Value};
 
-use super::component::call;
 use super::guard::{guarded, guarded_value};
+use super::lease::{call, call_for_bytes, knowledge};
 use super::{Bytes, Sink, Status, ValueView};
 
 /// Entries that the other side holds: the knowledge of a component for the time of a call, or the entries that a loop adds to it.
@@ -55,24 +55,21 @@ pub struct EntriesFunctions {
     pub destroy: unsafe extern "C" fn(*mut c_void),
 }
 
-/// Lends a component's knowledge to code on the other side.
-pub(super) fn with_knowledge<T>(knowledge: &mut dyn Knowledge, code: impl FnOnce(&EntriesHandle) -> T) -> T {
-    let mut knowledge: &mut dyn Knowledge = knowledge;
-    code(&EntriesHandle { state: (&raw mut knowledge).cast(), functions: &KNOWLEDGE })
-}
-
 /// Gives entries away.
 pub(super) fn give(entries: Box<dyn DynEntries>) -> EntriesHandle {
     EntriesHandle { state: Box::into_raw(Box::new(entries)).cast(), functions: &GIVEN }
 }
 
 /// The entries behind a pointer, as one list: of a component's knowledge also those that loops added.
-trait Behind: 'static {
+trait Behind {
+    /// Runs code with them.
+    ///
+    /// # Errors
+    /// They are not lent now.
+    ///
     /// # Safety
     /// The pointer is the `state` of a handle of this kind, and nothing else uses it during the call.
-    unsafe fn all<'a>(state: *mut c_void) -> Self::All<'a>;
-
-    type All<'a>: All;
+    unsafe fn with<T>(state: *mut c_void, code: impl FnOnce(&mut dyn All) -> T) -> Result<T, Failure>;
 }
 
 trait All {
@@ -89,20 +86,18 @@ struct Lent;
 struct Given;
 
 impl Behind for Lent {
-    type All<'a> = &'a mut dyn Knowledge;
-
-    unsafe fn all<'a>(state: *mut c_void) -> &'a mut dyn Knowledge {
-        // SAFETY: `with_knowledge` made it from a `&mut dyn Knowledge` that lives until the call ends.
-        unsafe { &mut **state.cast::<&mut dyn Knowledge>() }
+    unsafe fn with<T>(state: *mut c_void, code: impl FnOnce(&mut dyn All) -> T) -> Result<T, Failure> {
+        // SAFETY: as the caller promises.
+        let mut lent = unsafe { knowledge(state) }?;
+        Ok(code(&mut &mut *lent))
     }
 }
 
 impl Behind for Given {
-    type All<'a> = &'a mut dyn DynEntries;
-
-    unsafe fn all<'a>(state: *mut c_void) -> &'a mut dyn DynEntries {
+    unsafe fn with<T>(state: *mut c_void, code: impl FnOnce(&mut dyn All) -> T) -> Result<T, Failure> {
         // SAFETY: `give` made it from a box that `destroy` alone frees.
-        unsafe { &mut **state.cast::<Box<dyn DynEntries>>() }
+        let given = unsafe { &mut *state.cast::<Box<dyn DynEntries>>() };
+        Ok(code(&mut &mut **given))
     }
 }
 
@@ -166,23 +161,33 @@ impl All for &mut dyn DynEntries {
     }
 }
 
+/// Runs code with the entries behind a state, for a function that has no way to say what went wrong: the answer is `otherwise` then.
+///
+/// # Safety
+/// As [`Behind::with`].
+unsafe fn with_all<B: Behind, T: Copy>(
+    state: *mut c_void,
+    otherwise: T,
+    code: impl FnOnce(&mut dyn All) -> T,
+) -> T {
+    // SAFETY: as the caller promises.
+    guarded_value(otherwise, || unsafe { B::with(state, code) }.unwrap_or(otherwise))
+}
+
 unsafe extern "C" fn declaration<B: Behind>(state: *mut c_void) -> Bytes {
     // SAFETY: callers pass the state of their handle.
-    let all = unsafe { B::all(state) };
-    guarded_value(Bytes::NONE, || Bytes::text(all.declaration()))
+    unsafe { with_all::<B, _>(state, Bytes::NONE, |all| Bytes::text(all.declaration())) }
 }
 
 unsafe extern "C" fn count<B: Behind>(state: *mut c_void) -> u32 {
     // SAFETY: callers pass the state of their handle.
-    let all = unsafe { B::all(state) };
-    guarded_value(0, || all.count() as u32)
+    unsafe { with_all::<B, _>(state, 0, |all| all.count() as u32) }
 }
 
 unsafe extern "C" fn describe<B: Behind>(state: *mut c_void, entry: u32, view: *mut EntryView) {
     // SAFETY: callers pass the state of their handle, and a place for the view.
     unsafe {
-        let all = B::all(state);
-        if let Some(found) = guarded_value(None, || all.declared(entry)) {
+        if let Some(found) = with_all::<B, _>(state, None, |all| all.declared(entry)) {
             *view = EntryView {
                 name: Bytes::text(found.name),
                 of: Bytes::text(found.of),
@@ -195,8 +200,7 @@ unsafe extern "C" fn describe<B: Behind>(state: *mut c_void, entry: u32, view: *
 unsafe extern "C" fn get<B: Behind>(state: *mut c_void, entry: u32, value: *mut ValueView) -> u32 {
     // SAFETY: callers pass the state of their handle, and a place for the value.
     unsafe {
-        let all = B::all(state);
-        match guarded_value(None, || all.get(entry)) {
+        match with_all::<B, _>(state, None, |all| all.get(entry)) {
             Some(found) => {
                 *value = ValueView::of(found);
                 1
@@ -213,7 +217,7 @@ unsafe extern "C" fn set<B: Behind>(
     error: Sink,
 ) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the value.
-    unsafe { guarded(error, || B::all(state).set(entry, (*value).read()?)) }
+    unsafe { guarded(error, || B::with(state, |all| all.set(entry, (*value).read()?))?) }
 }
 
 unsafe extern "C" fn get_bytes<B: Behind>(
@@ -226,7 +230,7 @@ unsafe extern "C" fn get_bytes<B: Behind>(
     unsafe {
         guarded(error, || {
             let mut buffer = Vec::new();
-            B::all(state).get_bytes(entry, &mut buffer)?;
+            B::with(state, |all| all.get_bytes(entry, &mut buffer))??;
             bytes.put(&buffer);
             Ok(())
         })
@@ -240,7 +244,7 @@ unsafe extern "C" fn set_bytes<B: Behind>(
     error: Sink,
 ) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the bytes.
-    unsafe { guarded(error, || B::all(state).set_bytes(entry, bytes.get()?)) }
+    unsafe { guarded(error, || B::with(state, |all| all.set_bytes(entry, bytes.get()?))?) }
 }
 
 unsafe extern "C" fn keep(_state: *mut c_void) {}
@@ -250,7 +254,7 @@ unsafe extern "C" fn destroy(state: *mut c_void) {
     let _ = contained(|| drop(unsafe { Box::from_raw(state.cast::<Box<dyn DynEntries>>()) }));
 }
 
-static KNOWLEDGE: EntriesFunctions = functions::<Lent>(keep);
+pub(super) static KNOWLEDGE: EntriesFunctions = functions::<Lent>(keep);
 static GIVEN: EntriesFunctions = functions::<Given>(destroy);
 
 const fn functions<B: Behind>(destroy: unsafe extern "C" fn(*mut c_void)) -> EntriesFunctions {
@@ -341,10 +345,9 @@ impl DynEntries for Remote {
     }
 
     fn get_bytes(&self, entry: u32, bytes: &mut Vec<u8>) -> Result<(), Failure> {
-        bytes.clear();
-        // SAFETY: the handle keeps the rules; the buffer waits for the call.
-        call(|error| unsafe {
-            (self.functions().get_bytes)(self.handle.state, entry, Sink::into(bytes), error)
+        // SAFETY: the handle keeps the rules.
+        call_for_bytes(bytes, |bytes, error| unsafe {
+            (self.functions().get_bytes)(self.handle.state, entry, bytes, error)
         })
     }
 

@@ -1,7 +1,9 @@
+use std::ffi::c_void;
+
 use crate::contain::contained;
 use crate::{CallError, Failure};
 
-use super::{Sink, Status};
+use super::{FindingSink, Sink, Status};
 
 /// Runs code of this side for a caller on the other: nothing unwinds, and what went wrong goes to the sink.
 ///
@@ -16,6 +18,25 @@ pub(super) unsafe fn guarded(error: Sink, code: impl FnOnce() -> Result<(), Fail
     // SAFETY: as the caller promises.
     unsafe { error.put(failure.message().as_bytes()) };
     status
+}
+
+/// The same for a constructor, whose failures can have findings.
+///
+/// # Safety
+/// The owner of the sinks waits for this call.
+pub(super) unsafe fn guarded_construct(
+    findings: FindingSink,
+    error: Sink,
+    code: impl FnOnce() -> Result<*mut c_void, Failure>,
+    instance: *mut *mut c_void,
+) -> Status {
+    // SAFETY: as the caller promises; the instance has a place.
+    unsafe {
+        guarded(error, || {
+            *instance = code().inspect_err(|failure| findings.put_all(failure.findings()))?;
+            Ok(())
+        })
+    }
 }
 
 /// The same for a call of a service, whose errors are of several kinds.

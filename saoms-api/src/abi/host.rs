@@ -1,7 +1,6 @@
 use std::ffi::c_void;
 use std::time::Duration;
 
-use crate::contain::contained;
 use crate::{
     Cause, Failure, Header, Host, Level, Phase, Record, SharedMessage, Time, TopicDeclaration, TopicKind,
     Work,
@@ -9,6 +8,7 @@ use crate::{
 
 use super::data::PropertyViews;
 use super::guard::{guarded, guarded_call, guarded_value};
+use super::lease::host;
 use super::looping::give_loop;
 use super::service::BytesCall;
 use super::{Bytes, Inbox, LoopInstance, PropertyView, RecordView, ReportView, Sink, Status, ValueView};
@@ -105,19 +105,20 @@ pub type LoopVisitor = unsafe extern "C" fn(*mut c_void, Bytes, Bytes, *const Pr
 /// The levels of [`HostFunctions::log`] in their order; behind them comes the console.
 pub(super) const LEVELS: [Level; 4] = [Level::Error, Level::Warning, Level::Info, Level::Debug];
 
+/// Runs code with the host behind a state, for a function that has no way to say what went wrong: the answer is `otherwise` then.
+///
 /// # Safety
-/// `state` comes from the [`HostHandle`] of a call that still goes on.
-unsafe fn host<'a>(state: *mut c_void) -> &'a mut (dyn Host + 'a) {
-    // SAFETY: `with_handle` made it from a `&mut dyn Host` that lives until the call ends, and nothing else uses that meanwhile.
-    unsafe { &mut **state.cast::<&mut dyn Host>() }
+/// The state is that of a handle, however old.
+unsafe fn with_host<T: Copy>(state: *mut c_void, otherwise: T, code: impl FnOnce(&mut dyn Host) -> T) -> T {
+    // SAFETY: as the caller promises.
+    guarded_value(otherwise, || unsafe { host(state) }.map_or(otherwise, |mut host| code(&mut *host)))
 }
 
 macro_rules! getters {
     ($($function:ident -> $type:ty, $otherwise:expr, |$host:ident| $value:expr;)*) => {
         $(unsafe extern "C" fn $function(state: *mut c_void) -> $type {
             // SAFETY: callers pass the state of their handle.
-            let $host = unsafe { host(state) };
-            guarded_value($otherwise, || $value)
+            unsafe { with_host(state, $otherwise, |$host| $value) }
         })*
     };
 }
@@ -171,7 +172,8 @@ unsafe extern "C" fn publish(
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         guarded(error, || {
-            topic(view).and_then(|topic| host(state).publish(&topic)).map(|found| *index = found)
+            *index = host(state)?.publish(&topic(view)?)?;
+            Ok(())
         })
     }
 }
@@ -185,7 +187,8 @@ unsafe extern "C" fn subscribe(
     // SAFETY: as in `publish`.
     unsafe {
         guarded(error, || {
-            topic(view).and_then(|topic| host(state).subscribe(&topic)).map(|found| *index = found)
+            *index = host(state)?.subscribe(&topic(view)?)?;
+            Ok(())
         })
     }
 }
@@ -200,7 +203,7 @@ unsafe extern "C" fn send(
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         guarded(error, || {
-            let host = host(state);
+            let mut host = host(state)?;
             let header = Header { sender: host.sender(), sent: host.due(), cause: host.cause() };
             host.send(
                 publisher,
@@ -220,7 +223,7 @@ unsafe extern "C" fn reference(
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         guarded(error, || {
-            *index = host(state).reference(name.get_text()?, interface.get_text()?)?;
+            *index = host(state)?.reference(name.get_text()?, interface.get_text()?)?;
             Ok(())
         })
     }
@@ -228,34 +231,29 @@ unsafe extern "C" fn reference(
 
 unsafe extern "C" fn is_wired(state: *mut c_void, reference: u32) -> u32 {
     // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value(0, || u32::from(host.is_wired(reference)))
+    unsafe { with_host(state, 0, |host| u32::from(host.is_wired(reference))) }
 }
 
 unsafe extern "C" fn targets(state: *mut c_void, reference: u32) -> u32 {
     // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value(0, || host.targets(reference))
+    unsafe { with_host(state, 0, |host| host.targets(reference)) }
 }
 
 unsafe extern "C" fn name_of(state: *mut c_void, sender: u32) -> Bytes {
     // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value(Bytes::NONE, || host.name_of(sender).map_or(Bytes::NONE, Bytes::text))
+    unsafe { with_host(state, Bytes::NONE, |host| host.name_of(sender).map_or(Bytes::NONE, Bytes::text)) }
 }
 
 unsafe extern "C" fn chosen_loops(state: *mut c_void, visitor: *mut c_void, visit: LoopVisitor) {
-    // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value((), || {
-        host.chosen_loops(&mut |name, class, values| {
-            let views = PropertyViews::of(values);
-            // SAFETY: the caller's own function and state; the rest is lent to this call.
-            unsafe {
-                visit(visitor, Bytes::text(name), Bytes::text(class), views.top.as_ptr(), views.top.len())
-            }
+    // SAFETY: callers pass the state of their handle, and their own function and state; the rest is lent to that.
+    unsafe {
+        with_host(state, (), |host| {
+            host.chosen_loops(&mut |name, class, values| {
+                let views = PropertyViews::of(values);
+                visit(visitor, Bytes::text(name), Bytes::text(class), views.top.as_ptr(), views.top.len());
+            });
         });
-    });
+    }
 }
 
 unsafe extern "C" fn chosen_loop(
@@ -267,7 +265,7 @@ unsafe extern "C" fn chosen_loop(
     // SAFETY: callers pass the state of their handle, and a place for the loop.
     unsafe {
         guarded(error, || {
-            *given = give_loop(host(state).chosen_loop(place)?);
+            *given = give_loop(host(state)?.chosen_loop(place)?);
             Ok(())
         })
     }
@@ -275,8 +273,7 @@ unsafe extern "C" fn chosen_loop(
 
 unsafe extern "C" fn name_loop(state: *mut c_void, place: u32, name: Bytes) {
     // SAFETY: callers pass the state of their handle, and lend the name.
-    let (host, name) = unsafe { (host(state), name.get_text()) };
-    guarded_value((), || host.name_loop(place, name.unwrap_or_default()));
+    unsafe { with_host(state, (), |host| host.name_loop(place, name.get_text().unwrap_or_default())) }
 }
 
 unsafe extern "C" fn call(
@@ -291,77 +288,82 @@ unsafe extern "C" fn call(
     unsafe {
         guarded_call(error, || {
             let mut call = BytesCall::new(operation, arguments.get()?, reply);
-            host(state).call(reference, &mut call)
+            host(state)?.call(reference, &mut call)
         })
     }
 }
 
 unsafe extern "C" fn listens(state: *mut c_void, level: u32) -> u32 {
     // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value(0, || u32::from(host.listens(LEVELS.get(level as usize).copied())))
+    unsafe { with_host(state, 0, |host| u32::from(host.listens(LEVELS.get(level as usize).copied()))) }
 }
 
 unsafe extern "C" fn log(state: *mut c_void, level: u32, line: Bytes) {
     // SAFETY: callers pass the state of their handle, and lend the line to this call.
-    let (host, line) = unsafe { (host(state), line.get()) };
-    let _ = contained(|| {
-        let line = String::from_utf8_lossy(line.unwrap_or_default());
-        match LEVELS.get(level as usize) {
-            Some(level) => host.log(*level, format_args!("{line}")),
-            None => host.console(format_args!("{line}")),
-        }
-    });
+    unsafe {
+        with_host(state, (), |host| {
+            let line = String::from_utf8_lossy(line.get().unwrap_or_default());
+            match LEVELS.get(level as usize) {
+                Some(level) => host.log(*level, format_args!("{line}")),
+                None => host.console(format_args!("{line}")),
+            }
+        });
+    }
 }
 
 /// A value for the report that cannot be read, or a path that is no text, is left out with a warning.
 unsafe extern "C" fn report(state: *mut c_void, path: Bytes, value: *const ReportView) {
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
-    let (host, read) =
-        unsafe { (host(state), path.get_text().and_then(|path| Ok((path, (*value).read()?)))) };
-    let _ = contained(|| match read {
-        Ok((path, value)) => host.report(path, value),
-        Err(failure) => host.log(Level::Warning, format_args!("a value for the report is none: {failure}")),
-    });
+    unsafe {
+        with_host(state, (), |host| {
+            let read = path.get_text().and_then(|path| Ok((path, (*value).read()?)));
+            match read {
+                Ok((path, value)) => host.report(path, value),
+                Err(failure) => warn(host, "a value for the report", &failure),
+            }
+        });
+    }
 }
 
+/// A path that is no text is left out with a warning.
 unsafe extern "C" fn count(state: *mut c_void, path: Bytes, more: i64) {
     // SAFETY: callers pass the state of their handle, and lend the path to this call.
-    let (host, path) = unsafe { (host(state), path.get_text()) };
-    let _ = contained(|| match path {
-        Ok(path) => host.count(path, more),
-        Err(failure) => host.log(Level::Warning, format_args!("a path of the report is none: {failure}")),
-    });
+    unsafe {
+        with_host(state, (), |host| match path.get_text() {
+            Ok(path) => host.count(path, more),
+            Err(failure) => warn(host, "a count for the report", &failure),
+        });
+    }
 }
 
 unsafe extern "C" fn vote(state: *mut c_void, work: u32) {
     // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value((), || host.vote(if work == 0 { Work::Open } else { Work::Done }));
+    unsafe { with_host(state, (), |host| host.vote(if work == 0 { Work::Open } else { Work::Done })) }
 }
 
 unsafe extern "C" fn enter_loop(state: *mut c_void, place: u32) {
     // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value((), || host.enter_loop((place != u32::MAX).then_some(place)));
+    unsafe { with_host(state, (), |host| host.enter_loop((place != u32::MAX).then_some(place))) }
 }
 
 unsafe extern "C" fn because(state: *mut c_void, cause: u64) {
     // SAFETY: callers pass the state of their handle.
-    let host = unsafe { host(state) };
-    guarded_value((), || host.because(Cause(cause)));
+    unsafe { with_host(state, (), |host| host.because(Cause(cause))) }
 }
 
 /// A record that cannot be read is left out with a warning.
 unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const RecordView) {
     // SAFETY: callers pass the state of their handle, and lend the view; its texts are part of their library, which stays.
-    let (host, record) = unsafe { (host(state), (*view).read()) };
-    let phase = [Phase::Symptom, Phase::Decision, Phase::Effect].get(phase as usize).copied();
-    let _ = contained(|| match (phase, record) {
-        (Some(phase), Ok(record)) => host.journal(phase, &record),
-        (None, _) => host.log(Level::Warning, format_args!("a record of no phase was left out")),
-        (_, Err(failure)) => host.log(Level::Warning, format_args!("a record was left out: {failure}")),
-    });
+    unsafe {
+        with_host(state, (), |host| {
+            let phase = [Phase::Symptom, Phase::Decision, Phase::Effect].get(phase as usize).copied();
+            let phase = phase.ok_or_else(|| Failure::new("it is of no phase"));
+            match phase.and_then(|phase| Ok((phase, (*view).read()?))) {
+                Ok((phase, record)) => host.journal(phase, &record),
+                Err(failure) => warn(host, "a record", &failure),
+            }
+        });
+    }
 }
 
 impl RecordView {
@@ -394,14 +396,15 @@ unsafe extern "C" fn changed(
     after: *const ValueView,
 ) {
     // SAFETY: callers pass the state of their handle, and lend the views; texts are part of their library, which stays.
-    let (host, read) = unsafe {
-        let read = || Ok((entry.get_text()?, (*before).read()?, (*after).read()?));
-        (host(state), read())
-    };
-    let _ = contained(|| match read {
-        Ok((entry, before, after)) => host.changed(entry, before, after),
-        Err(failure) => warn(host, "a changed entry", &failure),
-    });
+    unsafe {
+        with_host(state, (), |host| {
+            let read = || Ok((entry.get_text()?, (*before).read()?, (*after).read()?));
+            match read() {
+                Ok((entry, before, after)) => host.changed(entry, before, after),
+                Err(failure) => warn(host, "a changed entry", &failure),
+            }
+        });
+    }
 }
 
 fn warn(host: &mut dyn Host, what: &str, failure: &Failure) {

@@ -3,16 +3,16 @@ use std::ptr;
 
 use crate::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue};
 
-use super::component::call;
+use super::class::Construct;
 use super::data::PropertyViews;
-use super::guard::call_outcome;
-use super::lend::{Lent, with_handle};
-use super::{Bytes, ClassTable, HostHandle, Sink, Status};
+use super::lease::{Lent, call_with_findings};
+use super::{Bytes, ClassTable, ComponentTable, HostHandle, Sink, Status};
 
 /// A class of the other side.
 #[derive(Clone, Copy, Debug)]
 pub struct ImportedClass {
-    table: ClassTable,
+    construct: Construct,
+    component: ComponentTable,
 }
 
 impl ImportedClass {
@@ -20,8 +20,9 @@ impl ImportedClass {
     ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](super), for as long as the program runs.
-    pub const unsafe fn new(table: ClassTable) -> ImportedClass {
-        ImportedClass { table }
+    pub const unsafe fn new(table: &ClassTable) -> ImportedClass {
+        // SAFETY: as the caller promises, the pointer leads to a table.
+        ImportedClass { construct: table.construct, component: unsafe { *table.component } }
     }
 
     /// Makes a component.
@@ -29,20 +30,39 @@ impl ImportedClass {
     /// # Errors
     /// The class refuses the values, or panics.
     pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
-        let views = PropertyViews::of(values);
-        let mut instance = ptr::null_mut();
-        // SAFETY: `new`'s caller promised that the functions keep the rules; the rest is lent to this call.
-        call(|error| unsafe {
-            (self.table.construct)(views.top.as_ptr(), views.top.len(), &raw mut instance, error)
-        })?;
-        Ok(Box::new(ImportedComponent { class: *self, instance, lent: Lent::default() }))
+        // SAFETY: `new`'s caller promised that the function keeps the rules.
+        let instance = unsafe { construct(self.construct, values) }?;
+        Ok(Box::new(ImportedComponent { table: self.component, instance, lent: Lent::default() }))
+    }
+}
+
+/// Makes a component or a loop of the other side.
+///
+/// # Safety
+/// The function keeps the rules of the boundary.
+pub(super) unsafe fn construct(
+    construct: Construct,
+    values: &[(String, PropertyValue)],
+) -> Result<*mut c_void, Failure> {
+    let views = PropertyViews::of(values);
+    let mut instance = ptr::null_mut();
+    // SAFETY: as the caller promises; the rest is lent to this call.
+    let (result, findings) = call_with_findings(|findings, error| unsafe {
+        construct(views.top.as_ptr(), views.top.len(), &raw mut instance, findings, error)
+    });
+    match result {
+        Ok(()) => Ok(instance),
+        Err(failure) => {
+            let findings = findings.into_iter().collect::<Result<_, _>>()?;
+            Err(Failure::with_findings(failure.message().to_owned(), findings))
+        }
     }
 }
 
 /// A component of the other side.
 #[derive(Debug)]
 pub struct ImportedComponent {
-    class: ImportedClass,
+    table: ComponentTable,
     instance: *mut c_void,
     lent: Lent,
 }
@@ -58,46 +78,39 @@ impl ImportedComponent {
         function: unsafe extern "C" fn(*mut c_void, *const HostHandle, Sink) -> Status,
     ) -> Result<(), Failure> {
         let instance = self.instance;
-        with_handle(context, &mut self.lent, |handle| {
-            // SAFETY: the functions keep the rules, the instance is theirs, and the handle is lent to this call.
-            call(|error| unsafe { function(instance, handle, error) })
-        })
+        // SAFETY: the functions keep the rules, the instance is theirs, and the handle is lent to this call.
+        self.lent.call(context, |handle, error| unsafe { function(instance, handle, error) })
     }
 }
 
 impl DynComponent for ImportedComponent {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.call(context, self.class.table.component.initialize)
+        self.call(context, self.table.initialize)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.call(context, self.class.table.component.execute)
+        self.call(context, self.table.execute)
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.call(context, self.class.table.component.shutdown)
+        self.call(context, self.table.shutdown)
     }
 
     fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError> {
         let arguments = invocation.call.arguments();
-        let (mut reply, mut error) = (Vec::new(), Vec::new());
-        let (into_reply, into_error) = (Sink::into(&mut reply), Sink::into(&mut error));
         let (service, operation) = (Bytes::text(invocation.service), invocation.call.operation());
-        let (serve, instance) = (self.class.table.component.serve, self.instance);
-        let status = with_handle(context, &mut self.lent, |handle| {
+        let (serve, instance) = (self.table.serve, self.instance);
+        let reply = self.lent.serve(context, |handle, reply, error| {
             // SAFETY: the functions keep the rules, the instance is theirs, and the rest is lent to this call.
-            unsafe {
-                serve(instance, handle, service, operation, Bytes::lend(&arguments), into_reply, into_error)
-            }
-        });
-        call_outcome(status, &error)?;
-        invocation.call.reply(&reply)
+            unsafe { serve(instance, handle, service, operation, Bytes::lend(&arguments), reply, error) }
+        })?;
+        invocation.call.reply(reply)
     }
 }
 
 impl Drop for ImportedComponent {
     fn drop(&mut self) {
         // SAFETY: the instance is the one that `construct` gave, and is given back once.
-        unsafe { (self.class.table.component.destroy)(self.instance) }
+        unsafe { (self.table.destroy)(self.instance) }
     }
 }

@@ -9,7 +9,7 @@ use crate::{
     PropertyValue, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, TopicKind, Work,
 };
 
-use super::data::ValueView;
+use super::data::{Buffer, ValueView};
 use super::guard::{call_outcome, outcome};
 use super::host::{HostFunctions, LEVELS, TopicView, time};
 use super::looping::import_loop;
@@ -57,21 +57,27 @@ impl<'a> Link<'a> {
                 TopicKind::Event => 1,
             },
         };
-        let (mut index, mut error) = (u32::MAX, Vec::new());
+        let (mut index, mut error) = (u32::MAX, Buffer::default());
         // SAFETY: the link stands for a call that goes on; everything is lent for this call.
         let status =
             unsafe { ask(self.handle.state, &raw const view, &raw mut index, Sink::into(&mut error)) };
-        outcome(status, &error).map(|()| index)
+        outcome(status, &error.bytes).map(|()| index)
     }
 
     /// A loop of the host, or of another library.
     fn made_by_host(&self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
-        let (mut given, mut error) = (MaybeUninit::<LoopInstance>::uninit(), Vec::new());
+        let (mut given, mut error) = (MaybeUninit::<LoopInstance>::uninit(), Buffer::default());
         // SAFETY: the link stands for a call that goes on; when it answers that all is well, the host has given a loop away.
         unsafe {
             let make = self.functions.chosen_loop;
-            outcome(make(self.handle.state, place, given.as_mut_ptr(), Sink::into(&mut error)), &error)?;
-            import_loop(given.assume_init())
+            outcome(
+                make(self.handle.state, place, given.as_mut_ptr(), Sink::into(&mut error)),
+                &error.bytes,
+            )?;
+            {
+                let given = given.assume_init();
+                import_loop(given.instance, *given.table)
+            }
         }
     }
 
@@ -175,6 +181,7 @@ impl Host for Link<'_> {
 
     fn chance(&mut self) -> &mut Chance {
         let state = get!(self.chance);
+        assert!(!state.is_null(), "the host lends no chance");
         // SAFETY: the host lends the state until the call ends, which is longer than `self` is borrowed; `Chance` is that state.
         unsafe { &mut *state.cast::<Chance>() }
     }
@@ -193,15 +200,18 @@ impl Host for Link<'_> {
         message.encode_into(self.buffer);
         let key = message.key();
         let key = key.as_ref().map_or(std::ptr::null(), std::ptr::from_ref);
-        let mut error = Vec::new();
-        outcome(get!(self.send, publisher, key, Bytes::lend(self.buffer), Sink::into(&mut error)), &error)
+        let mut error = Buffer::default();
+        outcome(
+            get!(self.send, publisher, key, Bytes::lend(self.buffer), Sink::into(&mut error)),
+            &error.bytes,
+        )
     }
 
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {
-        let (mut index, mut error) = (u32::MAX, Vec::new());
+        let (mut index, mut error) = (u32::MAX, Buffer::default());
         let (name, interface) = (Bytes::text(name), Bytes::text(interface));
         let status = get!(self.reference, name, interface, &raw mut index, Sink::into(&mut error));
-        outcome(status, &error).map(|()| index)
+        outcome(status, &error.bytes).map(|()| index)
     }
 
     fn is_wired(&self, reference: u32) -> bool {
@@ -214,12 +224,12 @@ impl Host for Link<'_> {
 
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         let arguments = call.arguments();
-        let (mut reply, mut error) = (Vec::new(), Vec::new());
+        let (mut reply, mut error) = (Buffer::default(), Buffer::default());
         let (into_reply, into_error) = (Sink::into(&mut reply), Sink::into(&mut error));
         let status =
             get!(self.call, reference, call.operation(), Bytes::lend(&arguments), into_reply, into_error);
-        call_outcome(status, &error)?;
-        call.reply(&reply)
+        call_outcome(status, &error.bytes)?;
+        call.reply(reply.get()?)
     }
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {

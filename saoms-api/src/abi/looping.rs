@@ -8,12 +8,13 @@ use crate::{
     Context, DynEntries, DynLoop, Failure, Knowledge, LoopClass, LoopRegistration, PropertyValue, Snapshot,
 };
 
-use super::component::{Desk, call};
-use super::data::PropertyViews;
-use super::entries::{GivenEntries, Remote, RemoteKnowledge, give, with_knowledge};
-use super::guard::{guarded, guarded_value};
-use super::lend::{Lent, with_handle};
-use super::{Bytes, EntriesHandle, HostHandle, PropertyView, Sink, Status};
+use super::class::Construct;
+use super::component::Desk;
+use super::entries::{GivenEntries, Remote, RemoteKnowledge, give};
+use super::guard::{guarded, guarded_construct, guarded_value};
+use super::import;
+use super::lease::Lent;
+use super::{Bytes, EntriesHandle, FindingSink, HostHandle, PropertyView, Sink, Status};
 
 /// A function of a loop: the loop, its component's knowledge, the host, where an error goes.
 type Step = unsafe extern "C" fn(*mut c_void, *const EntriesHandle, *const HostHandle, Sink) -> Status;
@@ -24,10 +25,10 @@ type Step = unsafe extern "C" fn(*mut c_void, *const EntriesHandle, *const HostH
 pub struct LoopClassTable {
     /// The size of this table in bytes.
     pub size: usize,
-    /// Makes a loop from the values that the composite gives: a list and its length, where the loop goes, where an error goes.
-    pub construct: unsafe extern "C" fn(*const PropertyView, usize, *mut *mut c_void, Sink) -> Status,
+    /// Makes a loop of it.
+    pub construct: Construct,
     /// The functions of its loops.
-    pub looping: LoopTable,
+    pub looping: *const LoopTable,
 }
 
 /// The functions of a loop. [`Loop`](crate::Loop) says when each is called.
@@ -57,13 +58,16 @@ pub struct LoopInstance {
     /// The loop.
     pub instance: *mut c_void,
     /// Its functions.
-    pub table: LoopTable,
+    pub table: *const LoopTable,
 }
+
+// SAFETY: what the pointer leads to is constant.
+unsafe impl Sync for LoopClassTable {}
 
 impl LoopClassTable {
     /// The table of a loop class.
     pub const fn of<L: LoopClass>() -> LoopClassTable {
-        LoopClassTable { size: size_of::<LoopClassTable>(), construct: construct::<L>, looping: TABLE }
+        LoopClassTable { size: size_of::<LoopClassTable>(), construct: construct::<L>, looping: &TABLE }
     }
 }
 
@@ -71,21 +75,21 @@ unsafe extern "C" fn construct<L: LoopClass>(
     values: *const PropertyView,
     count: usize,
     instance: *mut *mut c_void,
+    findings: FindingSink,
     error: Sink,
 ) -> Status {
-    // SAFETY: the host lends the values to this call, and a place for the pointer.
-    unsafe {
-        guarded(error, || {
-            let values = PropertyView::read(values, count)?;
-            *instance = Exported::into_pointer(LoopRegistration::of::<L>().construct(&values)?);
-            Ok(())
-        })
-    }
+    let make = || {
+        // SAFETY: the host lends the values to this call.
+        let values = unsafe { PropertyView::read(values, count) }?;
+        Ok(Exported::into_pointer(LoopRegistration::of::<L>().construct(&values)?))
+    };
+    // SAFETY: the host waits for the call with its sinks, and has a place for the pointer.
+    unsafe { guarded_construct(findings, error, make, instance) }
 }
 
 /// Gives a loop of this side away.
 pub(super) fn give_loop(instance: Box<dyn DynLoop>) -> LoopInstance {
-    LoopInstance { instance: Exported::into_pointer(instance), table: TABLE }
+    LoopInstance { instance: Exported::into_pointer(instance), table: &TABLE }
 }
 
 /// A loop of this side as the other one holds it.
@@ -97,7 +101,7 @@ struct Exported {
     snapshot: Snapshot,
 }
 
-const TABLE: LoopTable = LoopTable {
+static TABLE: LoopTable = LoopTable {
     size: size_of::<LoopTable>(),
     effect: Exported::effect,
     entries: Exported::entries,
@@ -238,7 +242,8 @@ impl Exported {
 /// A loop class of the other side.
 #[derive(Clone, Copy, Debug)]
 pub struct ImportedLoopClass {
-    table: LoopClassTable,
+    construct: Construct,
+    looping: LoopTable,
 }
 
 impl ImportedLoopClass {
@@ -246,8 +251,9 @@ impl ImportedLoopClass {
     ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](super), for as long as the program runs.
-    pub const unsafe fn new(table: LoopClassTable) -> ImportedLoopClass {
-        ImportedLoopClass { table }
+    pub const unsafe fn new(table: &LoopClassTable) -> ImportedLoopClass {
+        // SAFETY: as the caller promises, the pointer leads to a table.
+        ImportedLoopClass { construct: table.construct, looping: unsafe { *table.looping } }
     }
 
     /// Makes a loop.
@@ -255,14 +261,8 @@ impl ImportedLoopClass {
     /// # Errors
     /// The loop refuses the values, or panics.
     pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
-        let views = PropertyViews::of(values);
-        let mut instance = ptr::null_mut();
-        // SAFETY: `new`'s caller promised that the functions keep the rules; the rest is lent to this call.
-        call(|error| unsafe {
-            (self.table.construct)(views.top.as_ptr(), views.top.len(), &raw mut instance, error)
-        })?;
-        // SAFETY: the same.
-        unsafe { import_loop(LoopInstance { instance, table: self.table.looping }) }
+        // SAFETY: `new`'s caller promised that the functions keep the rules; the loop is given away to this.
+        unsafe { import_loop(import::construct(self.construct, values)?, self.looping) }
     }
 }
 
@@ -270,12 +270,15 @@ impl ImportedLoopClass {
 ///
 /// # Safety
 /// It is given away to the caller, and its functions keep the rules of the boundary for as long as the program runs.
-pub(super) unsafe fn import_loop(given: LoopInstance) -> Result<Box<dyn DynLoop>, Failure> {
-    let mut imported = ImportedLoop { given, effects: &[], lent: Lent::default() };
+pub(super) unsafe fn import_loop(
+    instance: *mut c_void,
+    table: LoopTable,
+) -> Result<Box<dyn DynLoop>, Failure> {
+    let mut imported = ImportedLoop { instance, table, effects: &[], lent: Lent::default() };
     let mut effects = Vec::new();
     for number in 0.. {
         // SAFETY: as the caller promises; the names stay by the rules.
-        let name = unsafe { (given.table.effect)(given.instance, number).get_text() }?;
+        let name = unsafe { (table.effect)(instance, number).get_text() }?;
         if name.is_empty() {
             break;
         }
@@ -299,7 +302,8 @@ fn kept(list: Vec<&'static str>) -> &'static [&'static str] {
 
 /// A loop of the other side.
 struct ImportedLoop {
-    given: LoopInstance,
+    instance: *mut c_void,
+    table: LoopTable,
     effects: &'static [&'static str],
     lent: Lent,
 }
@@ -314,12 +318,10 @@ impl ImportedLoop {
         knowledge: &mut dyn Knowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        let instance = self.given.instance;
-        with_handle(context, &mut self.lent, |host| {
-            with_knowledge(knowledge, |knowledge| {
-                // SAFETY: the functions keep the rules, the instance is theirs, and the handles are lent to this call.
-                call(|error| unsafe { step(instance, knowledge, host, error) })
-            })
+        let instance = self.instance;
+        self.lent.step(knowledge, context, |knowledge, host, error| {
+            // SAFETY: the functions keep the rules, the instance is theirs, and the handles are lent to this call.
+            unsafe { step(instance, knowledge, host, error) }
         })
     }
 }
@@ -333,7 +335,7 @@ impl DynLoop for ImportedLoop {
         let mut handle = EntriesHandle { state: ptr::null_mut(), functions: ptr::null() };
         // SAFETY: the functions keep the rules; what they give away is this side's.
         unsafe {
-            if (self.given.table.entries)(self.given.instance, &raw mut handle) == 0 {
+            if (self.table.entries)(self.instance, &raw mut handle) == 0 {
                 return None;
             }
             Remote::new(handle).ok().map(|remote| Box::new(GivenEntries(remote)) as Box<dyn DynEntries>)
@@ -345,11 +347,11 @@ impl DynLoop for ImportedLoop {
         knowledge: &mut dyn Knowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        self.step(self.given.table.initialize, knowledge, context)
+        self.step(self.table.initialize, knowledge, context)
     }
 
     fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.step(self.given.table.monitor, knowledge, context)
+        self.step(self.table.monitor, knowledge, context)
     }
 
     fn adapt(
@@ -360,18 +362,18 @@ impl DynLoop for ImportedLoop {
     ) -> Result<(), Failure> {
         // When the loop decides is not seen from here, so the entries are looked at in any case.
         snapshot.take(knowledge);
-        let result = self.step(self.given.table.adapt, knowledge, context);
+        let result = self.step(self.table.adapt, knowledge, context);
         result.and(snapshot.tell(knowledge, context))
     }
 
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.step(self.given.table.shutdown, knowledge, context)
+        self.step(self.table.shutdown, knowledge, context)
     }
 }
 
 impl Drop for ImportedLoop {
     fn drop(&mut self) {
         // SAFETY: the instance was given away to this, and is given back once.
-        unsafe { (self.given.table.destroy)(self.given.instance) }
+        unsafe { (self.table.destroy)(self.instance) }
     }
 }

@@ -12,15 +12,16 @@ use super::PluginTable;
 /// | `entry` | the name of its function of type [`Entry`] |
 /// | `classes` | the [declarations](crate::declaration) of its classes |
 /// | `loops` | those of its loops |
+/// | `rules` | its rules over whole fleets: `{"code":"X0001","name":"one-clock","meaning":"...","severity":"warning","rule":null,"judgesParts":true}` |
 pub const SECTION: &str = ".saoms.plugin";
 
 /// The function by which a library gives its table: it takes the [`VERSION`](super::VERSION) of the program.
 pub type Entry = unsafe extern "C" fn(version: u32) -> *const PluginTable;
 
-/// Offers classes and loops in a library, to programs that load it.
+/// Offers classes, loops and [rules over whole fleets](crate::FleetRule) in a library, to programs that load it.
 ///
-/// A crate that is built as a `cdylib` says once what it offers. The same crate can be linked into a program, too: its classes are
-/// registered by their derives then, and this has no part in it.
+/// A crate that is built as a `cdylib` says once what it offers: `classes`, `loops` and `rules`, in this order, as far as it has them. The same crate can be linked into a program, too: its classes and loops are
+/// registered by their derives then, its rules by this, as by [`fleet_rules!`](crate::fleet_rules).
 ///
 /// ```
 /// use saoms_api::{Class, Component, Failure};
@@ -45,13 +46,22 @@ pub type Entry = unsafe extern "C" fn(version: u32) -> *const PluginTable;
 /// ```
 #[macro_export]
 macro_rules! plugin {
-    (loops: [$($looping:ty),* $(,)?] $(,)?) => {
-        $crate::plugin! { classes: [], loops: [$($looping),*] }
+    (
+        $(classes: [$($class:ty),* $(,)?])?
+        $(, loops: [$($looping:ty),* $(,)?])?
+        $(, rules: [$($rule:path),* $(,)?])? $(,)?
+    ) => {
+        $crate::plugin! { @ [$($($class),*)?] [$($($looping),*)?] [$($($rule),*)?] }
     };
-    (classes: [$($class:ty),* $(,)?] $(,)?) => {
-        $crate::plugin! { classes: [$($class),*], loops: [] }
+    (loops: [$($looping:ty),* $(,)?] $(, rules: [$($rule:path),* $(,)?])? $(,)?) => {
+        $crate::plugin! { @ [] [$($looping),*] [$($($rule),*)?] }
     };
-    (classes: [$($class:ty),* $(,)?], loops: [$($looping:ty),* $(,)?] $(,)?) => {
+    (rules: [$($rule:path),* $(,)?] $(,)?) => {
+        $crate::plugin! { @ [] [] [$($rule),*] }
+    };
+    (@ [$($class:ty),*] [$($looping:ty),*] [$($rule:path),*]) => {
+        $crate::fleet_rules!($($rule),*);
+
         const _: () = {
             use $crate::declaration::Text;
 
@@ -60,6 +70,23 @@ macro_rules! plugin {
             )*];
             const LOOPS: &[Text] = &[$(
                 Text::Plain(","), Text::Plain(<$looping as $crate::LoopClass>::DECLARATION),
+            )*];
+            const RULES: &[Text] = &[$(
+                Text::Plain(","),
+                Text::Plain("{\"code\":"),
+                Text::Quoted($rule.code.id),
+                Text::Plain(",\"name\":"),
+                Text::Quoted($rule.code.name),
+                Text::Plain(",\"meaning\":"),
+                Text::Quoted($rule.code.meaning),
+                Text::Plain(",\"severity\":"),
+                Text::Quoted($rule.code.severity.name()),
+                Text::Plain(",\"rule\":"),
+                match $rule.code.rule {
+                    Some(rule) => Text::Quoted(rule),
+                    None => Text::Plain("null"),
+                },
+                Text::Plain(if $rule.judges_parts { ",\"judgesParts\":true}" } else { ",\"judgesParts\":false}" }),
             )*];
             const TEXT: Text = Text::Joined(&[
                 Text::Plain("{\"saoms\":\"plugin\",\"abi\":1,\"api\":"),
@@ -76,6 +103,8 @@ macro_rules! plugin {
                 Text::Joined(CLASSES.split_at(if CLASSES.is_empty() { 0 } else { 1 }).1),
                 Text::Plain("],\"loops\":["),
                 Text::Joined(LOOPS.split_at(if LOOPS.is_empty() { 0 } else { 1 }).1),
+                Text::Plain("],\"rules\":["),
+                Text::Joined(RULES.split_at(if RULES.is_empty() { 0 } else { 1 }).1),
                 Text::Plain("]}"),
             ]);
 
@@ -83,9 +112,10 @@ macro_rules! plugin {
             #[unsafe(link_section = ".saoms.plugin")]
             static METADATA: [u8; TEXT.length()] = TEXT.bytes();
 
-            static TABLES: &[$crate::abi::ClassTable] = &[$($crate::abi::ClassTable::of::<$class>()),*];
-            static LOOP_TABLES: &[$crate::abi::LoopClassTable] = &[$($crate::abi::LoopClassTable::of::<$looping>()),*];
-            static TABLE: $crate::abi::PluginTable = $crate::abi::PluginTable::new(&METADATA, TABLES, LOOP_TABLES);
+            static TABLES: &[&$crate::abi::ClassTable] = &[$(&$crate::abi::ClassTable::of::<$class>()),*];
+            static LOOP_TABLES: &[&$crate::abi::LoopClassTable] = &[$(&$crate::abi::LoopClassTable::of::<$looping>()),*];
+            static RULE_TABLES: &[&$crate::abi::RuleTable] = &[$(&$crate::abi::RuleTable::of(&$rule)),*];
+            static TABLE: $crate::abi::PluginTable = $crate::abi::PluginTable::new(&METADATA, TABLES, LOOP_TABLES, RULE_TABLES);
 
             #[unsafe(export_name = concat!("saoms_plugin_", env!("CARGO_CRATE_NAME")))]
             extern "C" fn entry(_version: u32) -> *const $crate::abi::PluginTable {

@@ -1,6 +1,10 @@
 use crate::{Failure, ReportValue};
 
 use super::Bytes;
+use super::data::list;
+
+/// How many values may lie in one another.
+const DEEPEST: usize = 64;
 
 /// A value for the run's report.
 #[repr(C)]
@@ -25,16 +29,24 @@ impl ReportView {
     /// # Safety
     /// The view and what it leads to are readable.
     pub(super) unsafe fn read(&self) -> Result<ReportValue, Failure> {
+        // SAFETY: as the caller promises.
+        unsafe { self.read_at(0) }
+    }
+
+    /// # Safety
+    /// As [`read`](ReportView::read).
+    unsafe fn read_at(&self, depth: usize) -> Result<ReportValue, Failure> {
+        if depth > DEEPEST {
+            return Err(Failure::new(format!("found values in values, more than {DEEPEST} deep")));
+        }
         let children = || -> Result<Vec<(String, ReportValue)>, Failure> {
-            let mut all = Vec::new();
-            for place in 0..self.child_count {
+            // SAFETY: as the caller promises.
+            let children = unsafe { list(self.children, self.child_count) }?;
+            let read = |child: &ReportView| {
                 // SAFETY: as the caller promises.
-                unsafe {
-                    let child = &*self.children.add(place);
-                    all.push((child.name.get_text()?.to_owned(), child.read()?));
-                }
-            }
-            Ok(all)
+                unsafe { Ok((child.name.get_text()?.to_owned(), child.read_at(depth + 1)?)) }
+            };
+            children.iter().map(read).collect()
         };
         Ok(match self.kind {
             0 => ReportValue::Null,

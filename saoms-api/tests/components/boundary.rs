@@ -1,12 +1,15 @@
 //! What a component or a loop does behind the boundary to plugins is what it does without one.
 
-use saoms_api::abi::{ClassTable, ImportedClass, ImportedLoopClass, LoopClassTable};
+use saoms_api::abi::{ClassTable, ImportedClass, ImportedLoopClass, ImportedRule, LoopClassTable, RuleTable};
 use saoms_api::{
-    CallError, Cause, Class, Component, Context, DynComponent, DynLoop, Effector, Entries, Entry, Extras,
-    Failure, Field, Header, Invocation, Knowledge, Level, Loop, LoopClass, LoopRegistration, Loops, Message,
-    Properties, PropertyValue, Publisher, Record, Registration, ReportValue, SharedMessage, Subscription,
-    Time, Topic, TypedCall, Work, interface, record,
+    CallError, Cause, Class, Code, Component, ComponentView, Context, DynComponent, DynLoop, Effector,
+    Entries, Entry, Extras, Failure, Field, Finding, FleetRule, FleetView, Header, Invocation, Knowledge,
+    Level, Loop, LoopClass, LoopRegistration, Loops, Message, Place, Properties, PropertyValue, Publisher,
+    Record, Registration, ReportValue, Severity, SharedMessage, Subscription, Time, Topic, TypedCall, Work,
+    interface, record,
 };
+
+use std::time::Duration;
 
 use crate::host::FakeHost;
 
@@ -68,6 +71,13 @@ impl Component for Busy {
         assert!(properties.panics != "new", "no more of new");
         if properties.panics == "refuses" {
             return Err("property `panics`: refused".into());
+        }
+        if properties.panics == "finds" {
+            let first =
+                Finding::new(Place::property("names").part(1, 0..2), "one").help("a").help("b").instead("");
+            return Err(
+                vec![first.label(Place::default(), "here"), Finding::new(Place::default(), "two")].into()
+            );
         }
         let (samples, heard) = (Publisher::default(), Subscription::default());
         Ok(Busy { properties, samples, heard, adder: AdderReference::default() })
@@ -131,7 +141,7 @@ fn linked(values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, F
 
 fn imported(values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
     // SAFETY: the functions of the tables are this crate's own.
-    unsafe { ImportedClass::new(ClassTable::of::<Busy>()) }.construct(values)
+    unsafe { ImportedClass::new(&ClassTable::of::<Busy>()) }.construct(values)
 }
 
 type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
@@ -187,6 +197,10 @@ fn panics_and_refusals_are_failures() {
     let failure = |panics: &str| imported(&values(panics)).map(drop).unwrap_err().to_string();
     assert_eq!(failure("refuses"), "property `panics`: refused");
     assert!(failure("new").ends_with("no more of new"), "{}", failure("new"));
+    let finds =
+        [linked, imported].map(|construct: Construct| construct(&values("finds")).map(drop).unwrap_err());
+    assert_eq!(finds[0].findings().len(), 2);
+    assert_eq!(finds[1], finds[0]);
     let mut host = FakeHost::new();
     let mut fails = |place: &str| {
         let mut busy = imported(&values(place)).unwrap();
@@ -374,9 +388,60 @@ fn a_loop_does_the_same_behind_the_boundary() {
     let expected = dimmed(LoopRegistration::of::<Dimmer>().construct(&[]).unwrap());
     assert!(expected.contains("\"isOn: yes -> no\"") && expected.contains("Ok(2)"), "{expected}");
     // SAFETY: the functions of the tables are this crate's own.
-    let imported = unsafe { ImportedLoopClass::new(LoopClassTable::of::<Dimmer>()) };
+    let imported = unsafe { ImportedLoopClass::new(&LoopClassTable::of::<Dimmer>()) };
     assert_eq!(dimmed(imported.construct(&[]).unwrap()), expected);
     let panics = [("panics".to_owned(), PropertyValue::Text("true".to_owned()))];
     let text = dimmed(imported.construct(&panics).unwrap());
     assert!(text.contains("too bright"), "{text}");
+}
+
+/// Says all that it sees.
+fn shown(fleet: &FleetView<'_>) -> Vec<Finding> {
+    assert!(fleet.components().len() < 3, "too many");
+    let place = Place::property("names").in_component(1).part(0, 3..4);
+    let misses = fleet.misses::<Busy>();
+    vec![
+        Finding::new(place.clone(), format!("{:?} {misses}", fleet.components())).severity(Severity::Note),
+        Finding::new(Place::component(0), "text").label(place, "more").help("help").instead("less"),
+    ]
+}
+
+static SHOWN: FleetRule = FleetRule {
+    code: Code { id: "X0001", name: "shown", meaning: "", severity: Severity::Warning, rule: None },
+    judges_parts: true,
+    check: shown,
+};
+
+#[test]
+fn a_rule_finds_the_same_behind_the_boundary() {
+    let values = values("nowhere");
+    let one = ComponentView {
+        path: "hall/robot",
+        class: "test.Busy",
+        declaration: Busy::DECLARATION,
+        extends: vec!["{}", "{1}"],
+        values: &values,
+        period: Some(Duration::from_millis(50)),
+        has_broker: true,
+        publishes: vec!["A", "B"],
+        loops: vec!["test.Dimmer"],
+        wires: vec![("adder", 1)],
+    };
+    let other =
+        ComponentView { period: None, has_broker: false, values: &[], publishes: vec![], ..one.clone() };
+    // SAFETY: the function of the table is this crate's own.
+    let imported = unsafe { ImportedRule::new(RuleTable::of(&SHOWN)) };
+    for missing in [
+        vec![],
+        vec![Some(vec!["{}"])],
+        vec![None, Some(vec!["{}"])],
+        vec![Some(vec!["{}", Busy::DECLARATION])],
+    ] {
+        let components = [one.clone(), other.clone()];
+        let fleet = FleetView::new(&components).without(&missing);
+        assert_eq!(imported.check(&fleet).unwrap(), shown(&fleet));
+    }
+    let components = [one.clone(), one.clone(), one];
+    let failure = imported.check(&FleetView::new(&components)).unwrap_err();
+    assert!(failure.message().ends_with("too many"), "{failure}");
 }

@@ -1,7 +1,6 @@
 //! What rules of crates of components find in the fleet as a whole.
 
-use saoms_api::contain::contained;
-use saoms_api::{ComponentView, FleetRule, FleetView};
+use saoms_api::{ComponentView, FleetView};
 
 use super::Resolved;
 use super::classes::ClassIndex;
@@ -10,6 +9,7 @@ use super::fleet::{Fleet, Kind, Member};
 use super::report::Report;
 use super::wires::Wiring;
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::registry::Rule;
 
 /// Asks the rules about the components that are resolved; where some are not, only the rules that can judge a part of a fleet.
 pub(super) fn check<'s>(
@@ -17,7 +17,7 @@ pub(super) fn check<'s>(
     classes: &'s [ClassIndex<'_>],
     resolved: &'s [Option<Resolved<'_>>],
     wiring: &Wiring,
-    rules: &[&'static FleetRule],
+    rules: &[Rule],
     report: &mut Report<'_>,
 ) {
     // Components that composites implement are not there in a run.
@@ -70,21 +70,21 @@ pub(super) fn check<'s>(
         })
         .collect();
     let view = FleetView::new(&views).without(&missing);
-    for rule in rules.iter().filter(|rule| rule.judges_parts || missing.is_empty()) {
-        let findings = match contained(|| (rule.check)(&view)) {
+    for rule in rules.iter().filter(|rule| rule.judges_parts() || missing.is_empty()) {
+        let findings = match rule.check(&view) {
             Ok(findings) => findings,
             Err(failure) => {
-                let message = format!("the rule {} failed: {failure}", rule.code.name);
-                let one = Diagnostic::new(&rule.code, first.at, message).severity(Severity::Warning);
+                let message = format!("the rule {} failed: {failure}", rule.code().name);
+                let one = Diagnostic::new(rule.code(), first.at, message).severity(Severity::Warning);
                 report.push(one.help("this is a fault of the rule, not of the fleet"));
                 continue;
             }
         };
         for finding in &findings {
-            let severity = finding.own_severity().unwrap_or(rule.code.severity);
+            let severity = finding.own_severity().unwrap_or(rule.code().severity);
             let named = |index: usize| subjects.get(index).copied();
             let own = finding.place().component_index().and_then(named).unwrap_or(first);
-            if let Some(one) = diagnostic(&rule.code, severity, finding, own, &named, report) {
+            if let Some(one) = diagnostic(rule.code(), severity, finding, own, &named, report) {
                 report.push(one);
             }
         }

@@ -1,12 +1,10 @@
 //! The code of a library.
 
 use std::path::Path;
-use std::{error, fmt, slice};
+use std::{error, fmt};
 
 use libloading::{Library, Symbol};
-use saoms_api::abi::{
-    ClassTable, Entry, ImportedClass, ImportedLoopClass, LoopClassTable, PluginTable, VERSION,
-};
+use saoms_api::abi::{Entry, ImportedClass, ImportedLoopClass, ImportedRule, PluginTable, VERSION};
 
 use super::{Code, Metadata, PluginError};
 
@@ -53,6 +51,7 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     let counts = [
         ("classes", table.class_count, metadata.classes.len()),
         ("loops", table.loop_count, metadata.loops.len()),
+        ("rules", table.rule_count, metadata.rules.len()),
     ];
     for (what, found, expected) in counts {
         if found != expected {
@@ -63,32 +62,47 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     if unsafe { table.metadata.get_text() }.ok() != Some(text) {
         return Err(disagrees("the texts differ".to_owned()));
     }
-    // SAFETY: the table says that so many are there, and that is what the metadata say.
-    let (classes, loops) =
-        unsafe { (list(table.classes, table.class_count), list(table.loops, table.loop_count)) };
-    let class_sizes = classes.iter().map(|class| (class.size, size_of::<ClassTable>()));
-    let loop_sizes = loops.iter().map(|one| (one.size, size_of::<LoopClassTable>()));
-    if let Some((found, expected)) = class_sizes.chain(loop_sizes).find(|(found, expected)| found < expected)
-    {
-        return Err(disagrees(format!("a table has {found} bytes, expected {expected}")));
-    }
-    // SAFETY: a library with metadata of this version keeps the rules of the boundary.
+    // SAFETY: a library with metadata of this version keeps the rules of the boundary: so many tables are there.
     unsafe {
+        let classes = tables(table.classes, table.class_count).map_err(disagrees)?;
+        let loops = tables(table.loops, table.loop_count).map_err(disagrees)?;
+        let rules = tables(table.rules, table.rule_count).map_err(disagrees)?;
+        for class in &classes {
+            one(class.component).map_err(disagrees)?;
+        }
+        for looping in &loops {
+            one(looping.looping).map_err(disagrees)?;
+        }
         Ok(Code {
-            classes: classes.iter().map(|class| ImportedClass::new(*class)).collect(),
-            loops: loops.iter().map(|one| ImportedLoopClass::new(*one)).collect(),
+            classes: classes.into_iter().map(|class| ImportedClass::new(class)).collect(),
+            loops: loops.into_iter().map(|looping| ImportedLoopClass::new(looping)).collect(),
+            rules: rules.into_iter().map(|rule| ImportedRule::new(*rule)).collect(),
         })
     }
 }
 
+/// A table, which begins with its size.
+///
+/// # Safety
+/// It is null, or there for as long as the program runs.
+unsafe fn one<T>(table: *const T) -> Result<&'static T, String> {
+    if table.is_null() {
+        return Err("a table is missing".to_owned());
+    }
+    // SAFETY: as the caller promises; all tables begin with their size.
+    let size = unsafe { *table.cast::<usize>() };
+    if size < size_of::<T>() {
+        return Err(format!("a table has {size} bytes, expected {}", size_of::<T>()));
+    }
+    // SAFETY: as the caller promises; all of it is there.
+    Ok(unsafe { &*table })
+}
+
 /// # Safety
 /// So many are there, for as long as the program runs.
-unsafe fn list<T>(first: *const T, count: usize) -> &'static [T] {
-    if count == 0 {
-        return &[];
-    }
+unsafe fn tables<T>(first: *const *const T, count: usize) -> Result<Vec<&'static T>, String> {
     // SAFETY: as the caller promises.
-    unsafe { slice::from_raw_parts(first, count) }
+    (0..count).map(|place| unsafe { one(*first.add(place)) }).collect()
 }
 
 /// An error with its causes: libloading's own text hides them.

@@ -1,7 +1,10 @@
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use saoms_api::abi::VERSION;
+use saoms_api::{Code, Severity};
 use serde::Deserialize;
+use serde::de::{Deserializer, Error as _};
 use serde_json::value::RawValue;
 
 use super::PluginError;
@@ -29,6 +32,55 @@ pub struct Metadata {
     /// The declarations of its loops.
     #[serde(default)]
     pub(super) loops: Vec<Box<RawValue>>,
+    /// Its rules over whole fleets.
+    #[serde(default)]
+    pub(super) rules: Vec<RuleMetadata>,
+}
+
+/// What a library says about a rule.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RuleMetadata {
+    pub(super) code: &'static Code,
+    pub(super) judges_parts: bool,
+}
+
+impl<'de> Deserialize<'de> for RuleMetadata {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<RuleMetadata, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(rename_all = "camelCase")]
+        struct Written {
+            code: String,
+            name: String,
+            meaning: String,
+            severity: String,
+            rule: Option<String>,
+            judges_parts: bool,
+        }
+        let Written { code: id, name, meaning, severity, rule, judges_parts } = Written::deserialize(from)?;
+        let severities = [Severity::Note, Severity::Warning, Severity::Error];
+        let severity = severities.into_iter().find(|known| known.name() == severity).ok_or_else(|| {
+            D::Error::custom(format!("`{severity}` is none of `note`, `warning` and `error`"))
+        })?;
+        Ok(RuleMetadata { code: kept(&id, &name, &meaning, severity, rule.as_deref()), judges_parts })
+    }
+}
+
+/// The code as a constant, as diagnostics have it. Those that are kept stay few: a plugin that is read again has the same.
+fn kept(id: &str, name: &str, meaning: &str, severity: Severity, rule: Option<&str>) -> &'static Code {
+    static KNOWN: Mutex<Vec<&'static Code>> = Mutex::new(Vec::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let same = |code: &&Code| {
+        (code.id, code.name, code.meaning) == (id, name, meaning)
+            && (code.severity, code.rule) == (severity, rule)
+    };
+    if let Some(same) = known.iter().find(|code| same(code)) {
+        return same;
+    }
+    let text = |text: &str| &*text.to_owned().leak();
+    let (id, name, meaning, rule) = (text(id), text(name), text(meaning), rule.map(text));
+    let new: &'static Code = Box::leak(Box::new(Code { id, name, meaning, severity, rule }));
+    known.push(new);
+    new
 }
 
 /// What every version has.

@@ -1,4 +1,4 @@
-//! Libraries that bring classes and loops.
+//! Libraries that bring classes, loops and rules over whole fleets.
 //!
 //! A [`Plugin`] is known by its metadata, which lie in a section of the file and are read before anything in it runs (see
 //! [`saoms_api::abi`]). Its code is loaded when the first component of its classes is constructed, and stays until the program ends.
@@ -12,23 +12,24 @@ mod search;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use saoms_api::abi::{ImportedClass, ImportedLoopClass};
-use saoms_api::{DynComponent, DynLoop, Failure, PropertyValue};
+use saoms_api::abi::{ImportedClass, ImportedLoopClass, ImportedRule};
+use saoms_api::{DynComponent, DynLoop, Failure, Finding, FleetView, PropertyValue};
 
 pub use error::PluginError;
 pub use metadata::Metadata;
 pub use search::{Found, Search};
 
-use crate::registry::{LoopProvider, Provider, Registry, RegistryError};
+use crate::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};
 
 /// What a loaded library offers, in the order of its metadata.
 #[derive(Debug)]
 struct Code {
     classes: Vec<ImportedClass>,
     loops: Vec<ImportedLoopClass>,
+    rules: Vec<ImportedRule>,
 }
 
-/// A library that brings classes and loops.
+/// A library that brings classes, loops and rules.
 #[derive(Debug)]
 pub struct Plugin {
     path: PathBuf,
@@ -59,10 +60,10 @@ impl Plugin {
         &self.metadata
     }
 
-    /// Adds its loops and classes to a registry.
+    /// Adds its loops, classes and rules to a registry.
     ///
     /// # Errors
-    /// As [`Registry::add_loop`] and [`Registry::add`].
+    /// As [`Registry::add_loop`], [`Registry::add`] and [`Registry::add_rule`].
     pub fn register(self: &Arc<Plugin>, registry: &mut Registry) -> Result<(), RegistryError> {
         for (place, declaration) in self.metadata.loops.iter().enumerate() {
             let provider = Part { plugin: Arc::clone(self), place };
@@ -71,6 +72,10 @@ impl Plugin {
         for (place, declaration) in self.metadata.classes.iter().enumerate() {
             let provider = Part { plugin: Arc::clone(self), place };
             registry.add_provided(declaration.get(), Arc::new(provider))?;
+        }
+        for (place, rule) in self.metadata.rules.iter().enumerate() {
+            let provider = Part { plugin: Arc::clone(self), place };
+            registry.add_rule_provided(rule.code, rule.judges_parts, Arc::new(provider))?;
         }
         Ok(())
     }
@@ -82,7 +87,7 @@ impl Plugin {
     }
 }
 
-/// A class or a loop of a plugin, by its place.
+/// A class, a loop or a rule of a plugin, by its place.
 #[derive(Debug)]
 struct Part {
     plugin: Arc<Plugin>,
@@ -104,6 +109,17 @@ impl LoopProvider for Part {
     fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         // There is one for each of the metadata.
         self.plugin.code()?.loops.get(self.place).ok_or("the library has no such loop")?.construct(values)
+    }
+
+    fn origin(&self) -> Option<&Path> {
+        Some(self.plugin.path())
+    }
+}
+
+impl RuleProvider for Part {
+    fn check(&self, fleet: &FleetView<'_>) -> Result<Vec<Finding>, Failure> {
+        // There is one for each of the metadata.
+        self.plugin.code()?.rules.get(self.place).ok_or("the library has no such rule")?.check(fleet)
     }
 
     fn origin(&self) -> Option<&Path> {

@@ -9,6 +9,7 @@ mod error;
 mod extend;
 mod looping;
 mod read;
+mod rule;
 mod team;
 #[cfg(test)]
 mod tests;
@@ -17,7 +18,7 @@ mod validate;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use saoms_api::{FleetRule, LoopRegistration, Registration};
+use saoms_api::{Code, FleetRule, LoopRegistration, Registration};
 
 pub use class::{Class, Provider};
 pub use declaration::{
@@ -28,6 +29,7 @@ pub use error::RegistryError;
 pub use looping::{
     DefaultLoops, EntryDeclaration, KnowledgeDeclaration, LoopClass, LoopDeclaration, LoopProvider,
 };
+pub use rule::{Rule, RuleProvider};
 pub use team::{Team, TeamFault};
 
 use crate::diagnostic::{codes, nearest_few};
@@ -65,7 +67,7 @@ const OFFERED: usize = 3;
 pub struct Registry {
     classes: BTreeMap<String, Arc<Class>>,
     loops: BTreeMap<String, Arc<LoopClass>>,
-    rules: Vec<&'static FleetRule>,
+    rules: Vec<Rule>,
 }
 
 impl Registry {
@@ -96,17 +98,29 @@ impl Registry {
     /// # Errors
     /// Its code is that of another rule, or of the checker itself.
     pub fn add_rule(&mut self, rule: &'static FleetRule) -> Result<(), RegistryError> {
-        let id = rule.code.id;
-        let of_checker = codes::ALL.iter().any(|code| code.id == id);
-        match self.rules.binary_search_by_key(&id, |known| known.code.id) {
-            Err(place) if !of_checker => self.rules.insert(place, rule),
-            _ => return Err(RegistryError::CodeTaken { code: id, rule: rule.code.name }),
+        self.add_rule_provided(&rule.code, rule.judges_parts, Arc::new(rule))
+    }
+
+    /// Adds a rule by its code and where its own code comes from.
+    ///
+    /// # Errors
+    /// As [`Registry::add_rule`].
+    pub fn add_rule_provided(
+        &mut self,
+        code: &'static Code,
+        judges_parts: bool,
+        provider: Arc<dyn RuleProvider>,
+    ) -> Result<(), RegistryError> {
+        let of_checker = codes::ALL.iter().any(|known| known.id == code.id);
+        match self.rules.binary_search_by_key(&code.id, |known| known.code.id) {
+            Err(place) if !of_checker => self.rules.insert(place, Rule { code, judges_parts, provider }),
+            _ => return Err(RegistryError::CodeTaken { code: code.id, rule: code.name }),
         }
         Ok(())
     }
 
     /// The rules over whole fleets, by their codes.
-    pub fn rules(&self) -> &[&'static FleetRule] {
+    pub fn rules(&self) -> &[Rule] {
         &self.rules
     }
 

@@ -1,0 +1,61 @@
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+use saoms_api::contain::contained;
+use saoms_api::{Code, Failure, Finding, FleetRule, FleetView};
+
+/// A rule over whole fleets; see [`FleetRule`].
+#[derive(Clone, Debug)]
+pub struct Rule {
+    pub(super) code: &'static Code,
+    pub(super) judges_parts: bool,
+    pub(super) provider: Arc<dyn RuleProvider>,
+}
+
+impl Rule {
+    /// The code of its findings.
+    pub fn code(&self) -> &'static Code {
+        self.code
+    }
+
+    /// As [`FleetRule::judges_parts`].
+    pub fn judges_parts(&self) -> bool {
+        self.judges_parts
+    }
+
+    /// What it finds in a fleet.
+    ///
+    /// # Errors
+    /// The rule is at fault: it panicked, or its library cannot be loaded.
+    pub fn check(&self, fleet: &FleetView<'_>) -> Result<Vec<Finding>, Failure> {
+        self.provider.check(fleet)
+    }
+
+    /// The library that it comes from; `None` for one that is linked into the program.
+    pub fn origin(&self) -> Option<&Path> {
+        self.provider.origin()
+    }
+}
+
+/// Where the code of a rule comes from.
+pub trait RuleProvider: fmt::Debug + Send + Sync {
+    /// As [`Rule::check`].
+    ///
+    /// # Errors
+    /// As there.
+    fn check(&self, fleet: &FleetView<'_>) -> Result<Vec<Finding>, Failure>;
+
+    /// As [`Rule::origin`].
+    fn origin(&self) -> Option<&Path>;
+}
+
+impl RuleProvider for &'static FleetRule {
+    fn check(&self, fleet: &FleetView<'_>) -> Result<Vec<Finding>, Failure> {
+        contained(|| (self.check)(fleet))
+    }
+
+    fn origin(&self) -> Option<&Path> {
+        None
+    }
+}
