@@ -45,6 +45,11 @@ impl<'a> Context<'a> {
         self.host.name()
     }
 
+    /// The component's index in the running fleet, as in the headers of what it sends.
+    pub fn sender(&self) -> u32 {
+        self.host.sender()
+    }
+
     /// The present time. In virtual time it stands still during an execution.
     pub fn now(&self) -> Time {
         self.host.now()

@@ -14,7 +14,8 @@ pub trait Message: Field + Clone + fmt::Debug + Send + Sync + 'static {
     /// The schema as text, in the terms of ROS 2 interfaces. Equal text, equal encoding.
     const SCHEMA: &'static str;
 
-    /// The key under which a state topic keeps this message; `None` keeps one message per publisher.
+    /// The key under which a state topic keeps this message, beside those of other keys and of other publishers; `None` keeps one message per
+    /// publisher.
     fn key(&self) -> Option<u64> {
         None
     }

@@ -14,8 +14,10 @@ use saoms_api::{
 use crate::console::Timestamp;
 use crate::grid::Map;
 use crate::hardware::Area;
+use crate::intake::Intake;
 use crate::messages::{
     AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage,
+    ROBOT_LIST, RobotList,
 };
 
 use player::Player;
@@ -43,7 +45,7 @@ pub struct EnvironmentProperties {
     name = "saoms.Environment",
     periodic,
     publishes(ENVIRONMENT),
-    subscribes(EVENT_LUGGAGE, AREA),
+    subscribes(EVENT_LUGGAGE, ROBOT_LIST, AREA),
     also("launch.Environment")
 )]
 pub struct Environment {
@@ -54,8 +56,10 @@ pub struct Environment {
     open: BTreeSet<u32>,
     luggage: u32,
     map: Option<Map>,
+    intake: Intake,
     has_world: bool,
     events: Publisher<EnvironmentEvent>,
+    robots: Subscription<RobotList>,
     responses: Subscription<EventLuggage>,
     area: Subscription<Area>,
     done: bool,
@@ -72,8 +76,10 @@ impl Component for Environment {
             open: BTreeSet::new(),
             luggage: 0,
             map: None,
+            intake: Intake::default(),
             has_world: false,
             events: Publisher::default(),
+            robots: Subscription::default(),
             responses: Subscription::default(),
             area: Subscription::default(),
             done: false,
@@ -82,6 +88,7 @@ impl Component for Environment {
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.publish(&ENVIRONMENT)?;
+        self.robots = context.subscribe(&ROBOT_LIST)?;
         self.responses = context.subscribe(&EVENT_LUGGAGE)?;
         self.area = context.subscribe(&AREA)?;
         let now = Timestamp::now(context);
@@ -119,12 +126,21 @@ impl Component for Environment {
 
 impl Environment {
     fn listen(&mut self, context: &mut Context<'_>) {
-        if let Some(area) = context.receive_last(&self.area) {
-            // A world counts luggage itself.
-            self.has_world = true;
-            self.map = area.clone().into();
+        for (header, area) in context.receive(&self.area).with_headers() {
+            if self.intake.lets_in(area, header, None, context) {
+                // A world counts luggage itself.
+                self.has_world = true;
+                self.map = area.clone().into();
+            }
         }
-        for response in context.receive(&self.responses) {
+        // Who speaks for which robot.
+        for (header, robot) in context.receive(&self.robots).with_headers() {
+            self.intake.lets_in(robot, header, self.map.as_ref(), context);
+        }
+        for (header, response) in context.receive(&self.responses).with_headers() {
+            if !self.intake.lets_in(response, header, self.map.as_ref(), context) {
+                continue;
+            }
             // What is given up stays open in the report, but nobody waits for it.
             let counted = match response.stage {
                 LuggageStage::Delivered => -1,

@@ -4,11 +4,11 @@ use super::gate::Gate;
 use super::open::Open;
 use crate::console::Timestamp;
 use crate::hardware::Area;
+use crate::intake::{Intake, Judged, Problem};
 use crate::messages::{
     AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent,
-    FAULT, Fault, ROBOT_LIST, RobotList,
+    FAULT, Fault, LuggageStage, ROBOT_LIST, RobotList,
 };
-use crate::refusal::ignore;
 
 /// Sorts the events of the environment to their topics: luggage and faults to the robots, exceptional events to the master of the robots.
 ///
@@ -23,6 +23,7 @@ use crate::refusal::ignore;
     also("unibg.saoms.MasterEnvironmentManagingSystem")
 )]
 pub struct MasterEnvironment {
+    intake: Intake,
     gate: Gate,
     open: Open,
     events: Subscription<EnvironmentEvent>,
@@ -39,6 +40,7 @@ impl Component for MasterEnvironment {
 
     fn new((): ()) -> Result<Self, Failure> {
         Ok(MasterEnvironment {
+            intake: Intake::default(),
             gate: Gate::default(),
             open: Open::default(),
             events: Subscription::default(),
@@ -67,8 +69,15 @@ impl Component for MasterEnvironment {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        if let Some(area) = context.receive_last(&self.area) {
-            self.gate.learn(area.clone().into());
+        for (header, area) in context.receive(&self.area).with_headers() {
+            if self.intake.lets_in(area, header, None, context) {
+                self.gate.learn(area.clone().into());
+            }
+        }
+        for (header, robot) in context.receive(&self.robots).with_headers() {
+            if self.intake.lets_in(robot, header, self.gate.area(), context) {
+                self.open.hear_robot(robot);
+            }
         }
         let now = Timestamp::now(context);
         for (header, event) in context.receive(&self.events).with_headers() {
@@ -79,11 +88,8 @@ impl Component for MasterEnvironment {
             ));
         }
         context.because(Cause::default());
-        for robot in context.receive(&self.robots) {
-            self.open.hear_robot(robot);
-        }
-        for response in context.receive(&self.responses) {
-            self.open.hear_response(response);
+        for (header, said) in context.receive(&self.responses).with_headers() {
+            self.hear(context, header, said);
         }
         for (luggage, from, to) in self.open.take_hopeless() {
             context.log(
@@ -113,7 +119,7 @@ impl MasterEnvironment {
                 }
                 Err(refusal) => {
                     context.count("luggage.ignored", 1);
-                    ignore(context, header, &refusal.reason);
+                    self.intake.tell(context, header, request, refusal.problem);
                     if refusal.is_lost {
                         context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
                     }
@@ -124,14 +130,30 @@ impl MasterEnvironment {
             context.send(&self.exceptional, exceptional.clone())?;
         }
         for fault in &event.faults {
-            match Gate::fault(fault) {
-                Ok(()) => {
-                    self.open.break_down(fault.robot);
-                    context.send(&self.faults, fault.clone())?;
-                }
-                Err(refusal) => ignore(context, header, &refusal.reason),
+            if let Err(problem) = fault.judge(header.sender, &mut self.intake, self.gate.area()) {
+                context.count("faults.ignored", 1);
+                self.intake.tell(context, header, fault, problem);
+            } else {
+                self.open.break_down(fault.robot);
+                context.send(&self.faults, fault.clone())?;
             }
         }
         Ok(())
+    }
+
+    /// Takes in what robots say about luggage, or what somebody else does on their topic.
+    fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
+        if header.sender == context.sender() || !self.intake.lets_in(said, header, self.gate.area(), context)
+        {
+            return;
+        }
+        if said.stage == LuggageStage::Request {
+            self.gate.note(said.luggage);
+        } else if self.gate.knows(said.luggage) {
+            self.open.hear_response(said);
+        } else {
+            context.count("messages.ignored", 1);
+            self.intake.tell(context, header, said, Problem::UnknownLuggage);
+        }
     }
 }

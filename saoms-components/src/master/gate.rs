@@ -1,7 +1,8 @@
 use std::collections::BTreeSet;
 
-use crate::grid::{Block, Map};
-use crate::messages::{EventLuggage, Fault, LuggageStage};
+use crate::grid::Map;
+use crate::intake::Problem;
+use crate::messages::EventLuggage;
 
 /// What is let in from the environment, where anybody may publish.
 #[derive(Debug, Default)]
@@ -12,70 +13,54 @@ pub(super) struct Gate {
     known: BTreeSet<u32>,
 }
 
-/// Why something is not let in.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Why luggage is not let in.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Refusal {
-    pub(super) reason: String,
+    pub(super) problem: Problem,
     /// Whether whoever waits for the luggage has to be told that it is never brought.
     pub(super) is_lost: bool,
 }
 
 impl Gate {
+    /// The area, as far as it is known.
+    pub(super) fn area(&self) -> Option<&Map> {
+        self.area.as_ref()
+    }
+
     pub(super) fn learn(&mut self, area: Option<Map>) {
         self.area = area;
     }
 
     /// Lets luggage in, once.
     pub(super) fn luggage(&mut self, request: &EventLuggage) -> Result<(), Refusal> {
-        let EventLuggage { luggage, from, to, robot, stage, .. } = *request;
-        if self.known.contains(&luggage) {
-            let reason = format!("luggage {luggage} is known already: each piece needs its own number");
-            return Err(Refusal { reason, is_lost: false });
+        if self.known.contains(&request.luggage) {
+            return Err(Refusal { problem: Problem::KnownLuggage, is_lost: false });
         }
-        let lost = |reason| Err(Refusal { reason, is_lost: true });
-        if stage != LuggageStage::Request || robot != 0 {
-            return lost(format!("luggage {luggage} is no request: robots respond on another topic"));
-        }
-        if let Some(problem) = [from, to].into_iter().find_map(|block| self.problem(block)) {
-            return lost(format!("luggage {luggage} from {from} to {to}: {problem}"));
-        }
-        self.known.insert(luggage);
+        let lost = |problem| Refusal { problem, is_lost: true };
+        Problem::of_request(request, self.area()).map_err(lost)?;
+        self.known.insert(request.luggage);
         Ok(())
     }
 
-    /// Lets a fault in.
-    pub(super) fn fault(fault: &Fault) -> Result<(), Refusal> {
-        match fault.robot {
-            0 => Err(Refusal {
-                reason: "a fault of no robot: their numbers start at 1".to_owned(),
-                is_lost: false,
-            }),
-            _ => Ok(()),
-        }
+    /// Takes in luggage for which somebody asked the robots themselves.
+    pub(super) fn note(&mut self, luggage: u32) {
+        self.known.insert(luggage);
     }
 
-    fn problem(&self, block: Block) -> Option<String> {
-        match &self.area {
-            None if block.x < 0 || block.y < 0 => {
-                Some(format!("{block} is outside the area, which starts at (0,0)"))
-            }
-            None => None,
-            Some(area) if !area.contains(block) => {
-                let (x, y) = (area.width() - 1, area.height() - 1);
-                Some(format!("{block} is outside the area from (0,0) to ({x},{y})"))
-            }
-            Some(area) => (!area.is_free(block)).then(|| format!("{block} is blocked")),
-        }
+    /// Whether somebody asked for luggage of this number.
+    pub(super) fn knows(&self, luggage: u32) -> bool {
+        self.known.contains(&luggage)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::Block;
 
-    fn refused(gate: &mut Gate, luggage: u32, from: (i32, i32), to: (i32, i32)) -> Option<String> {
+    fn refused(gate: &mut Gate, luggage: u32, from: (i32, i32), to: (i32, i32)) -> Option<Problem> {
         let request = EventLuggage::request(luggage, Block::new(from.0, from.1), Block::new(to.0, to.1));
-        gate.luggage(&request).err().map(|refusal| refusal.reason)
+        gate.luggage(&request).err().map(|refusal| refusal.problem)
     }
 
     #[test]
@@ -84,20 +69,16 @@ mod tests {
         assert_eq!(refused(&mut gate, 1, (0, 0), (50, 50)), None, "nobody said yet how large the area is");
         gate.learn(Map::read("...\n..@").ok());
         assert_eq!(refused(&mut gate, 2, (0, 0), (1, 1)), None);
-        for (luggage, from, to, reason) in [
-            (2, (0, 0), (1, 0), "luggage 2 is known already: each piece needs its own number"),
-            (
-                3,
-                (3, 0),
-                (1, 0),
-                "luggage 3 from (3,0) to (1,0): (3,0) is outside the area from (0,0) to (2,1)",
-            ),
-            (3, (0, 0), (2, 1), "luggage 3 from (0,0) to (2,1): (2,1) is blocked"),
+        let beyond = Problem::Outside { block: Block::new(3, 0), area: Some((3, 2)) };
+        for (luggage, from, to, problem) in [
+            (2, (0, 0), (1, 0), Problem::KnownLuggage),
+            (3, (3, 0), (1, 0), beyond),
+            (3, (0, 0), (2, 1), Problem::Blocked { block: Block::new(2, 1) }),
+            (3, (1, 0), (1, 0), Problem::There { block: Block::new(1, 0) }),
         ] {
-            assert_eq!(refused(&mut gate, luggage, from, to).as_deref(), Some(reason));
+            assert_eq!(refused(&mut gate, luggage, from, to), Some(problem));
         }
         assert_eq!(refused(&mut gate, 3, (0, 0), (1, 1)), None, "a refused number is free");
-        assert!(Gate::fault(&Fault::breakdown(0)).is_err() && Gate::fault(&Fault::breakdown(1)).is_ok());
     }
 
     #[test]

@@ -1,63 +1,53 @@
-//! What robots hear from others, where anybody may publish: what cannot be is reported with its sender and not taken in.
+//! What robots hear from others, as far as they let it in.
 
 use saoms_api::{Context, Header, Subscription};
 
-use super::{RobotKnowledge, Routes};
-use crate::grid::Block;
-use crate::messages::{CriticalSituation, CriticalStage, Position};
-use crate::refusal::ignore;
+use super::RobotKnowledge;
+use crate::intake::Judged;
+use crate::messages::{EventLuggage, Position, RobotList};
 
 impl RobotKnowledge {
-    /// Takes in where the others are.
-    pub(super) fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
-        let RobotKnowledge { lists, routes, .. } = self;
-        let heard = context.receive(&positions).with_headers();
-        let sound = heard.filter(|(header, position)| {
-            let Position { robot, block, next, wanted, .. } = **position;
-            is_let_in(problem(routes, robot, &[block, next, wanted]), *header, context)
-        });
-        lists.peers.hear(sound.map(|(_, position)| position));
-    }
-
-    /// Whether a critical situation is one that can be.
-    pub(super) fn lets_in(
-        &self,
-        situation: &CriticalSituation,
+    /// Whether a message can be, and is of who it says. What is not let in is told.
+    pub(super) fn lets_in<M: Judged>(
+        &mut self,
+        message: &M,
         header: Header,
         context: &mut Context<'_>,
     ) -> bool {
-        let problem = match (situation.stage, situation.job()) {
-            (CriticalStage::Request, Some(job)) => {
-                problem(&self.routes, situation.critical, &[situation.block, job.from, job.to])
+        self.intake.lets_in(message, header, self.routes.map(), context)
+    }
+
+    /// Takes in where the others are.
+    pub(super) fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
+        let RobotKnowledge { intake, lists, routes, .. } = self;
+        let heard = context.receive(&positions).with_headers();
+        let sound =
+            heard.filter(|(header, position)| intake.lets_in(*position, *header, routes.map(), context));
+        lists.peers.hear(sound.map(|(_, position)| position));
+    }
+
+    /// Takes in who is there, and gives it on to who has more to learn from it.
+    pub(super) fn hear_robots<'a>(
+        &mut self,
+        robots: Subscription<RobotList>,
+        context: &mut Context<'a>,
+        mut learn: impl FnMut(&mut RobotKnowledge, &'a RobotList),
+    ) {
+        for (header, robot) in context.receive(&robots).with_headers() {
+            if self.lets_in(robot, header, context) {
+                self.lists.hear_robot(robot);
+                self.routes.learn_charger(robot.charger);
+                learn(self, robot);
             }
-            (CriticalStage::Request, None) => problem(&self.routes, situation.critical, &[situation.block]),
-            _ => problem(&self.routes, situation.healer, &[situation.healer_block]),
-        };
-        is_let_in(problem, header, context)
+        }
     }
-}
 
-/// What cannot be about a robot and blocks.
-#[derive(Clone, Copy, Debug)]
-enum Problem {
-    NoRobot,
-    Outside(Block),
-}
-
-fn problem(routes: &Routes, robot: u32, blocks: &[Block]) -> Option<Problem> {
-    if robot == 0 {
-        return Some(Problem::NoRobot);
+    /// Takes in what was said about luggage.
+    pub(super) fn hear_luggage(&mut self, luggage: Subscription<EventLuggage>, context: &mut Context<'_>) {
+        for (header, event) in context.receive(&luggage).with_headers() {
+            if self.lets_in(event, header, context) {
+                self.lists.requests.hear(event, header);
+            }
+        }
     }
-    blocks.iter().copied().find(|block| !routes.contains(*block)).map(Problem::Outside)
-}
-
-fn is_let_in(problem: Option<Problem>, header: Header, context: &mut Context<'_>) -> bool {
-    let Some(problem) = problem else { return true };
-    context.count("messages.ignored", 1);
-    let reason = match problem {
-        Problem::NoRobot => "robot 0 does not exist: their numbers start at 1".to_owned(),
-        Problem::Outside(block) => format!("{block} is outside the area"),
-    };
-    ignore(context, header, reason);
-    false
 }

@@ -1,7 +1,8 @@
-use saoms_api::{Context, Entries, Extras, Failure, Knowledge, Publisher, Subscription};
+use saoms_api::{Context, Entries, Extras, Failure, Knowledge, Publisher};
 
 use crate::grid::Block;
 use crate::hardware::Action;
+use crate::intake::Intake;
 use crate::messages::{
     Collision, CriticalKind, CriticalSituation, EventLuggage, LuggageStage, Position, Priority, RobotList,
 };
@@ -53,6 +54,8 @@ pub struct RobotKnowledge {
     pub stands_in_for: Option<u32>,
     /// Whether it was sent under charge, so that nobody has to stand in for it.
     pub relieved: bool,
+    /// What it lets in of what others say.
+    pub(super) intake: Intake,
     /// What it heard from others.
     pub lists: Lists,
     /// The area and the ways through it.
@@ -101,6 +104,7 @@ impl RobotKnowledge {
             shut_down: false,
             stands_in_for: None,
             relieved: false,
+            intake: Intake::default(),
             lists: Lists::new(number),
             routes: Routes::default(),
             hooks: Hooks::default(),
@@ -139,13 +143,6 @@ impl RobotKnowledge {
     pub(super) fn charge_battery(&mut self) {
         self.battery.charge();
         self.charge = self.battery.percent();
-    }
-
-    /// Takes in what was said about luggage.
-    pub(super) fn hear_luggage(&mut self, luggage: Subscription<EventLuggage>, context: &Context<'_>) {
-        for (header, event) in context.receive(&luggage).with_headers() {
-            self.lists.requests.hear(event, header);
-        }
     }
 
     /// Tells what became of luggage. What this robot could not collect waits again for the others.

@@ -100,6 +100,7 @@ impl Component for Robot {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.loops = context.loops()?;
         self.knowledge.hooks = Hooks::new(context)?;
+        self.knowledge.intake.note_speaker(self.knowledge.number, context.sender());
         self.knowledge.collisions = context.publish(&COLLISION)?;
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));

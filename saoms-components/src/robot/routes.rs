@@ -125,12 +125,9 @@ impl Routes {
         }
     }
 
-    /// Whether the block is in the area, as far as that is known.
-    pub(super) fn contains(&self, block: Block) -> bool {
-        match &self.area {
-            Some(area) => area.map.contains(block),
-            None => block.x >= 0 && block.y >= 0,
-        }
+    /// The area without the robots that do not move any more, as far as it is known.
+    pub(super) fn map(&self) -> Option<&Map> {
+        self.area.as_ref().map(|area| area.empty.as_ref().unwrap_or(&area.map))
     }
 
     /// Whether a robot can stand on the block.

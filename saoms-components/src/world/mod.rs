@@ -7,12 +7,13 @@ mod referee;
 #[cfg(test)]
 mod tests;
 
-use saoms_api::{Class, Component, Context, Failure, Level, Publisher, Subscription, Work};
+use saoms_api::{Class, Component, Context, Failure, Publisher, Subscription, Work};
 
 use crate::hardware::Hardware;
+use crate::intake::{Intake, Problem};
 use crate::messages::{
     AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault,
-    LuggageStage,
+    LuggageStage, ROBOT_LIST, RobotList,
 };
 
 pub use properties::WorldProperties;
@@ -30,14 +31,16 @@ use referee::Referee;
     name = "saoms.World",
     periodic,
     publishes(AREA, COLLISION),
-    subscribes(ENVIRONMENT, EVENT_LUGGAGE),
+    subscribes(ENVIRONMENT, EVENT_LUGGAGE, ROBOT_LIST),
     service("hardware": Hardware)
 )]
 pub struct World {
     properties: WorldProperties,
     referee: Referee,
     stock: Stock,
+    intake: Intake,
     events: Subscription<EnvironmentEvent>,
+    robots: Subscription<RobotList>,
     responses: Subscription<EventLuggage>,
     collisions: Publisher<Collision>,
     vote: Option<Work>,
@@ -52,7 +55,9 @@ impl Component for World {
             properties,
             referee: Referee::new(map),
             stock: Stock::default(),
+            intake: Intake::default(),
             events: Subscription::default(),
+            robots: Subscription::default(),
             responses: Subscription::default(),
             collisions: Publisher::default(),
             vote: None,
@@ -61,6 +66,7 @@ impl Component for World {
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.subscribe(&ENVIRONMENT)?;
+        self.robots = context.subscribe(&ROBOT_LIST)?;
         self.responses = context.subscribe(&EVENT_LUGGAGE)?;
         self.collisions = context.publish(&COLLISION)?;
         let area = context.publish(&AREA)?;
@@ -76,9 +82,9 @@ impl Component for World {
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         for event in context.receive(&self.events) {
             // What is impossible is reported by the master of the environment, which lets it get no further.
-            let is_free = |block| self.referee.map().is_free(block);
-            for request in event.luggage.iter().filter(|request| is_free(request.from) && is_free(request.to))
-            {
+            let map = self.referee.map();
+            let can_be = |request: &&EventLuggage| Problem::of_request(request, Some(map)).is_ok();
+            for request in event.luggage.iter().filter(can_be) {
                 if self.stock.add(request.luggage, request.from, request.to) {
                     context.count("luggage.open", 1);
                 }
@@ -87,7 +93,14 @@ impl Component for World {
                 self.break_down(context, fault);
             }
         }
-        for response in context.receive(&self.responses) {
+        // Who speaks for which robot.
+        for (header, robot) in context.receive(&self.robots).with_headers() {
+            self.intake.lets_in(robot, header, Some(self.referee.map()), context);
+        }
+        for (header, response) in context.receive(&self.responses).with_headers() {
+            if !self.intake.lets_in(response, header, Some(self.referee.map()), context) {
+                continue;
+            }
             if response.stage == LuggageStage::GivenUp {
                 self.stock.give_up(response.luggage);
             }
@@ -117,10 +130,6 @@ impl World {
         if self.referee.retire(fault.robot).is_ok() {
             context.count("robots.broken", 1);
             context.warn(format_args!("{fault}"));
-        } else {
-            context.count("faults.ignored", 1);
-            let robot = fault.robot;
-            context.log(Level::Error, format_args!("ignores a fault: robot {robot} is not in this world"));
         }
     }
 }

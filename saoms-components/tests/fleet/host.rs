@@ -38,7 +38,7 @@ enum Due {
 struct Topic {
     name: String,
     kind: TopicKind,
-    newest: BTreeMap<u64, SharedMessage>,
+    newest: BTreeMap<(u32, u64), SharedMessage>,
     readers: Vec<(usize, usize)>,
 }
 
@@ -187,11 +187,13 @@ impl Fleet {
     fn deliver(&mut self, sender: usize, messages: Vec<(u32, SharedMessage)>) {
         for (publisher, message) in messages {
             let topic = &mut self.topics[self.seats[sender].publishes[publisher as usize]];
-            let key = message.key().unwrap_or(sender as u64);
+            let key_of =
+                |message: &SharedMessage| (message.header().sender, message.key().unwrap_or_default());
+            let key = key_of(&message);
             for (reader, inbox) in &topic.readers {
                 let inbox = &mut self.seats[*reader].inboxes[*inbox];
                 if topic.kind == TopicKind::State {
-                    inbox.retain(|waiting| waiting.key() != Some(key));
+                    inbox.retain(|waiting| key_of(waiting) != key);
                 }
                 inbox.push(message.clone());
             }

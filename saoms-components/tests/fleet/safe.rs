@@ -78,7 +78,9 @@ impl Setting {
         };
         let mut scenario = String::new();
         for _ in 0..self.luggage {
-            writeln!(scenario, "at 1s luggage {} to {}", block(), block()).unwrap();
+            let from = block();
+            let to = std::iter::repeat_with(&mut block).find(|to| *to != from).unwrap();
+            writeln!(scenario, "at 1s luggage {from} to {to}").unwrap();
         }
         let mut fleet = Fleet::new(seed, self.lateness);
         let (zero, fast) = (Duration::ZERO, Duration::from_millis(50));

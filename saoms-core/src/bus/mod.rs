@@ -1,7 +1,7 @@
 //! Topics inside one process: typed, shared not copied, delivered without waiting.
 //!
 //! Publishing puts a message into its topic once, however many readers there are; a reader collects what is new to it when its own
-//! execution starts. A [state topic](saoms_api::TopicKind::State) keeps the newest message of each key, so that a reader that comes later
+//! execution starts. A [state topic](saoms_api::TopicKind::State) keeps the newest message of each publisher and key, so that a reader that comes later
 //! gets the present state, and one that comes seldom gets each key once. An [event topic](saoms_api::TopicKind::Event) keeps each message until
 //! every reader has it; a reader that falls behind by more than its queue loses the oldest, and is told how many.
 //!

@@ -6,20 +6,16 @@ use super::hash::KeyHashing;
 
 const NONE: u32 = u32::MAX;
 
-/// What a state topic retains: the newest message of each key, linked in the order in which they changed.
+/// What a state topic retains: the newest message of each key from each publisher, linked in the order in which they changed. Of two publishers
+/// none can hide what the other one said, as with the transient-local durability of DDS.
 ///
 /// A change moves its entry to the end, whatever the number of readers. A reader walks back from the end to the last change it knows.
 pub(super) struct StateTable {
     entries: Vec<Entry>,
-    places: HashMap<Key, u32, KeyHashing>,
+    /// Where the message of a publisher and key is.
+    places: HashMap<(u32, u64), u32, KeyHashing>,
     newest: u32,
     changes: u64,
-}
-
-#[derive(PartialEq, Eq, Hash)]
-enum Key {
-    Message(u64),
-    Publisher(u32),
 }
 
 struct Entry {
@@ -38,7 +34,8 @@ impl Default for StateTable {
 impl StateTable {
     pub(super) fn publish(&mut self, message: SharedMessage) {
         self.changes += 1;
-        let key = message.key().map_or_else(|| Key::Publisher(message.header().sender), Key::Message);
+        // Of one topic either all messages have a key, or none.
+        let key = (message.header().sender, message.key().unwrap_or_default());
         if let Some(&place) = self.places.get(&key) {
             self.unlink(place);
             let entry = &mut self.entries[place as usize];

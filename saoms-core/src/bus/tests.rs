@@ -149,6 +149,25 @@ fn without_a_key_each_publisher_has_its_own() {
 }
 
 #[test]
+fn nobody_hides_what_another_publisher_said_under_the_same_key() {
+    let mut bus = Bus::default();
+    let topic = bus.publisher("T", &STATE.declaration(), &who()).unwrap();
+    let mut reader = bus.subscribe("T", &STATE.declaration(), &who(), 1).unwrap();
+    for (sender, value) in [(1, 10), (2, 20), (1, 11), (2, 21)] {
+        bus.publish(topic, SharedMessage::new(header(sender), Keyed { key: 7, value }));
+    }
+    let mut values = || -> Vec<u32> {
+        collect(&mut bus, &mut reader).0.iter().map(|shared| shared.get::<Keyed>().unwrap().value).collect()
+    };
+    assert_eq!(values(), [11, 21]);
+    bus.publish(topic, SharedMessage::new(header(1), Keyed { key: 7, value: 12 }));
+    let mut late = bus.subscribe("T", &STATE.declaration(), &who(), 1).unwrap();
+    let late: Vec<u32> =
+        collect(&mut bus, &mut late).0.iter().map(|shared| shared.get::<Keyed>().unwrap().value).collect();
+    assert_eq!(late, [21, 12]);
+}
+
+#[test]
 fn messages_that_all_have_read_are_let_go() {
     let mut bus = Bus::default();
     let topic = bus.publisher("T", &EVENT.declaration(), &who()).unwrap();

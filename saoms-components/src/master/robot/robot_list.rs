@@ -1,5 +1,6 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Record, Subscription, record};
 
+use crate::intake::Intake;
 use crate::messages::{ROBOT_LIST, RobotList};
 
 use super::MasterRobotKnowledge;
@@ -13,6 +14,7 @@ use super::MasterRobotKnowledge;
     subscribes(ROBOT_LIST)
 )]
 pub struct RobotListMS {
+    intake: Intake,
     robots: Subscription<RobotList>,
     known: u32,
 }
@@ -41,8 +43,10 @@ impl Loop for RobotListMS {
         knowledge: &mut MasterRobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        for robot in context.receive(&self.robots) {
-            knowledge.hear(robot);
+        for (header, robot) in context.receive(&self.robots).with_headers() {
+            if self.intake.lets_in(robot, header, None, context) {
+                knowledge.hear(robot);
+            }
         }
         Ok(())
     }

@@ -121,10 +121,12 @@ impl Loop for CriticalSituationMS {
             }
         }
         knowledge.lists.helps.drop_contested();
-        let mut faults = context.receive(&self.faults).with_headers();
-        if let Some((header, _)) = faults.find(|(_, fault)| fault.robot == knowledge.number) {
-            knowledge.variables.critical = true;
-            self.cause = header.cause;
+        for (header, fault) in context.receive(&self.faults).with_headers() {
+            let is_mine = knowledge.lets_in(fault, header, context) && fault.robot == knowledge.number;
+            if is_mine && !knowledge.variables.critical {
+                knowledge.variables.critical = true;
+                self.cause = header.cause;
+            }
         }
         Ok(())
     }

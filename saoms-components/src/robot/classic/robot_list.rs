@@ -39,10 +39,7 @@ impl Loop for RobotListMS {
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        for robot in context.receive(&self.robots_heard) {
-            knowledge.lists.hear_robot(robot);
-            knowledge.routes.learn_charger(robot.charger);
-        }
+        knowledge.hear_robots(self.robots_heard, context, |_, _| {});
         Ok(())
     }
 

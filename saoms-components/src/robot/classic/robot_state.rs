@@ -1,4 +1,4 @@
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, record};
 
 use crate::messages::{ROBOT_STATE, RobotState};
 use crate::robot::RobotKnowledge;
@@ -14,8 +14,8 @@ use crate::robot::RobotKnowledge;
 )]
 pub struct RobotMS {
     states: Subscription<RobotState>,
-    /// The newest that is for this robot and arrived for this execution, and why it was sent.
-    heard: Option<(RobotState, Cause)>,
+    /// What arrived for this execution: before it is judged, the robot has to hear who is there.
+    arrived: Vec<(Header, RobotState)>,
 }
 
 /// What the robot has to do.
@@ -74,10 +74,10 @@ impl Loop for RobotMS {
         Ok(())
     }
 
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        let states = context.receive(&self.states).with_headers();
-        let newest = states.rev().find(|(_, state)| state.robot == knowledge.number);
-        self.heard = newest.map(|(header, state)| (state.clone(), header.cause));
+    fn monitor(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let arrived = context.receive(&self.states).with_headers();
+        self.arrived.clear();
+        self.arrived.extend(arrived.map(|(header, state)| (header, state.clone())));
         Ok(())
     }
 
@@ -86,7 +86,13 @@ impl Loop for RobotMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<RobotSymptom>, Failure> {
-        let Some((state, cause)) = self.heard.take() else { return Ok(None) };
+        let mut newest = None;
+        for (header, state) in self.arrived.drain(..) {
+            if knowledge.lets_in(&state, header, context) && state.robot == knowledge.number {
+                newest = Some((state, header.cause));
+            }
+        }
+        let Some((state, cause)) = newest else { return Ok(None) };
         context.because(cause);
         let variables = &knowledge.variables;
         Ok(match state.awake {

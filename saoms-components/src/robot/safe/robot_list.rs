@@ -73,11 +73,9 @@ impl Loop for RobotListMS {
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        for robot in context.receive(&self.robots_heard) {
-            knowledge.lists.hear_robot(robot);
-            knowledge.routes.learn_charger(robot.charger);
+        knowledge.hear_robots(self.robots_heard, context, |knowledge, robot| {
             if robot.robot == knowledge.number {
-                continue;
+                return;
             }
             knowledge.lists.lost.retain(|lost| *lost != robot.robot);
             if robot.active {
@@ -85,7 +83,7 @@ impl Loop for RobotListMS {
             } else {
                 knowledge.lists.lost.push(robot.robot);
             }
-        }
+        });
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
+use saoms_api::{Cause, Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, record};
 
 use crate::messages::{ROBOT_STATE, RobotState};
 use crate::robot::{Request, RobotKnowledge};
@@ -20,6 +20,8 @@ const TURN: u32 = 5;
 )]
 pub struct RobotMS {
     states: Subscription<RobotState>,
+    /// What arrived and is not judged yet: before that, the robot has to hear who is there.
+    arrived: Vec<(Header, RobotState)>,
     called: Option<(RobotState, Cause)>,
     /// Why it sleeps once it is at its charger.
     sent: Cause,
@@ -113,11 +115,9 @@ impl Loop for RobotMS {
         Ok(())
     }
 
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        let mut mine = context.receive(&self.states).with_headers();
-        if let Some((header, state)) = mine.rfind(|(_, state)| state.robot == knowledge.number) {
-            self.called = Some((state.clone(), header.cause));
-        }
+    fn monitor(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let arrived = context.receive(&self.states).with_headers();
+        self.arrived.extend(arrived.map(|(header, state)| (header, state.clone())));
         Ok(())
     }
 
@@ -126,6 +126,11 @@ impl Loop for RobotMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<RobotSymptom>, Failure> {
+        for (header, state) in self.arrived.drain(..) {
+            if knowledge.lets_in(&state, header, context) && state.robot == knowledge.number {
+                self.called = Some((state, header.cause));
+            }
+        }
         if knowledge.variables.critical {
             return Ok(None);
         }

@@ -83,7 +83,8 @@ impl Loop for CriticalSituationMS {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, fault) in context.receive(&self.faults).with_headers() {
-            if fault.robot == knowledge.number && knowledge.trouble.is_none() {
+            let is_mine = knowledge.lets_in(fault, header, context) && fault.robot == knowledge.number;
+            if is_mine && knowledge.trouble.is_none() {
                 knowledge.trouble = Some(Trouble::Breakdown);
                 self.cause = header.cause;
             }
