@@ -90,7 +90,7 @@ impl Component for Liar {
         if !(5..40).contains(&context.execution()) {
             return Ok(());
         }
-        let turn = usize::try_from(context.execution()).unwrap();
+        let turn = usize::try_from(context.execution()).unwrap_or(0);
         match &*self.topic {
             "ETOPIC" => {
                 let request = |from, to| EventLuggage::request(900, from, to);
