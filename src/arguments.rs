@@ -48,6 +48,12 @@ Exit codes:
   1  the picture could not be written
   2  the file cannot be read or is no composite, or nothing says the format";
 
+const SCHEMA_EXIT_CODES: &str = "\
+Exit codes:
+  0  written; the names of the files are on standard output
+  1  a file could not be written
+  2  a plugin cannot be used";
+
 const WHY_EXIT_CODES: &str = "\
 Exit codes:
   0  answered, also when the answer is that the robot did nothing
@@ -76,6 +82,9 @@ pub(crate) enum Command {
     Why(WhyArguments),
     /// Make a plugin or a composite that works, to start from
     New(NewArguments),
+    /// Write the language of composites, with all classes and properties, as XML schemas for editors
+    #[command(after_help = SCHEMA_EXIT_CODES)]
+    Schema(SchemaArguments),
     /// List the component classes, or describe one: properties, topics, services, references
     Components(ComponentsArguments),
 }
@@ -253,6 +262,28 @@ pub(crate) enum Picture {
     Mermaid,
     /// A graph for Graphviz
     Dot,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SchemaArguments {
+    /// The folder for the schemas, one for each namespace, and for `catalog.xml`, by which editors find them; made if it is not there
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+
+    /// The version of XML Schema: 1.0, which every editor reads, or 1.1, which also holds components to the properties of their classes
+    #[arg(long, value_enum, value_name = "VERSION", default_value_t = XsdVersion::V1_0)]
+    pub(crate) xsd: XsdVersion,
+
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum XsdVersion {
+    #[value(name = "1.0")]
+    V1_0,
+    #[value(name = "1.1")]
+    V1_1,
 }
 
 #[derive(Debug, Args)]

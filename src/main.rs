@@ -18,6 +18,7 @@ mod paths;
 mod plugins;
 mod results;
 mod run;
+mod schema;
 mod summary;
 mod svg;
 mod watch;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::Expand(arguments) => expand::expand(&arguments),
         Command::Fmt(arguments) => fmt::fmt(&arguments),
         Command::Graph(arguments) => graph::graph(&arguments),
+        Command::Schema(arguments) => schema::schema(&arguments),
         Command::Why(arguments) => why::why(&arguments),
         Command::New(arguments) => new::new(&arguments),
         Command::Components(arguments) => components::components(&arguments),

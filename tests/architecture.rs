@@ -17,6 +17,7 @@ const CORE: &[&str] = &[
     "registry",
     "plugin",
     "assembly",
+    "xsd",
     "check",
     "graph",
     "assemble",

@@ -43,6 +43,9 @@ fn made_tested_and_run(kind: &str, expected: &str) {
     assert!(run.status.success() && text(&run).contains(expected), "{}", text(&run));
     let listed = saoms(&plugin, &["components", "--plugin", library]);
     assert!(text(&listed).contains(&format!("made_{kind}.Made")), "{}", text(&listed));
+    assert!(saoms(&plugin, &["schema", "-o", "schema", "--plugin", library]).status.success());
+    let schema = fs::read_to_string(plugin.join("schema/saoms.xsd")).unwrap();
+    assert!(schema.contains(&format!("value=\"made_{kind}.Made")), "{schema}");
 }
 
 #[test]

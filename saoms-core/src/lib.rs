@@ -17,3 +17,4 @@ pub mod schedule;
 pub mod schema;
 pub mod source;
 pub mod xml;
+pub mod xsd;

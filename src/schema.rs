@@ -1,0 +1,54 @@
+//! `saoms schema`: writes the language of composites as XML schemas, for editors.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use saoms_core::registry::Registry;
+use saoms_core::xsd::{Xsd, catalog, schemas};
+
+use crate::Exit;
+use crate::arguments::{SchemaArguments, XsdVersion};
+use crate::output::{eprint, print};
+use crate::plugins::registry;
+
+/// The file by which editors find a schema from a namespace.
+const CATALOG: &str = "catalog.xml";
+
+pub(crate) fn schema(arguments: &SchemaArguments) -> Exit {
+    let registry = match registry(&arguments.plugins, &[]) {
+        Ok(registry) => registry,
+        Err(exit) => return exit,
+    };
+    let xsd = match arguments.xsd {
+        XsdVersion::V1_0 => Xsd::V1_0,
+        XsdVersion::V1_1 => Xsd::V1_1,
+    };
+    let folder = &arguments.output;
+    match write(folder, &registry, xsd) {
+        Ok(files) => {
+            files.iter().for_each(|file| print(&format!("{}\n", folder.join(file).display())));
+            Exit::Done
+        }
+        Err((name, error)) => {
+            let path = folder.join(name);
+            eprint(&format!("error: the schema cannot be written to `{}`: {error}\n", path.display()));
+            Exit::Failed
+        }
+    }
+}
+
+/// Writes all files; their names, or the name of the one that could not be written.
+fn write(
+    folder: &Path,
+    registry: &Registry,
+    xsd: Xsd,
+) -> Result<Vec<&'static str>, (&'static str, io::Error)> {
+    fs::create_dir_all(folder).map_err(|error| ("", error))?;
+    let schemas = schemas(registry, xsd);
+    let catalog = catalog(&schemas);
+    let texts = schemas.iter().map(|schema| (schema.file, &schema.text)).chain([(CATALOG, &catalog)]);
+    texts
+        .map(|(file, text)| fs::write(folder.join(file), text).map(|()| file).map_err(|error| (file, error)))
+        .collect()
+}

@@ -1,0 +1,98 @@
+//! `saoms schema` as a user meets it; `schema/` is what it writes with the classes that ship.
+//!
+//! `UPDATE_EXPECT=1 cargo test --test schema` writes the folder anew.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+use std::{env, fs};
+
+use roxmltree::Document;
+use saoms_api::Properties;
+use saoms_components as _;
+use saoms_core::assembly::TaskProperties;
+use saoms_core::registry::Registry;
+
+const FILES: [&str; 5] = ["sca-1.1.xsd", "sca-1.1-draft.xsd", "sca-1.0.xsd", "saoms.xsd", "catalog.xml"];
+
+fn schema(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
+    command.args(["schema", "-o"]).arg(folder).args(arguments);
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap()
+}
+
+fn written(arguments: &[&str]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("a/b");
+    let output = schema(&inner, arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let listed = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(listed.lines().count(), FILES.len(), "{listed}");
+    FILES.map(|file| fs::read_to_string(inner.join(file)).unwrap()).into()
+}
+
+#[test]
+fn the_folder_schema_is_what_the_command_writes() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("schema");
+    for (file, text) in FILES.into_iter().zip(written(&[])) {
+        let path = folder.join(file);
+        if env::var_os("UPDATE_EXPECT").is_some() {
+            fs::write(path, text).unwrap();
+        } else {
+            let is_same = fs::read_to_string(path).unwrap() == text;
+            assert!(is_same, "schema/{file} is out of date: run with UPDATE_EXPECT=1");
+        }
+    }
+}
+
+#[test]
+fn all_that_is_registered_is_named() {
+    let all = written(&[]);
+    let document = Document::parse(&all[3]).unwrap();
+    let names = |of: &str| -> Vec<String> {
+        let mut types = document.root_element().children();
+        let found = types.find(|node| node.attribute("name") == Some(of)).unwrap();
+        found.descendants().filter_map(|node| node.attribute("value")).map(str::to_owned).collect()
+    };
+    let registry = Registry::linked().unwrap();
+    let (classes, loops, properties) = (names("ClassName"), names("LoopClassName"), names("PropertyName"));
+    assert!(registry.len() > 20 && registry.loops().len() > 10);
+    for class in registry.iter() {
+        assert!(classes.iter().any(|name| name == class.name()), "{}", class.name());
+        for property in &class.declaration().properties {
+            assert!(properties.contains(&property.name), "{} of {}", property.name, class.name());
+        }
+    }
+    for one in registry.loops() {
+        assert!(loops.iter().any(|name| name == one.name()), "{}", one.name());
+        assert!(one.declaration().properties.iter().all(|property| properties.contains(&property.name)));
+    }
+    assert!(
+        TaskProperties::DECLARATION.contains("runOnStartup")
+            && properties.iter().any(|name| name == "runOnStartup")
+    );
+}
+
+#[test]
+fn xsd_1_1_asserts_what_xsd_1_0_cannot_say() {
+    let all = written(&["--xsd", "1.1"]);
+    let document = Document::parse(&all[0]).unwrap();
+    let tests: Vec<&str> = document.descendants().filter_map(|node| node.attribute("test")).collect();
+    assert!(tests.len() > 50, "{}", tests.len());
+    let battery = tests.iter().find(|test| test.contains("'battery'") && test.contains("xs:double")).unwrap();
+    assert!(battery.contains("'robot.Robot010'") && battery.contains("xs:double($v) le 100.0"), "{battery}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    let output = schema(&file.join("inner"), &[]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        output.status.code() == Some(1) && error.starts_with("error: the schema cannot be written to `"),
+        "{error}"
+    );
+}
