@@ -102,6 +102,10 @@ impl Loop for PathFollowerMS {
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hooks.is_moving() {
             knowledge.polled = knowledge.poll(context)?;
+            if let Some((_, Outcome::Failed)) = knowledge.polled {
+                // What it wanted is beside the block that it did not get to.
+                knowledge.traffic.stay(knowledge.next);
+            }
         }
         Ok(())
     }

@@ -1,0 +1,165 @@
+//! A loop that changes when a robot charges: listing 10.2 of the manual.
+//!
+//! Batteries last for years where they are never discharged deeply. A robot charges when its battery is as low as the way to the charger allows;
+//! with this loop it learns from each time that this was too low, and charges earlier from then on. The loop knows no robot: it reads and sets
+//! entries of whatever knowledge has them.
+
+use saoms_api::{
+    Context, Effector, Entries, Entry, Failure, Knowledge, Loop, LoopClass, Properties, Record, Recordable,
+    record,
+};
+
+/// What a composite says about the loop.
+#[derive(Debug, Properties)]
+pub struct BatterySaverProperties {
+    /// The battery should never have less than this.
+    #[property(default = 40.0, range = 0.0..=100.0, unit = "%")]
+    floor: f64,
+    /// So much earlier the robot charges after it had less, and so much later after it had far more.
+    #[property(default = 10.0, range = 1.0..=50.0, unit = "%")]
+    step: f64,
+}
+
+/// What the loop adds to the knowledge.
+#[derive(Debug, Entries)]
+pub struct Discharge {
+    /// What the battery had at least since it was charged last.
+    #[entry(unit = "%")]
+    lowest: f64,
+}
+
+impl Default for Discharge {
+    fn default() -> Self {
+        Discharge { lowest: 100.0 }
+    }
+}
+
+/// Learns when a robot has to charge, so that its battery is never discharged deeply.
+#[derive(Debug, LoopClass)]
+#[looping(
+    name = "saver.BatterySaver",
+    senses("battery", "inCharge"),
+    effects("chargeAt"),
+    entries(Discharge)
+)]
+pub struct BatterySaver {
+    properties: BatterySaverProperties,
+    battery: Entry<f64>,
+    in_charge: Entry<bool>,
+    charge_at: Effector<f64>,
+    lowest: Effector<f64>,
+    was_in_charge: bool,
+}
+
+/// What the loop finds when the robot begins to charge.
+#[derive(Clone, Copy, Debug)]
+pub enum Symptom {
+    /// The battery had less than it should.
+    Deep(f64),
+    /// It had far more.
+    Shallow(f64),
+}
+
+/// At how many percent the robot charges from now on; 0: no earlier than it has to.
+#[derive(Clone, Copy, Debug)]
+pub struct ChargeAt(f64);
+
+impl Recordable for Symptom {
+    fn record(&self) -> Record {
+        match *self {
+            Symptom::Deep(lowest) => record!("was down to {lowest} %, which is too low", lowest),
+            Symptom::Shallow(lowest) => record!("never had less than {lowest} %, and charged early", lowest),
+        }
+    }
+}
+
+impl Recordable for ChargeAt {
+    fn record(&self) -> Record {
+        let percent = self.0;
+        record!("charges at {percent} % from now on", percent)
+    }
+}
+
+impl Loop for BatterySaver {
+    type Properties = BatterySaverProperties;
+    type Knowledge = dyn Knowledge;
+    type Symptom = Symptom;
+    type Decision = ChargeAt;
+
+    fn new(properties: BatterySaverProperties) -> Result<Self, Failure> {
+        Ok(BatterySaver {
+            properties,
+            battery: Entry::default(),
+            in_charge: Entry::default(),
+            charge_at: Effector::default(),
+            lowest: Effector::default(),
+            was_in_charge: true,
+        })
+    }
+
+    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+        self.battery = robot.entry("battery")?;
+        self.in_charge = robot.entry("inCharge")?;
+        self.charge_at = robot.effector("chargeAt")?;
+        self.lowest = robot.effector("lowest")?;
+        Ok(())
+    }
+
+    /// Remembers how low the battery was.
+    fn monitor(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+        if self.in_charge.get(robot)? {
+            return Ok(());
+        }
+        let lowest = if self.was_in_charge { 100.0 } else { self.lowest.get(robot)? };
+        let lowest = lowest.min(self.battery.get(robot)?);
+        self.was_in_charge = false;
+        self.lowest.set(robot, lowest)
+    }
+
+    /// Once, when the robot begins to charge: was it too late, or far too early?
+    fn analyze(
+        &mut self,
+        robot: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Symptom>, Failure> {
+        let in_charge = self.in_charge.get(robot)?;
+        if !in_charge || std::mem::replace(&mut self.was_in_charge, in_charge) {
+            return Ok(None);
+        }
+        let BatterySaverProperties { floor, step } = self.properties;
+        let (lowest, charges_early) = (self.lowest.get(robot)?, self.charge_at.get(robot)? > 0.0);
+        Ok(if lowest < floor {
+            Some(Symptom::Deep(lowest))
+        } else {
+            (charges_early && lowest > floor + 2.0 * step).then_some(Symptom::Shallow(lowest))
+        })
+    }
+
+    /// Earlier by a step, or later.
+    fn plan(
+        &mut self,
+        symptom: Symptom,
+        robot: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<Option<ChargeAt>, Failure> {
+        let BatterySaverProperties { floor, step } = self.properties;
+        let now = self.charge_at.get(robot)?;
+        Ok(Some(ChargeAt(match symptom {
+            Symptom::Deep(_) => (now.max(floor) + step).min(100.0),
+            Symptom::Shallow(_) => (now - step).max(0.0),
+        })))
+    }
+
+    fn execute(
+        &mut self,
+        decision: ChargeAt,
+        robot: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.charge_at.set(robot, decision.0)
+    }
+}
+
+saoms_api::plugin! {
+    loops: [BatterySaver],
+}

@@ -1,0 +1,103 @@
+use saoms_api::{Class, Component, Context, Failure, Properties, Publisher};
+use saoms_components::robot::{Robot, RobotProperties};
+
+use crate::picture::{CAMERA, FLOOR, ROBOT, Snapshot, WALL};
+
+/// What a composite says about a robot with a camera.
+#[derive(Debug, Properties)]
+pub struct CameraRobotProperties {
+    /// What it says about any robot.
+    #[property(flatten)]
+    robot: RobotProperties,
+    /// How many blocks the camera sees in each direction.
+    #[property(default = 2, range = 0..=20, unit = "blocks")]
+    reach: u32,
+    /// The camera takes a picture in each so many executions.
+    #[property(default = 1, range = 1..)]
+    every: u64,
+}
+
+/// A robot that brings luggage as any other, and publishes what its camera sees.
+#[derive(Debug, Class)]
+#[class(name = "camera.Robot", periodic, publishes(CAMERA))]
+pub struct CameraRobot {
+    #[extends]
+    robot: Robot,
+    reach: u32,
+    every: u64,
+    camera: Publisher<Snapshot>,
+}
+
+impl Component for CameraRobot {
+    type Properties = CameraRobotProperties;
+
+    fn new(properties: CameraRobotProperties) -> Result<Self, Failure> {
+        let CameraRobotProperties { robot, reach, every } = properties;
+        Ok(CameraRobot { robot: Robot::new(robot)?, reach, every, camera: Publisher::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.robot.initialize(context)?;
+        self.camera = context.publish(&CAMERA)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.robot.execute(context)?;
+        // A broken robot takes no pictures.
+        if self.robot.knowledge().shut_down || context.execution() % self.every != 0 {
+            return Ok(());
+        }
+        context.send(&self.camera, self.snapshot())
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.robot.shutdown(context)
+    }
+}
+
+impl CameraRobot {
+    /// Put the calls of your camera here: this one shows what the robot knows.
+    fn snapshot(&self) -> Snapshot {
+        let robot = self.robot.knowledge();
+        Snapshot::take(robot.number, robot.block, self.reach, |block| {
+            if block == robot.block || robot.lists.peers.on(block).is_some() {
+                ROBOT
+            } else if robot.routes.is_free(block) {
+                FLOOR
+            } else {
+                WALL
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use saoms_components::grid::Block;
+    use saoms_components::messages::{POSITION, Position};
+    use saoms_testkit::Bench;
+
+    use super::*;
+
+    #[test]
+    fn the_camera_sees_the_robots_around() -> Result<(), Failure> {
+        let mut robot = Bench::of::<CameraRobot>(&[("ID", "Robot3"), ("reach", "1")])?;
+        robot.start()?;
+        let block = Block::new(1, 3);
+        robot.deliver(
+            &POSITION,
+            Position { robot: 4, block, next: block, wanted: block, ..Position::default() },
+        );
+        robot.execute()?;
+        let pictures = robot.sent(&CAMERA);
+        assert_eq!(pictures.len(), 1);
+        assert_eq!((pictures[0].robot, pictures[0].block, pictures[0].others()), (3, Block::new(0, 3), 1));
+        Ok(())
+    }
+
+    #[test]
+    fn it_keeps_what_every_component_keeps() {
+        saoms_testkit::comply::<CameraRobot>(&[("ID", "Robot3")]);
+    }
+}

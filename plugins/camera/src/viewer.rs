@@ -1,0 +1,53 @@
+use saoms_api::{Class, Component, Context, Failure, Properties, Subscription};
+
+use crate::picture::{CAMERA, Snapshot};
+
+/// What a composite says about a viewer.
+#[derive(Debug, Properties)]
+pub struct ViewerProperties {
+    /// It says something about pictures with at least so many other robots.
+    #[property(default = 1, range = 0..)]
+    others: usize,
+}
+
+/// Looks at the pictures of all cameras, and counts them in the report.
+#[derive(Debug, Class)]
+#[class(name = "camera.Viewer", periodic, subscribes(CAMERA))]
+pub struct Viewer {
+    others: usize,
+    camera: Subscription<Snapshot>,
+}
+
+impl Component for Viewer {
+    type Properties = ViewerProperties;
+
+    fn new(properties: ViewerProperties) -> Result<Self, Failure> {
+        Ok(Viewer { others: properties.others, camera: Subscription::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.camera = context.subscribe(&CAMERA)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for picture in context.receive(&self.camera) {
+            context.count("camera.pictures", 1);
+            let (robot, block, others) = (picture.robot, picture.block, picture.others());
+            if others >= self.others {
+                context.info(format_args!("sees {others} other robots from robot {robot} at {block}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_keeps_what_every_component_keeps() {
+        saoms_testkit::comply::<Viewer>(&[]);
+    }
+}

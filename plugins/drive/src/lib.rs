@@ -1,0 +1,193 @@
+//! The wheels of a robot: hardware that takes several periods for a move, and can fail.
+//!
+//! A robot calls the [`Hardware`] behind its reference `world`, and never waits: `begin` starts an action, `poll` asks in each period how it goes,
+//! `cancel` stops it. [`Drive`] is such hardware. It counts periods where a real one would turn motors, and it hands on to the world what only the
+//! world can tell: whether the next block can be entered, and what becomes of luggage.
+
+mod motor;
+
+use saoms_api::{Chance, Class, Component, Context, Failure, Properties};
+use saoms_components::grid::{Block, Map};
+use saoms_components::hardware::{Action, ActionKind, Area, Hardware, HardwareReference, Progress};
+
+use motor::{Motor, Turn};
+
+/// What a composite says about a drive.
+#[derive(Debug, Properties)]
+pub struct DriveProperties {
+    /// How many periods of its robot a move takes.
+    #[property(default = 3, range = 1..=1000, unit = "periods")]
+    move_periods: u32,
+    /// How often a move jams, so that the robot has to try again.
+    #[property(default = 0.0, range = 0.0..=1.0, unit = "jams per move")]
+    jams: f64,
+    /// The moves that jam in any case, counted from 1.
+    jams_at: Vec<u32>,
+    /// After so many moves it is worn out, and every further one fails; by default never.
+    wears_out_after: Option<u32>,
+}
+
+/// The wheels of one robot.
+#[derive(Debug, Class)]
+#[class(
+    name = "drive.Drive",
+    passive,
+    service("hardware": Hardware),
+    reference("world": Hardware, optional)
+)]
+pub struct Drive {
+    properties: DriveProperties,
+    world: HardwareReference,
+    /// Whether there is a world; a drive without one has the area for itself, 11 x 11 blocks.
+    has_world: bool,
+    robot: Option<u32>,
+    block: Block,
+    motor: Motor,
+    /// What the world is busy with for the robot.
+    in_world: Option<Action>,
+}
+
+impl Component for Drive {
+    type Properties = DriveProperties;
+
+    fn new(properties: DriveProperties) -> Result<Self, Failure> {
+        Ok(Drive {
+            properties,
+            world: HardwareReference::default(),
+            has_world: false,
+            robot: None,
+            block: Block::default(),
+            motor: Motor::default(),
+            in_world: None,
+        })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.world = context.reference("world")?;
+        self.has_world = context.is_wired(&self.world);
+        context.count("drive.jams", 0);
+        Ok(())
+    }
+}
+
+impl DriveProperties {
+    /// Whether the move of this number jams.
+    fn jams(&self, number: u32, chance: &mut Chance) -> bool {
+        let by_chance = chance.unit() < self.jams;
+        by_chance || self.jams_at.contains(&number) || self.wears_out_after.is_some_and(|last| number > last)
+    }
+}
+
+impl Drive {
+    /// Has the world do what a robot's body does there.
+    fn begin_in_world(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+        action: Action,
+    ) -> Result<Progress, Failure> {
+        let progress =
+            if self.has_world { self.world.begin(context, robot, action)? } else { Progress::Done };
+        self.in_world = (progress == Progress::Running).then_some(action);
+        if progress == Progress::Done {
+            self.arrive(action);
+        }
+        Ok(progress)
+    }
+
+    fn arrive(&mut self, action: Action) {
+        if action.kind == ActionKind::Move {
+            self.block = action.block;
+        }
+    }
+
+    /// Ends everything that the motor and the world do.
+    fn stop(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+        self.motor.stop();
+        if self.in_world.take().is_some() {
+            self.world.cancel(context, robot)?;
+        }
+        Ok(())
+    }
+}
+
+impl Hardware for Drive {
+    fn enter(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+        name: String,
+        block: Block,
+    ) -> Result<Block, Failure> {
+        if let Some(other) = self.robot.filter(|other| *other != robot) {
+            return Err(Failure::new(format!(
+                "these are the wheels of robot {other}: give robot {robot} its own"
+            )));
+        }
+        self.block = if self.has_world { self.world.enter(context, robot, name, block)? } else { block };
+        self.robot = Some(robot);
+        Ok(self.block)
+    }
+
+    fn area(&mut self, context: &mut Context<'_>) -> Result<Area, Failure> {
+        Ok(if self.has_world { self.world.area(context)? } else { Area::from(&Map::new(11, 11)) })
+    }
+
+    fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
+        if action.kind != ActionKind::Move {
+            return self.begin_in_world(context, robot, action);
+        }
+        let DriveProperties { move_periods, .. } = self.properties;
+        let jams = |number| self.properties.jams(number, context.chance());
+        self.motor.start(action, move_periods, jams);
+        Ok(Progress::Running)
+    }
+
+    fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Progress, Failure> {
+        match self.motor.turn() {
+            Turn::Goes => return Ok(Progress::Running),
+            Turn::Jams(action, number) => {
+                context.count("drive.jams", 1);
+                context.warn(format_args!("jams in move {number}, from {} to {}", self.block, action.block));
+                return Ok(Progress::Failed);
+            }
+            // The robot is on the edge of the block: the world says whether it gets in.
+            Turn::Through(action) => return self.begin_in_world(context, robot, action),
+            Turn::Rests => {}
+        }
+        let Some(action) = self.in_world else { return Ok(Progress::Done) };
+        let progress = self.world.poll(context, robot)?;
+        if progress != Progress::Running {
+            self.in_world = None;
+        }
+        if progress == Progress::Done {
+            self.arrive(action);
+        }
+        Ok(progress)
+    }
+
+    fn cancel(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+        self.stop(context, robot)
+    }
+
+    fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
+        self.motor.stop();
+        self.in_world = None;
+        // From now on the world lets others reach the robot's block.
+        Ok(if self.has_world { self.world.retire(context, robot)? } else { self.block })
+    }
+}
+
+saoms_api::plugin! {
+    classes: [Drive],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_keeps_what_every_component_keeps() {
+        saoms_testkit::comply::<Drive>(&[("jams", "0.5")]);
+    }
+}

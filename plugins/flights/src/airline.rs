@@ -1,0 +1,121 @@
+use std::time::Duration;
+
+use saoms_api::{
+    Class, Component, Context, Failure, Finding, Place, Properties, Publisher, Subscription, Time, Work,
+};
+use saoms_components::grid::Block;
+
+use crate::messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
+
+/// What a composite says about an airline.
+#[derive(Debug, Properties)]
+pub struct AirlineProperties {
+    /// The number of its flight.
+    #[property(unique = "flight")]
+    flight: u32,
+    /// How many pieces of luggage the flight has.
+    #[property(range = 1..=500)]
+    pieces: u32,
+    /// Where they wait: a block such as `(1,1)`.
+    from: String,
+    /// Where the airplane is.
+    to: String,
+    /// When the airline says so, from its own start on.
+    #[property(default = "0s", range = "0s"..)]
+    at: Duration,
+}
+
+/// Announces a flight, and waits until its luggage is on board.
+#[derive(Debug, Class)]
+#[class(name = "flights.Airline", periodic, publishes(FLIGHT), subscribes(FLIGHT_STATE))]
+pub struct Airline {
+    flight: Flight,
+    at: Duration,
+    /// When its first execution was due.
+    start: Option<Time>,
+    announced: bool,
+    flights: Publisher<Flight>,
+    states: Subscription<FlightState>,
+}
+
+impl Component for Airline {
+    type Properties = AirlineProperties;
+
+    fn new(properties: AirlineProperties) -> Result<Self, Failure> {
+        let AirlineProperties { flight, pieces, from, to, at } = properties;
+        let block = |name: &str, text: &str| {
+            text.parse::<Block>().map_err(|problem| Finding::new(Place::property(name), problem))
+        };
+        let (from, to) = match (block("from", &from), block("to", &to)) {
+            (Ok(from), Ok(to)) => (from, to),
+            (from, to) => {
+                return Err(Failure::from([from.err(), to.err()].into_iter().flatten().collect::<Vec<_>>()));
+            }
+        };
+        Ok(Airline {
+            flight: Flight { number: flight, pieces, from, to },
+            at,
+            start: None,
+            announced: false,
+            flights: Publisher::default(),
+            states: Subscription::default(),
+        })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.flights = context.publish(&FLIGHT)?;
+        self.states = context.subscribe(&FLIGHT_STATE)?;
+        context.vote(Work::Open);
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let start = *self.start.get_or_insert(context.due());
+        if !self.announced && context.due().since(start) >= self.at {
+            self.announced = true;
+            context.send(&self.flights, self.flight.clone())?;
+        }
+        for state in context.receive(&self.states).filter(|state| state.number == self.flight.number) {
+            if state.open == 0 {
+                context.vote(Work::Done);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use saoms_testkit::Bench;
+
+    use super::*;
+
+    const VALUES: &[(&str, &str)] =
+        &[("flight", "12"), ("pieces", "3"), ("from", "(1,1)"), ("to", "(9,9)"), ("at", "2s")];
+
+    #[test]
+    fn a_flight_is_announced_once_and_in_time() -> Result<(), Failure> {
+        let mut airline = Bench::of::<Airline>(VALUES)?.period(Duration::from_secs(1));
+        airline.start()?;
+        let mut announced = Vec::new();
+        for _ in 0..5 {
+            airline.execute()?;
+            announced.push(airline.sent(&FLIGHT).len());
+        }
+        assert_eq!(announced.iter().sum::<usize>(), 1, "{announced:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn wrong_blocks_are_all_found() {
+        let mut values = VALUES.to_vec();
+        (values[2].1, values[3].1) = ("1,1", "(9)");
+        let failure = Bench::of::<Airline>(&values).err().unwrap();
+        assert_eq!(failure.findings().len(), 2, "{failure}");
+    }
+
+    #[test]
+    fn it_keeps_what_every_component_keeps() {
+        saoms_testkit::comply::<Airline>(VALUES);
+    }
+}

@@ -1,0 +1,143 @@
+use saoms_api::{Cause, Class, Component, Context, Failure, Properties, Publisher, Subscription};
+use saoms_components::master;
+use saoms_components::messages::{ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage};
+
+use crate::messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
+use crate::open::Flights;
+
+/// What a composite says about the master.
+#[derive(Debug, Properties)]
+pub struct MasterEnvironmentProperties {
+    /// The luggage of flights is numbered from this number on; other luggage has to have lower ones.
+    #[property(default = 1000, range = 1..)]
+    first_luggage: u32,
+}
+
+/// Sorts the events of the environment, and has the luggage of flights brought.
+#[derive(Debug, Class)]
+#[class(
+    name = "flights.MasterEnvironment",
+    periodic,
+    subscribes(FLIGHT),
+    publishes(ENVIRONMENT, FLIGHT_STATE)
+)]
+pub struct MasterEnvironment {
+    #[extends]
+    master: master::MasterEnvironment,
+    flights: Flights,
+    announced: Subscription<Flight>,
+    responses: Subscription<EventLuggage>,
+    events: Publisher<EnvironmentEvent>,
+    states: Publisher<FlightState>,
+}
+
+impl Component for MasterEnvironment {
+    type Properties = MasterEnvironmentProperties;
+
+    fn new(properties: MasterEnvironmentProperties) -> Result<Self, Failure> {
+        Ok(MasterEnvironment {
+            master: master::MasterEnvironment::new(())?,
+            flights: Flights::new(properties.first_luggage),
+            announced: Subscription::default(),
+            responses: Subscription::default(),
+            events: Publisher::default(),
+            states: Publisher::default(),
+        })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.master.initialize(context)?;
+        self.announced = context.subscribe(&FLIGHT)?;
+        self.responses = context.subscribe(&EVENT_LUGGAGE)?;
+        self.events = context.publish(&ENVIRONMENT)?;
+        self.states = context.publish(&FLIGHT_STATE)?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.master.execute(context)?;
+        for (header, flight) in context.receive(&self.announced).with_headers() {
+            context.because(header.cause);
+            match self.flights.add(flight) {
+                Ok((state, luggage)) => {
+                    context.info(format_args!(
+                        "flight {} has {} pieces of luggage",
+                        flight.number, flight.pieces
+                    ));
+                    context.send(&self.states, state)?;
+                    // As luggage from anybody: the master hears this itself, and checks it.
+                    context
+                        .send(&self.events, EnvironmentEvent { luggage, ..EnvironmentEvent::default() })?;
+                }
+                Err(reason) => {
+                    let sender = context.sender_name(header).unwrap_or("nobody").to_owned();
+                    context.count("flights.ignored", 1);
+                    context.warn(format_args!("ignores what `{sender}` says: {reason}"));
+                }
+            }
+        }
+        for (header, response) in context.receive(&self.responses).with_headers() {
+            let Some(state) = self.flights.hear(response) else { continue };
+            context.because(header.cause);
+            if state.open == 0 {
+                context.count("flights.done", 1);
+                let FlightState { number, loaded, lost, .. } = state;
+                context.info(format_args!("flight {number} has {loaded} pieces on board, {lost} are lost"));
+            }
+            context.send(&self.states, state)?;
+        }
+        context.because(Cause::default());
+        Ok(())
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.master.shutdown(context)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use saoms_components::grid::Block;
+    use saoms_components::messages::{EXCEPTIONAL_EVENT, ExceptionalEvent, LuggageStage};
+    use saoms_testkit::Bench;
+
+    use super::*;
+
+    fn flight() -> Flight {
+        Flight { number: 7, pieces: 2, from: Block::new(1, 1), to: Block::new(2, 2) }
+    }
+
+    #[test]
+    fn a_flight_becomes_requests_for_luggage() -> Result<(), Failure> {
+        let mut master = Bench::of::<MasterEnvironment>(&[("firstLuggage", "50")])?;
+        master.start()?;
+        master.deliver(&FLIGHT, flight());
+        master.execute()?;
+        let events = master.sent(&ENVIRONMENT);
+        let numbers: Vec<u32> =
+            events.iter().flat_map(|event| &event.luggage).map(|one| one.luggage).collect();
+        assert_eq!(numbers, [50, 51]);
+        assert_eq!(master.sent(&FLIGHT_STATE)[0].open, 2);
+        let brought = EventLuggage { luggage: 50, stage: LuggageStage::Delivered, ..EventLuggage::default() };
+        master.deliver(&EVENT_LUGGAGE, brought);
+        master.execute()?;
+        assert_eq!(master.sent(&FLIGHT_STATE), [FlightState { number: 7, open: 1, loaded: 1, lost: 0 }]);
+        Ok(())
+    }
+
+    #[test]
+    fn it_is_still_a_master_of_the_environment() -> Result<(), Failure> {
+        let mut master = Bench::of::<MasterEnvironment>(&[])?;
+        master.start()?;
+        let landing = ExceptionalEvent { pieces: 4, ..ExceptionalEvent::default() };
+        master.deliver(&ENVIRONMENT, landing.clone().into());
+        master.execute()?;
+        assert_eq!(master.sent(&EXCEPTIONAL_EVENT), [landing]);
+        Ok(())
+    }
+
+    #[test]
+    fn it_keeps_what_every_component_keeps() {
+        saoms_testkit::comply::<MasterEnvironment>(&[]);
+    }
+}
