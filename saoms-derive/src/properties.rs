@@ -17,7 +17,7 @@ use crate::range::Range;
 
 /// A field.
 enum Member<'a> {
-    Own(Property<'a>),
+    Own(Box<Property<'a>>),
     /// The fields of another property struct in the place of this one.
     Flat(&'a Ident, &'a Type),
 }
@@ -55,7 +55,7 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
                 let message = format!("field `{other}` is the property `{}`, too", property.name);
                 return Err(Error::new_spanned(ident, message));
             }
-            members.push(Member::Own(property));
+            members.push(Member::Own(Box::new(property)));
         }
     }
     let declaration = declaration(&members);
@@ -115,7 +115,7 @@ fn declaration(members: &[Member<'_>]) -> TokenStream {
     let mut text = Json::default();
     if !members.iter().any(|member| matches!(member, Member::Flat(..))) {
         let own = members.iter().filter_map(|member| match member {
-            Member::Own(property) => Some(property),
+            Member::Own(property) => Some(&**property),
             Member::Flat(..) => None,
         });
         text.list(own, Property::declare);
@@ -174,7 +174,10 @@ impl Member<'_> {
     /// An expression of type `&[&str]`.
     fn names(&self) -> TokenStream {
         match self {
-            Member::Own(Property { name, .. }) => quote!(&[#name]),
+            Member::Own(property) => {
+                let name = &property.name;
+                quote!(&[#name])
+            }
             Member::Flat(_, of) => quote!(<#of as ::saoms_api::Properties>::NAMES),
         }
     }

@@ -45,7 +45,7 @@ impl Component for CameraRobot {
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robot.execute(context)?;
         // A broken robot takes no pictures.
-        if self.robot.knowledge().shut_down || context.execution() % self.every != 0 {
+        if self.robot.knowledge().shut_down || !context.execution().is_multiple_of(self.every) {
             return Ok(());
         }
         context.send(&self.camera, self.snapshot())

@@ -43,15 +43,15 @@ impl Component for Airline {
 
     fn new(properties: AirlineProperties) -> Result<Self, Failure> {
         let AirlineProperties { flight, pieces, from, to, at } = properties;
-        let block = |name: &str, text: &str| {
-            text.parse::<Block>().map_err(|problem| Finding::new(Place::property(name), problem))
+        let mut wrong = Vec::new();
+        let mut block = |name: &str, text: &str| {
+            let refuse = |problem| wrong.push(Finding::new(Place::property(name), problem));
+            text.parse::<Block>().map_err(refuse).unwrap_or_default()
         };
-        let (from, to) = match (block("from", &from), block("to", &to)) {
-            (Ok(from), Ok(to)) => (from, to),
-            (from, to) => {
-                return Err(Failure::from([from.err(), to.err()].into_iter().flatten().collect::<Vec<_>>()));
-            }
-        };
+        let (from, to) = (block("from", &from), block("to", &to));
+        if !wrong.is_empty() {
+            return Err(wrong.into());
+        }
         Ok(Airline {
             flight: Flight { number: flight, pieces, from, to },
             at,
