@@ -2,9 +2,9 @@
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
-use std::mem;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
+use std::{mem, ptr};
 
 use crate::Failure;
 
@@ -24,13 +24,27 @@ thread_local! {
 /// What the code has left half changed is only seen by itself: a component that panicked is never called again.
 #[inline]
 pub fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
-    // Looked up once: in a library that takes a call.
-    CAPTURING.with(|capturing| {
-        let outer = capturing.replace(true);
-        let result = panic::catch_unwind(AssertUnwindSafe(code)).map_err(describe);
-        capturing.set(outer);
-        result
-    })
+    contained_or(code, Err, Ok)
+}
+
+/// The same with another result than `Result<T, Failure>`, which is large to be moved about on the path of each execution.
+#[inline]
+pub(crate) fn contained_or<T, R>(
+    code: impl FnOnce() -> T,
+    otherwise: impl FnOnce(Failure) -> R,
+    well: impl FnOnce(T) -> R,
+) -> R {
+    // Looked up once: in a library that takes a call. It stays where it is for as long as the thread lives.
+    let capturing: *const Cell<bool> = CAPTURING.with(ptr::from_ref);
+    // SAFETY: the place is this thread's, which goes on.
+    let capturing = unsafe { &*capturing };
+    let outer = capturing.replace(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(code));
+    capturing.set(outer);
+    match result {
+        Ok(value) => well(value),
+        Err(payload) => otherwise(describe(payload)),
+    }
 }
 
 #[cold]
@@ -45,10 +59,12 @@ fn describe(payload: Box<dyn Any + Send>) -> Failure {
         None => Failure::new(format!("panicked: {message}")),
     };
     // Dropping it can panic, too; what that leaves is not dropped.
+    let outer = CAPTURING.replace(true);
     if let Err(again) = panic::catch_unwind(AssertUnwindSafe(|| drop(payload))) {
         mem::forget(again);
         PLACE.take();
     }
+    CAPTURING.set(outer);
     failure
 }
 

@@ -37,6 +37,8 @@ pub(super) struct Desk {
     /// By the index of the subscription; only its own are ever filled.
     inboxes: Vec<Vec<SharedMessage>>,
     subscribed: Vec<u32>,
+    /// Whether there is a message in them.
+    is_filled: bool,
     buffer: Vec<u8>,
 }
 
@@ -45,19 +47,20 @@ impl Desk {
     ///
     /// # Safety
     /// The handle is that of a call that goes on.
-    pub(super) unsafe fn with<T>(
+    #[inline]
+    pub(super) unsafe fn with<E: From<Failure>>(
         &mut self,
         handle: &HostHandle,
         takes_in: bool,
-        code: impl FnOnce(&mut Context<'_>) -> T,
-    ) -> Result<T, Failure> {
-        if takes_in {
+        code: impl FnOnce(&mut Context<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if takes_in && (handle.inbox_count != 0 || self.is_filled) {
             // SAFETY: as the caller promises.
             unsafe { self.take_in(handle) }?;
         }
         // SAFETY: as the caller promises.
         let mut link = unsafe { Link::new(handle, &mut self.buffer, &mut self.subscribed) };
-        Ok(code(&mut Context::new(&mut link, &self.inboxes)))
+        code(&mut Context::new(&mut link, &self.inboxes))
     }
 
     /// Copies what arrived for the own subscriptions.
@@ -65,6 +68,7 @@ impl Desk {
     /// # Safety
     /// As [`with`](Desk::with).
     unsafe fn take_in(&mut self, handle: &HostHandle) -> Result<(), Failure> {
+        self.is_filled = handle.inbox_count != 0;
         for subscription in &self.subscribed {
             let place = *subscription as usize;
             if self.inboxes.len() <= place {
@@ -106,12 +110,13 @@ impl<C: DynComponent> Instance<C> {
 
     /// # Safety
     /// `this` comes from `into_pointer` and is used by this call alone; the handle is that of the call.
-    unsafe fn call<T>(
+    #[inline]
+    unsafe fn call<E: From<Failure>>(
         this: *mut c_void,
         handle: *const HostHandle,
         takes_in: bool,
-        code: impl FnOnce(&mut C, &mut Context<'_>) -> T,
-    ) -> Result<T, Failure> {
+        code: impl FnOnce(&mut C, &mut Context<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
         // SAFETY: as the caller promises.
         unsafe {
             let Instance { component, desk } = &mut *this.cast::<Self>();
@@ -123,7 +128,7 @@ impl<C: DynComponent> Instance<C> {
         // SAFETY: the host calls with what the table's contract says.
         unsafe {
             guarded(error, || {
-                Self::call(this, handle, false, |component, context| component.initialize(context))?
+                Self::call(this, handle, false, |component, context| component.initialize(context))
             })
         }
     }
@@ -131,9 +136,7 @@ impl<C: DynComponent> Instance<C> {
     unsafe extern "C" fn execute(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: as in `initialize`.
         unsafe {
-            guarded(error, || {
-                Self::call(this, handle, true, |component, context| component.execute(context))?
-            })
+            guarded(error, || Self::call(this, handle, true, |component, context| component.execute(context)))
         }
     }
 
@@ -141,7 +144,7 @@ impl<C: DynComponent> Instance<C> {
         // SAFETY: as in `initialize`.
         unsafe {
             guarded(error, || {
-                Self::call(this, handle, false, |component, context| component.shutdown(context))?
+                Self::call(this, handle, false, |component, context| component.shutdown(context))
             })
         }
     }
@@ -162,7 +165,7 @@ impl<C: DynComponent> Instance<C> {
                 let mut invocation = Invocation { service: service.get_text()?, call: &mut call };
                 Self::call(this, handle, false, |component, context| {
                     component.serve(&mut invocation, context)
-                })?
+                })
             })
         }
     }

@@ -1,6 +1,6 @@
 use std::ffi::c_void;
 
-use crate::contain::contained;
+use crate::contain::{contained, contained_or};
 use crate::{CallError, Failure};
 
 use super::{FindingSink, Sink, Status};
@@ -9,12 +9,23 @@ use super::{FindingSink, Sink, Status};
 ///
 /// # Safety
 /// The sink's owner waits for this call.
+#[inline]
 pub(super) unsafe fn guarded(error: Sink, code: impl FnOnce() -> Result<(), Failure>) -> Status {
-    let (status, failure) = match contained(code) {
-        Ok(Ok(())) => return Status::OK,
-        Ok(Err(failure)) => (Status::FAILED, failure),
-        Err(panic) => (Status::PANICKED, panic),
+    let said = |failure: &Failure, status| {
+        // SAFETY: as the caller promises.
+        unsafe { said(error, failure, status) }
     };
+    let code = || match code() {
+        Ok(()) => Status::OK,
+        Err(failure) => said(&failure, Status::FAILED),
+    };
+    contained_or(code, |panic| said(&panic, Status::PANICKED), |status| status)
+}
+
+/// # Safety
+/// The sink's owner waits for this call.
+#[cold]
+unsafe fn said(error: Sink, failure: &Failure, status: Status) -> Status {
     // SAFETY: as the caller promises.
     unsafe { error.put(failure.message().as_bytes()) };
     status

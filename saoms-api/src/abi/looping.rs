@@ -165,7 +165,7 @@ impl Exported {
                     known
                 }
             };
-            desk.with(&*host, takes_in, |context| code(&mut **instance, snapshot, known, context))?
+            desk.with(&*host, takes_in, |context| code(&mut **instance, snapshot, known, context))
         }
     }
 
