@@ -11,7 +11,7 @@ use saoms_core::source::Sources;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::plugins::registry;
+use crate::plugins::{open_libraries, registry};
 
 /// The outcome of loading and checking.
 pub(crate) struct Checked {
@@ -27,7 +27,7 @@ pub(crate) struct Checked {
 /// # Errors
 /// A plugin cannot be used, which was told.
 pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Result<Checked, Exit> {
-    let registry = registry(&arguments.plugins, &arguments.files)?;
+    let mut registry = registry(&arguments.plugins, &arguments.files)?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
     let settings = arguments.settings.iter();
@@ -44,6 +44,7 @@ pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Resul
     }
     let mut contribution = Contribution::of(composites);
     load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
+    open_libraries(&arguments.plugins, &arguments.files, &mut contribution, &sources, &mut registry);
     let options = Options { settings, assume_classes, ..Options::default() };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
     Ok(Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() })

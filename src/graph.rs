@@ -13,7 +13,7 @@ use saoms_core::source::Sources;
 use crate::Exit;
 use crate::arguments::{GraphArguments, Picture};
 use crate::output::{counted, eprint, try_print};
-use crate::plugins::registry;
+use crate::plugins::{open_libraries, registry};
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
@@ -47,10 +47,12 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         let name = arguments.file.display();
         eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows {errors}\n"));
     }
-    let registry = match registry(&arguments.plugins, std::slice::from_ref(&arguments.file)) {
+    let mut registry = match registry(&arguments.plugins, std::slice::from_ref(&arguments.file)) {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
+    let files = std::slice::from_ref(&arguments.file);
+    open_libraries(&arguments.plugins, files, &mut contribution, &sources, &mut registry);
     let diagram = Diagram::of(&contribution, &registry);
     let text = match picture {
         Picture::Svg => svg(&diagram),

@@ -3,8 +3,10 @@
 use std::env;
 use std::path::PathBuf;
 
-use saoms_core::plugin::Search;
-use saoms_core::registry::Registry;
+use saoms_core::model::Contribution;
+use saoms_core::plugin::{Search, open_named};
+use saoms_core::registry::{Registry, RegistryError};
+use saoms_core::source::Sources;
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
@@ -23,6 +25,38 @@ pub(crate) fn registry(arguments: &PluginArguments, files: &[PathBuf]) -> Result
         eprint(&format!("error: {error}\n"));
         Exit::Failed
     })?;
+    let found = search(arguments, files).run();
+    for error in &found.left_out {
+        eprint(&format!("warning: {error}\n"));
+    }
+    let mut failed = !found.errors.is_empty();
+    for error in &found.errors {
+        eprint(&format!("error: {error}\n"));
+    }
+    for plugin in &found.plugins {
+        if let Err(error) = plugin.register(&mut registry) {
+            eprint(&match error {
+                RegistryError::NameTaken { .. } => format!("error: {error}\n"),
+                _ => format!("error: plugin `{}`: {error}\n", plugin.path().display()),
+            });
+            failed = true;
+        }
+    }
+    if failed { Err(Exit::WrongInput) } else { Ok(registry) }
+}
+
+/// Adds the classes of the libraries that composites name themselves. What is wrong with these the checker says.
+pub(crate) fn open_libraries(
+    arguments: &PluginArguments,
+    files: &[PathBuf],
+    contribution: &mut Contribution,
+    sources: &Sources,
+    registry: &mut Registry,
+) {
+    open_named(contribution, &search(arguments, files), sources, registry);
+}
+
+fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     let path = env::var_os(SEARCH_PATH).unwrap_or_default();
     let mut folders: Vec<PathBuf> =
         env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
@@ -33,19 +67,5 @@ pub(crate) fn registry(arguments: &PluginArguments, files: &[PathBuf]) -> Result
         folders.extend(beside.into_iter().flat_map(|beside| [beside.join("plugins"), beside]));
     }
     folders.push("plugins".into());
-    let found = Search { named: arguments.plugins.clone(), folders }.run();
-    for error in &found.left_out {
-        eprint(&format!("warning: {error}\n"));
-    }
-    let mut failed = !found.errors.is_empty();
-    for error in &found.errors {
-        eprint(&format!("error: {error}\n"));
-    }
-    for plugin in &found.plugins {
-        if let Err(error) = plugin.register(&mut registry) {
-            eprint(&format!("error: plugin `{}`: {error}\n", plugin.path().display()));
-            failed = true;
-        }
-    }
-    if failed { Err(Exit::WrongInput) } else { Ok(registry) }
+    Search { named: arguments.plugins.clone(), folders }
 }

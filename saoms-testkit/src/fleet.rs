@@ -8,6 +8,7 @@ use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, human};
 use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
 use saoms_core::model::Contribution;
+use saoms_core::plugin::{Search, open_named};
 use saoms_core::registry::Registry;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Events, Settings};
@@ -111,7 +112,7 @@ impl Fleet {
 
     #[expect(clippy::panic, reason = "two linked classes of one name are a fault of the test's own build")]
     fn checked(&self) -> (Option<Assembly>, Sources, Vec<Diagnostic>, Contribution) {
-        let registry = Registry::linked().unwrap_or_else(|error| panic!("{error}"));
+        let mut registry = Registry::linked().unwrap_or_else(|error| panic!("{error}"));
         let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
         let mut settings = Vec::new();
         for setting in &self.settings {
@@ -132,6 +133,7 @@ impl Fleet {
         }
         let mut contribution = Contribution::of(composites);
         load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
+        open_named(&mut contribution, &Search::default(), &sources, &mut registry);
         let options = Options::with_settings(settings);
         let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
         (assembly, sources, diagnostics.into_sorted(), contribution)

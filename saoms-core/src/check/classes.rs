@@ -6,12 +6,15 @@ use std::sync::Arc;
 use super::fleet::{Fleet, Kind};
 use super::report::{Report, escaped, list, replacing};
 use super::slots::Slots;
-use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Component, ImplementationKind, Part};
+use crate::diagnostic::{Diagnostic, codes, nearest_few, quoted};
+use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
     Class, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration, TopicDeclaration,
 };
 use crate::source::Text;
+
+/// How many names are offered in place of one that a library does not have.
+const OFFERED: usize = 3;
 
 /// A class of the fleet, with its declaration at hand; where components of it have loops, together with these.
 pub(super) struct ClassIndex<'r> {
@@ -64,6 +67,7 @@ impl<'r> ClassIndex<'r> {
 /// Finds the class of every component; the classes that occur.
 pub(super) fn resolve<'r>(
     fleet: &mut Fleet<'_>,
+    contribution: &Contribution,
     registry: &'r Registry,
     assume_classes: bool,
     report: &mut Report<'_>,
@@ -80,6 +84,12 @@ pub(super) fn resolve<'r>(
             }
             continue;
         };
+        if !is_in_library(component, class, contribution, registry, assume_classes, report) {
+            if assume_classes {
+                fleet.members[place].kind = Kind::Given;
+            }
+            continue;
+        }
         let index = match known.get(class.as_str()) {
             Some(&index) => index,
             None => match registry.get(class) {
@@ -117,20 +127,7 @@ fn runnable<'a>(component: &'a Component, assume_classes: bool, report: &mut Rep
         return None;
     };
     match &implementation.kind {
-        ImplementationKind::Java { class } => class.as_ref(),
-        ImplementationKind::Rust { class, library } => {
-            if let Some(library) = library
-                && !assume_classes
-            {
-                let message = "classes from plugins are not supported yet: `library` names one";
-                report.push(
-                    Diagnostic::new(&codes::NOT_SUPPORTED_YET, library.location, message)
-                        .help("leave `library` out where the class is linked into the program"),
-                );
-                return None;
-            }
-            class.as_ref()
-        }
+        ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
         // Unfolded already.
         ImplementationKind::Composite { .. } => None,
         ImplementationKind::Other { .. } if assume_classes => None,
@@ -150,6 +147,57 @@ fn given(component: &Component) -> Kind {
         Some(ImplementationKind::Composite { .. }) => Kind::Nothing,
         _ => Kind::Given,
     }
+}
+
+/// Whether the class is in the library that is to have it, where one is named.
+fn is_in_library(
+    component: &Component,
+    class: &Text,
+    contribution: &Contribution,
+    registry: &Registry,
+    assume_classes: bool,
+    report: &mut Report<'_>,
+) -> bool {
+    let Some(implementation) = &component.implementation else { return true };
+    let ImplementationKind::Rust { library: Some(library), .. } = &implementation.kind else { return true };
+    let wrong = |message: String| Diagnostic::new(&codes::LIBRARY, library.location, message);
+    let found = match contribution.library(implementation.origin) {
+        Some(LibraryLink::To(path)) => {
+            let has = registry.get(class);
+            if has.is_some_and(|has| has.origin() == Some(path)) {
+                return true;
+            }
+            let file = quoted(&path.display().to_string());
+            let mut one = wrong(format!("the library {file} has no class {}", quoted(class)));
+            let own: Vec<&str> = registry.of(path).collect();
+            for meant in nearest_few(class, own.iter().copied(), OFFERED) {
+                one = one.suggest(replacing(class, meant), class.location, escaped(meant));
+            }
+            one = one.help(match own.len() {
+                0 => "it has no class of components".to_owned(),
+                _ => format!("it has {}", list(own.into_iter())),
+            });
+            match has.map(|has| has.origin()) {
+                None => one,
+                Some(None) => one.help("the class is linked into this program: leave `library` out"),
+                Some(Some(other)) => {
+                    one.help(format!("the class is in {}", quoted(&other.display().to_string())))
+                }
+            }
+        }
+        Some(LibraryLink::Faulty(message)) => wrong(message.clone()),
+        Some(LibraryLink::Missing(looked)) => {
+            let one = wrong(format!("there is no library {}", quoted(library)));
+            let looked: Vec<String> = looked.iter().map(|path| path.display().to_string()).collect();
+            one.help(format!("looked for {}", list(looked.iter().map(String::as_str))))
+                .help("name a file from the folder of the composite, or give its folder with `--plugin`")
+        }
+        None => wrong(format!("the library {} was not looked for", quoted(library))),
+    };
+    if !assume_classes {
+        report.push(found);
+    }
+    false
 }
 
 fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {

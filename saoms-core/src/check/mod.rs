@@ -86,7 +86,7 @@ pub fn check(
     report.assumes = options.assume_classes;
     let mut fleet = unfold::unfold(contribution, options.assume_classes, report);
     let mut parameters = Parameters::of(&fleet, &options.settings, report);
-    let mut classes = classes::resolve(&mut fleet, registry, options.assume_classes, report);
+    let mut classes = classes::resolve(&mut fleet, contribution, registry, options.assume_classes, report);
     let checked = properties(&fleet, &classes, &mut parameters, report);
     let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
@@ -104,7 +104,9 @@ pub fn check(
             resolved.loops.iter().for_each(|one| construct::looping(one, without, report));
         }
     }
-    rules::check(&fleet, &classes, &resolved, &wiring, registry.rules(), report);
+    let rules =
+        registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
+    rules::check(&fleet, &classes, &resolved, &wiring, rules, report);
     if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
 }
 

@@ -17,7 +17,7 @@ pub(super) fn check<'s>(
     classes: &'s [ClassIndex<'_>],
     resolved: &'s [Option<Resolved<'_>>],
     wiring: &Wiring,
-    rules: &[Rule],
+    rules: impl Iterator<Item = &'s Rule>,
     report: &mut Report<'_>,
 ) {
     // Components that composites implement are not there in a run.
@@ -70,7 +70,7 @@ pub(super) fn check<'s>(
         })
         .collect();
     let view = FleetView::new(&views).without(&missing);
-    for rule in rules.iter().filter(|rule| rule.judges_parts() || missing.is_empty()) {
+    for rule in rules.filter(|rule| rule.judges_parts() || missing.is_empty()) {
         let findings = match rule.check(&view) {
             Ok(findings) => findings,
             Err(failure) => {

@@ -124,6 +124,7 @@ codes! {
     VALUE_IN_TWO_WAYS = "S3012" Error "value-in-two-ways" ("ASM50033"): "A property is given a value in two ways at once.";
     NOT_UNIQUE = "S3013" Error "not-unique": "Two components share a value that each needs for itself.";
     CONSTRUCTION = "S3014" Error "construction": "The values of a component do not fit together, as its class sees it.";
+    LIBRARY = "S3015" Error "library": "The library that an implementation names is not found, cannot be used, or has no such class.";
     // S40: tasks and topics.
     TASK_ID_SHARED = "S4001" Warning "task-id-shared": "Two tasks have one ID.";
     TOPIC_RENAME = "S4002" Error "topic-rename": "A `topicRename` is malformed or contradicts itself.";

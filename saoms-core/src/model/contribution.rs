@@ -1,6 +1,7 @@
 //! Composites together with all that they name.
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 
 use super::{Component, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Version};
 use crate::source::{FileId, Text};
@@ -17,6 +18,7 @@ pub struct Contribution {
     /// How many there were at first; the others were found by their names.
     given: usize,
     links: HashMap<(FileId, ElementId), Link>,
+    libraries: HashMap<(FileId, ElementId), LibraryLink>,
     component_types: Vec<ComponentType>,
     /// By the element of the implementation; `None` for one that was looked for and is not there.
     described: HashMap<(FileId, ElementId), Option<usize>>,
@@ -31,6 +33,17 @@ pub enum Link {
     Faulty,
     /// Nowhere.
     Missing(Missing),
+}
+
+/// Where the `library` of an implementation leads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LibraryLink {
+    /// To this file, whose classes are in the registry.
+    To(PathBuf),
+    /// To a file that is no plugin, or cannot be used: what is wrong with it.
+    Faulty(String),
+    /// Nowhere: the files that it would have been.
+    Missing(Vec<PathBuf>),
 }
 
 /// What is known about a composite that was not found.
@@ -140,6 +153,15 @@ impl Contribution {
     /// Where the name at an element leads; `None` where nobody looked.
     pub fn link(&self, origin: Origin) -> Option<&Link> {
         self.links.get(&(origin.file(), origin.element))
+    }
+
+    /// Where the `library` of an implementation leads; `None` where nobody looked.
+    pub fn library(&self, implementation: Origin) -> Option<&LibraryLink> {
+        self.libraries.get(&(implementation.file(), implementation.element))
+    }
+
+    pub(crate) fn set_library(&mut self, implementation: Origin, link: LibraryLink) {
+        self.libraries.insert((implementation.file(), implementation.element), link);
     }
 
     /// What a file beside an implementation says about it.

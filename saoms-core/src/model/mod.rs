@@ -23,7 +23,7 @@ pub use composite::{Composite, Include, Wire};
 pub use contract::{
     Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
 };
-pub use contribution::{Contribution, Link, Missing, Naming};
+pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
 pub use looping::Loop;
 pub use origin::{Origin, Part};
 pub use policy::Policy;

@@ -7,6 +7,7 @@ mod error;
 mod file;
 mod library;
 mod metadata;
+mod named;
 mod search;
 
 use std::path::{Path, PathBuf};
@@ -17,6 +18,7 @@ use saoms_api::{DynComponent, DynLoop, Failure, Finding, FleetView, PropertyValu
 
 pub use error::PluginError;
 pub use metadata::Metadata;
+pub use named::open_named;
 pub use search::{Found, Search};
 
 use crate::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};
@@ -60,23 +62,26 @@ impl Plugin {
         &self.metadata
     }
 
-    /// Adds its loops, classes and rules to a registry.
+    /// Adds its loops, classes and rules to a registry, all of them or, after an error, none.
     ///
     /// # Errors
     /// As [`Registry::add_loop`], [`Registry::add`] and [`Registry::add_rule`].
     pub fn register(self: &Arc<Plugin>, registry: &mut Registry) -> Result<(), RegistryError> {
+        // All or nothing.
+        let mut all = registry.clone();
         for (place, declaration) in self.metadata.loops.iter().enumerate() {
             let provider = Part { plugin: Arc::clone(self), place };
-            registry.add_loop_provided(declaration.get(), Arc::new(provider))?;
+            all.add_loop_provided(declaration.get(), Arc::new(provider))?;
         }
         for (place, declaration) in self.metadata.classes.iter().enumerate() {
             let provider = Part { plugin: Arc::clone(self), place };
-            registry.add_provided(declaration.get(), Arc::new(provider))?;
+            all.add_provided(declaration.get(), Arc::new(provider))?;
         }
         for (place, rule) in self.metadata.rules.iter().enumerate() {
             let provider = Part { plugin: Arc::clone(self), place };
-            registry.add_rule_provided(rule.code, rule.judges_parts, Arc::new(provider))?;
+            all.add_rule_provided(rule.code, rule.judges_parts, Arc::new(provider))?;
         }
+        *registry = all;
         Ok(())
     }
 

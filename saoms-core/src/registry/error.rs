@@ -1,6 +1,7 @@
 //! What a registry refuses.
 
 use std::fmt;
+use std::path::{Path, PathBuf};
 
 /// Why a class cannot be registered. The fault is the program's or the plugin's, not that of a composite.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,7 +13,7 @@ pub enum RegistryError {
         /// What is wrong.
         message: String,
     },
-    /// The declaration of a loop is no JSON of the right shape, contradicts itself, or its name is taken.
+    /// The declaration of a loop is no JSON of the right shape, or contradicts itself.
     MalformedLoop {
         /// The loop, or the start of the declaration where it has no readable name.
         name: String,
@@ -26,22 +27,37 @@ pub enum RegistryError {
         /// The version of the declaration.
         found: u32,
     },
-    /// A rule has the code of another one.
-    CodeTaken {
-        /// The code.
-        code: &'static str,
-        /// The name of the rule.
-        rule: &'static str,
-    },
-    /// A name stands for another class already.
+    /// A name, or the code of a rule, stands for something else already.
     NameTaken {
         /// The name.
         name: String,
-        /// The class that has it.
-        first: String,
-        /// The class that was to get it.
-        second: String,
+        /// What has it.
+        first: Holder,
+        /// What was to get it.
+        second: Holder,
     },
+}
+
+/// What a name stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Holder {
+    /// As "class `a.Eye`".
+    pub what: String,
+    /// The library that it comes from; `None` for what is linked into the program.
+    pub origin: Option<PathBuf>,
+}
+
+impl Holder {
+    pub(super) fn new(kind: &str, name: &str, origin: Option<&Path>) -> Holder {
+        Holder { what: format!("{kind} `{name}`"), origin: origin.map(Path::to_owned) }
+    }
+
+    fn place(&self) -> String {
+        match &self.origin {
+            Some(path) => format!("in plugin `{}`", path.display()),
+            None => "in this program".to_owned(),
+        }
+    }
 }
 
 /// The version of the contract that this registry reads.
@@ -60,14 +76,20 @@ impl fmt::Display for RegistryError {
                 out,
                 "class `{class}` was built for contract {found}, this program has contract {CONTRACT}: build both from one version"
             ),
-            Self::CodeTaken { code, rule } => {
-                write!(out, "the code {code} of rule `{rule}` stands for another diagnostic already")
-            }
-            Self::NameTaken { name, first, second } if first == second => {
-                write!(out, "class `{name}` is registered twice")
-            }
             Self::NameTaken { name, first, second } => {
-                write!(out, "the class name `{name}` of class `{second}` stands for class `{first}` already")
+                let what = match (&first.what, &second.what) {
+                    (first, second) if first == second => format!("{first} is there twice"),
+                    (first, second) => format!("the name `{name}` stands for {first} and for {second}"),
+                };
+                match (&first.origin, &second.origin) {
+                    (None, None) => out.write_str(&what),
+                    _ => write!(
+                        out,
+                        "{what}: {} and {}; use one of them, or rename one",
+                        first.place(),
+                        second.place()
+                    ),
+                }
             }
         }
     }

@@ -16,6 +16,7 @@ mod tests;
 mod validate;
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use saoms_api::{Code, FleetRule, LoopRegistration, Registration};
@@ -25,7 +26,7 @@ pub use declaration::{
     Alias, ClassDeclaration, ClassKind, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
     ServiceDeclaration, TopicDeclaration,
 };
-pub use error::RegistryError;
+pub use error::{Holder, RegistryError};
 pub use looping::{
     DefaultLoops, EntryDeclaration, KnowledgeDeclaration, LoopClass, LoopDeclaration, LoopProvider,
 };
@@ -111,12 +112,22 @@ impl Registry {
         judges_parts: bool,
         provider: Arc<dyn RuleProvider>,
     ) -> Result<(), RegistryError> {
-        let of_checker = codes::ALL.iter().any(|known| known.id == code.id);
-        match self.rules.binary_search_by_key(&code.id, |known| known.code.id) {
-            Err(place) if !of_checker => self.rules.insert(place, Rule { code, judges_parts, provider }),
-            _ => return Err(RegistryError::CodeTaken { code: code.id, rule: code.name }),
+        let rule = Rule { code, judges_parts, provider };
+        let taken = |known: &Code, origin| RegistryError::NameTaken {
+            name: code.id.to_owned(),
+            first: Holder::new("rule", known.name, origin),
+            second: Holder::new("rule", code.name, rule.origin()),
+        };
+        if let Some(known) = codes::ALL.iter().find(|known| known.id == code.id) {
+            return Err(taken(known, None));
         }
-        Ok(())
+        match self.rules.binary_search_by_key(&code.id, |known| known.code.id) {
+            Ok(place) => Err(taken(self.rules[place].code, self.rules[place].origin())),
+            Err(place) => {
+                self.rules.insert(place, rule);
+                Ok(())
+            }
+        }
     }
 
     /// The rules over whole fleets, by their codes.
@@ -156,15 +167,15 @@ impl Registry {
         declaration: &str,
         provider: Arc<dyn LoopProvider>,
     ) -> Result<(), RegistryError> {
-        if self.loops.values().any(|known| &*known.text == declaration) {
+        let same = |known: &&Arc<LoopClass>| &*known.text == declaration;
+        if self.loops.values().find(same).is_some_and(|same| same.origin() == provider.origin()) {
             return Ok(());
         }
         let added = read::looping(declaration, provider)?;
         let name = added.name();
-        if self.classes.contains_key(name) || self.loops.contains_key(name) {
-            let kind = if self.classes.contains_key(name) { "a class" } else { "another loop" };
-            let message = format!("{kind} has this name already");
-            return Err(RegistryError::MalformedLoop { name: name.to_owned(), message });
+        if let Some(first) = self.holder(name) {
+            let second = Holder::new("loop", name, added.origin());
+            return Err(RegistryError::NameTaken { name: name.to_owned(), first, second });
         }
         self.loops.insert(name.to_owned(), Arc::new(added));
         Ok(())
@@ -181,25 +192,38 @@ impl Registry {
     ) -> Result<(), RegistryError> {
         let classes = read::class(declaration, &provider)?;
         for (place, class) in classes.iter().enumerate() {
-            let taken = self.classes.get(&class.name).map(|other| &other.declaration.name);
+            let holder = |class: &Class| Holder::new("class", &class.declaration.name, class.origin());
             let again = classes[..place].iter().find(|other| other.name == class.name);
-            if let Some(first) = taken.or(again.map(|other| &other.declaration.name)) {
-                return Err(RegistryError::NameTaken {
-                    name: class.name.clone(),
-                    first: first.clone(),
-                    second: class.declaration.name.clone(),
-                });
+            if let Some(first) = self.holder(&class.name).or(again.map(holder)) {
+                let (name, second) = (class.name.clone(), holder(class));
+                return Err(RegistryError::NameTaken { name, first, second });
             }
         }
         for class in &classes {
             let refuse = |message| RegistryError::Malformed { class: class.name.clone(), message };
-            if self.loops.contains_key(&class.name) {
-                return Err(refuse("a loop has this name already".to_owned()));
-            }
             self.check_loops(&class.declaration).map_err(refuse)?;
         }
         self.classes.extend(classes.into_iter().map(|class| (class.name.clone(), Arc::new(class))));
         Ok(())
+    }
+
+    /// What a name stands for.
+    fn holder(&self, name: &str) -> Option<Holder> {
+        let class = self.classes.get(name);
+        let class = class.map(|class| Holder::new("class", &class.declaration.name, class.origin()));
+        class.or_else(|| self.loops.get(name).map(|one| Holder::new("loop", name, one.origin())))
+    }
+
+    /// The libraries of classes, loops and rules, some of them several times.
+    pub fn origins(&self) -> impl Iterator<Item = &Path> {
+        let classes = self.classes.values().filter_map(|class| class.origin());
+        let loops = self.loops.values().filter_map(|one| one.origin());
+        classes.chain(loops).chain(self.rules.iter().filter_map(Rule::origin))
+    }
+
+    /// The names of the classes of a library.
+    pub fn of(&self, library: &Path) -> impl Iterator<Item = &str> {
+        self.classes.values().filter(move |class| class.origin() == Some(library)).map(|class| class.name())
     }
 
     /// The class of this name.

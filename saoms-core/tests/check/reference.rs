@@ -12,6 +12,7 @@ use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
 use saoms_core::load::{MAX_SIZE, load, load_file, load_named, read};
 use saoms_core::model::Contribution;
+use saoms_core::plugin::{Search, open_named};
 use saoms_core::source::Sources;
 
 use crate::classes::registry;
@@ -158,8 +159,10 @@ fn checked(files: &[(String, String)], asked_for: usize, settings: &[&str]) -> (
     let load = |file| load_file(file, &sources, &mut diagnostics);
     let mut composites: Vec<_> = files.into_iter().filter_map(load).collect();
     let others = composites.split_off(asked_for.min(composites.len()));
-    let fleet = Contribution::with(composites, others);
-    check(&fleet, &registry(), &Options::with_settings(settings), &sources, &mut diagnostics);
+    let mut fleet = Contribution::with(composites, others);
+    let mut registry = registry();
+    open_named(&mut fleet, &Search::default(), &sources, &mut registry);
+    check(&fleet, &registry, &Options::with_settings(settings), &sources, &mut diagnostics);
     (diagnostics.into_sorted(), sources)
 }
 

@@ -1,0 +1,98 @@
+//! The libraries that composites name.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{Plugin, Search};
+use crate::model::{Contribution, ImplementationKind, LibraryLink, Origin};
+use crate::registry::Registry;
+use crate::source::{Sources, identity};
+
+/// Looks for the libraries that implementations name with `library`, and adds what they offer to a registry; nothing in them runs.
+///
+/// A name is a path relative to the folder of its composite, or to a place of the search; `lib` before the name and `.so` behind it may be left
+/// out. What is wrong is for the checker to say.
+pub fn open_named(
+    contribution: &mut Contribution,
+    search: &Search,
+    sources: &Sources,
+    registry: &mut Registry,
+) {
+    let mut wanted: Vec<(Origin, PathBuf, String)> = Vec::new();
+    for composite in contribution.composites() {
+        let folder = Path::new(sources.get(composite.file()).path()).parent().unwrap_or(Path::new(""));
+        for implementation in composite.components.iter().filter_map(|one| one.implementation.as_ref()) {
+            if let ImplementationKind::Rust { library: Some(library), .. } = &implementation.kind {
+                wanted.push((implementation.origin, folder.to_owned(), library.as_str().trim().to_owned()));
+            }
+        }
+    }
+    for (origin, folder, name) in wanted {
+        let link = match search.find(&folder, &name) {
+            Err(looked) => LibraryLink::Missing(looked),
+            Ok(path) => match registered(&path, registry) {
+                Ok(path) => LibraryLink::To(path),
+                Err(message) => LibraryLink::Faulty(message),
+            },
+        };
+        contribution.set_library(origin, link);
+    }
+}
+
+/// The path by which a library is registered, which is done now unless it is already.
+fn registered(path: &Path, registry: &mut Registry) -> Result<PathBuf, String> {
+    let same = identity(path);
+    if let Some(known) = registry.origins().find(|known| identity(known) == same) {
+        return Ok(known.to_owned());
+    }
+    let plugin = Plugin::open(path).map_err(|error| error.to_string())?;
+    plugin.register(registry).map_err(|error| error.to_string())?;
+    Ok(path.to_owned())
+}
+
+impl Search {
+    /// The library of this name: relative to the folder, or to a place of the search.
+    ///
+    /// # Errors
+    /// The files that it would have been, where none is there.
+    pub fn find(&self, folder: &Path, name: &str) -> Result<PathBuf, Vec<PathBuf>> {
+        let names = files(name);
+        let mut looked = Vec::new();
+        let beside = names.iter().map(|name| folder.join(name));
+        let named = self.named.iter().flat_map(|place| {
+            // A library that was named itself has the name, or has not.
+            let is_meant = |name: &PathBuf| place.file_name() == name.file_name();
+            match place.is_dir() {
+                true => names.iter().map(|name| place.join(name)).collect(),
+                false if names.iter().any(is_meant) => vec![place.clone()],
+                false => Vec::new(),
+            }
+        });
+        let folders = self.folders.iter().flat_map(|folder| names.iter().map(|name| folder.join(name)));
+        for path in beside.chain(named).chain(folders) {
+            if fs::metadata(&path).is_ok_and(|found| found.is_file()) {
+                return Ok(path);
+            }
+            if !looked.contains(&path) {
+                looked.push(path);
+            }
+        }
+        Err(looked)
+    }
+}
+
+/// The files that a name can mean, the likeliest first.
+fn files(name: &str) -> Vec<PathBuf> {
+    let path = Path::new(name);
+    let Some(last) = path.file_name().and_then(|last| last.to_str()) else { return Vec::new() };
+    let stem = last.strip_suffix(".so").unwrap_or(last);
+    let mut all = vec![path.with_file_name(format!("{stem}.so"))];
+    if !stem.starts_with("lib") {
+        // A package `my-robot` is built as `libmy_robot.so`.
+        all.insert(
+            usize::from(last.ends_with(".so")),
+            path.with_file_name(format!("lib{}.so", stem.replace('-', "_"))),
+        );
+    }
+    all
+}
