@@ -8,10 +8,15 @@ use super::{
     Bytes, ComponentTable, FindingSink, LoopClassTable, PropertyView, RuleTable, Sink, Status, VERSION,
 };
 
-/// Makes a component or a loop from the values that the composite gives: a list and its length, where it goes, where findings and an error
-/// go.
-pub type Construct =
-    unsafe extern "C" fn(*const PropertyView, usize, *mut *mut c_void, FindingSink, Sink) -> Status;
+/// Makes a component or a loop from the values that the composite gives, which it may refuse with findings. The checker makes components that
+/// never run, so it does no work, opens nothing and sends nothing.
+pub type Construct = unsafe extern "C" fn(
+    values: *const PropertyView,
+    value_count: usize,
+    made: *mut *mut c_void,
+    findings: FindingSink,
+    error: Sink,
+) -> Status;
 
 /// A class: how to make components of it, and their functions.
 #[repr(C)]
@@ -61,7 +66,7 @@ unsafe extern "C" fn construct<C: Class>(
 pub struct PluginTable {
     /// The size of this table in bytes.
     pub size: usize,
-    /// [`VERSION`] of the library.
+    /// The version of the boundary that the library was built with.
     pub version: u32,
     /// The metadata, as it also lies in its own section of the library.
     pub metadata: Bytes,

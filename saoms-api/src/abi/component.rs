@@ -9,20 +9,36 @@ use super::link::Link;
 use super::service::BytesCall;
 use super::{Bytes, HostHandle, Sink, Status};
 
-/// The functions of the components of a class. [`Component`](crate::Component) says when each is called.
+/// The functions of the components of a class. The first argument of each is the component.
+///
+/// They are called from one thread at a time and never twice at once. One that answers something else than `OK` has failed, with the text
+/// that it put into `error`; the component's `restart` policy decides then.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "named as the functions of `Component`, which says what they mean")]
 pub struct ComponentTable {
     /// The size of this table in bytes.
     pub size: usize,
-    pub initialize: unsafe extern "C" fn(*mut c_void, *const HostHandle, Sink) -> Status,
-    pub execute: unsafe extern "C" fn(*mut c_void, *const HostHandle, Sink) -> Status,
-    pub shutdown: unsafe extern "C" fn(*mut c_void, *const HostHandle, Sink) -> Status,
-    /// Serves a call: the service's name, the operation, the arguments, where the reply and an error go.
-    pub serve: unsafe extern "C" fn(*mut c_void, *const HostHandle, Bytes, u32, Bytes, Sink, Sink) -> Status,
+    /// Asks for topics and references. Called once, when the component is scheduled.
+    pub initialize:
+        unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
+    /// Does the work of one period, with what arrived since the last one. Never called for a passive component. It must not wait for
+    /// anything.
+    pub execute: unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
+    /// Ends the work; what it sends still leaves. Called once, when the component is unscheduled or the run ends.
+    pub shutdown:
+        unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
+    /// Serves a call of one of the services that the class declares: the number of the operation, arguments and reply in their CDR form.
+    pub serve: unsafe extern "C" fn(
+        component: *mut c_void,
+        host: *const HostHandle,
+        service: Bytes,
+        operation: u32,
+        arguments: Bytes,
+        reply: Sink,
+        error: Sink,
+    ) -> Status,
     /// Frees the component.
-    pub destroy: unsafe extern "C" fn(*mut c_void),
+    pub destroy: unsafe extern "C" fn(component: *mut c_void),
 }
 
 /// A component of this side as the other one holds it, behind a pointer.

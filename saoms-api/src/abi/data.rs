@@ -149,7 +149,7 @@ impl Sink {
     }
 }
 
-/// How a call went. Every value that is not [`OK`](Status::OK) comes with a text in the call's sink for errors.
+/// How a call went. Every value that is not `OK` comes with a text in the call's sink for errors.
 #[repr(transparent)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status(pub u32);

@@ -31,28 +31,29 @@ pub struct EntryView {
     pub effector: u32,
 }
 
-/// The functions of entries. An entry is known by its place.
+/// The functions of entries. The first argument of each is the `state` of their handle. An entry is known by its place.
 #[repr(C)]
 #[derive(Debug)]
 pub struct EntriesFunctions {
     /// The size of this table in bytes.
     pub size: usize,
     /// What is declared of them, as JSON; empty for entries of a loop.
-    pub declaration: unsafe extern "C" fn(*mut c_void) -> Bytes,
+    pub declaration: unsafe extern "C" fn(state: *mut c_void) -> Bytes,
     /// How many there are.
-    pub count: unsafe extern "C" fn(*mut c_void) -> u32,
+    pub count: unsafe extern "C" fn(state: *mut c_void) -> u32,
     /// What is declared of one that is there.
-    pub describe: unsafe extern "C" fn(*mut c_void, u32, *mut EntryView),
+    pub describe: unsafe extern "C" fn(state: *mut c_void, entry: u32, view: *mut EntryView),
     /// Gives the value of one; 0 where it is no single value.
-    pub get: unsafe extern "C" fn(*mut c_void, u32, *mut ValueView) -> u32,
+    pub get: unsafe extern "C" fn(state: *mut c_void, entry: u32, value: *mut ValueView) -> u32,
     /// Sets it.
-    pub set: unsafe extern "C" fn(*mut c_void, u32, *const ValueView, Sink) -> Status,
+    pub set:
+        unsafe extern "C" fn(state: *mut c_void, entry: u32, value: *const ValueView, error: Sink) -> Status,
     /// Gives the CDR form of one.
-    pub get_bytes: unsafe extern "C" fn(*mut c_void, u32, Sink, Sink) -> Status,
+    pub get_bytes: unsafe extern "C" fn(state: *mut c_void, entry: u32, bytes: Sink, error: Sink) -> Status,
     /// Sets it from that.
-    pub set_bytes: unsafe extern "C" fn(*mut c_void, u32, Bytes, Sink) -> Status,
+    pub set_bytes: unsafe extern "C" fn(state: *mut c_void, entry: u32, bytes: Bytes, error: Sink) -> Status,
     /// Frees entries that were given away; does nothing for those that are lent.
-    pub destroy: unsafe extern "C" fn(*mut c_void),
+    pub destroy: unsafe extern "C" fn(state: *mut c_void),
 }
 
 /// Gives entries away.

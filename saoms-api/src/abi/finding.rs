@@ -35,7 +35,7 @@ pub struct LabelView {
     pub text: Bytes,
 }
 
-/// Something that is wrong with what a composite says; see [`Finding`].
+/// Something that is wrong with what a composite says.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FindingView {

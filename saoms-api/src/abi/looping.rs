@@ -16,8 +16,13 @@ use super::import;
 use super::lease::Lent;
 use super::{Bytes, EntriesHandle, FindingSink, HostHandle, PropertyView, Sink, Status};
 
-/// A function of a loop: the loop, its component's knowledge, the host, where an error goes.
-type Step = unsafe extern "C" fn(*mut c_void, *const EntriesHandle, *const HostHandle, Sink) -> Status;
+/// A function of a loop, with its component's knowledge.
+pub type Step = unsafe extern "C" fn(
+    looping: *mut c_void,
+    knowledge: *const EntriesHandle,
+    host: *const HostHandle,
+    error: Sink,
+) -> Status;
 
 /// A loop class: how to make loops of it, and their functions.
 #[repr(C)]
@@ -31,24 +36,26 @@ pub struct LoopClassTable {
     pub looping: *const LoopTable,
 }
 
-/// The functions of a loop. [`Loop`](crate::Loop) says when each is called.
+/// The functions of a loop. The first argument of each is the loop.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "named as the functions of `Loop`, which says what they mean")]
 pub struct LoopTable {
     /// The size of this table in bytes.
     pub size: usize,
     /// The name of an entry that it changes, by its number from 0; empty behind the last. It stays as long as the program runs.
-    pub effect: unsafe extern "C" fn(*mut c_void, u32) -> Bytes,
+    pub effect: unsafe extern "C" fn(looping: *mut c_void, number: u32) -> Bytes,
     /// The entries that it adds to the knowledge; 0 where there are none.
-    pub entries: unsafe extern "C" fn(*mut c_void, *mut EntriesHandle) -> u32,
+    pub entries: unsafe extern "C" fn(looping: *mut c_void, given: *mut EntriesHandle) -> u32,
+    /// Asks for topics, references and entries. Called once, after all loops have added their entries.
     pub initialize: Step,
+    /// Takes in what arrived and what is measured. Called in each execution, for all loops before the first one adapts.
     pub monitor: Step,
     /// Analyzes, plans and executes, and writes symptom and decision to the journal. What it changed, the caller sees by itself.
     pub adapt: Step,
+    /// Ends the work.
     pub shutdown: Step,
     /// Frees the loop.
-    pub destroy: unsafe extern "C" fn(*mut c_void),
+    pub destroy: unsafe extern "C" fn(looping: *mut c_void),
 }
 
 /// A loop that is given away, with its functions.

@@ -15,7 +15,7 @@ use super::PluginTable;
 /// | `rules` | its rules over whole fleets: `{"code":"X0001","name":"one-clock","meaning":"...","severity":"warning","rule":null,"judgesParts":true}` |
 pub const SECTION: &str = ".saoms.plugin";
 
-/// The function by which a library gives its table: it takes the [`VERSION`](super::VERSION) of the program.
+/// The function by which a library gives its table: it takes the version of the program's boundary.
 pub type Entry = unsafe extern "C" fn(version: u32) -> *const PluginTable;
 
 /// Offers classes, loops and [rules over whole fleets](crate::FleetRule) in a library, to programs that load it.

@@ -40,7 +40,7 @@ pub use entries::{EntriesFunctions, EntriesHandle, EntryView};
 pub use finding::{FindingSink, FindingView, LabelView, PlaceView};
 pub use host::{HostFunctions, HostHandle, LoopVisitor, TopicView};
 pub use import::{ImportedClass, ImportedComponent};
-pub use looping::{ImportedLoopClass, LoopClassTable, LoopInstance, LoopTable};
+pub use looping::{ImportedLoopClass, LoopClassTable, LoopInstance, LoopTable, Step};
 pub use metadata::{Entry, SECTION};
 pub use report::ReportView;
 pub use rule::{FleetList, ImportedRule, MemberView, RuleTable, TextList, WireView};

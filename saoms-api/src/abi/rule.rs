@@ -8,7 +8,7 @@ use super::guard::guarded;
 use super::lease::call_with_findings;
 use super::{Bytes, FindingSink, PropertyView, Sink, Status};
 
-/// A rule over whole fleets; see [`FleetRule`].
+/// A rule over whole fleets: what the checker finds that no component can see alone.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct RuleTable {
@@ -17,7 +17,12 @@ pub struct RuleTable {
     /// The first argument of `check`.
     pub state: *const c_void,
     /// Puts what it finds in a fleet.
-    pub check: unsafe extern "C" fn(*const c_void, *const FleetList, FindingSink, Sink) -> Status,
+    pub check: unsafe extern "C" fn(
+        state: *const c_void,
+        fleet: *const FleetList,
+        findings: FindingSink,
+        error: Sink,
+    ) -> Status,
 }
 
 /// The components of a fleet.
@@ -45,24 +50,33 @@ pub struct TextList {
     pub count: usize,
 }
 
-/// A component of a fleet; see [`ComponentView`].
+/// A component of a fleet.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "named as the fields of `ComponentView`, which says what they mean")]
 pub struct MemberView {
+    /// Its path in the composite.
     pub path: Bytes,
+    /// The name of its class, as declared.
     pub class: Bytes,
+    /// The declaration of its class.
     pub declaration: Bytes,
+    /// The declarations of the classes that its class extends, the nearest first.
     pub extends: TextList,
+    /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: *const PropertyView,
+    /// How many there are.
     pub value_count: usize,
-    /// In nanoseconds; `UINT64_MAX`: it is not periodic.
+    /// From one execution to the next, in nanoseconds; `UINT64_MAX`: it is not periodic.
     pub period: u64,
-    /// 0 or 1.
+    /// Whether its messages go to a broker, where others may be that this fleet does not know: 0 or 1.
     pub has_broker: u32,
+    /// The topics that it publishes, by their names before any `topicRename`.
     pub publishes: TextList,
+    /// The classes of its loops, in their order.
     pub loops: TextList,
+    /// Its references that are wired.
     pub wires: *const WireView,
+    /// How many there are.
     pub wire_count: usize,
 }
 
