@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 const CORE: &[&str] = &[
     "source",
     "diagnostic",
+    "expression",
     "xml",
     "model",
     "format",

@@ -5,6 +5,7 @@ pub mod assembly;
 pub mod bus;
 pub mod check;
 pub mod diagnostic;
+pub mod expression;
 pub mod format;
 pub mod graph;
 pub mod journal;

@@ -1,0 +1,185 @@
+//! From tokens to an expression.
+
+use std::ops::Range;
+
+use super::token::{Token, tokens};
+use super::{Fault, Problem, Value};
+use crate::diagnostic::quoted;
+
+/// Operators of an expression, and expressions inside each other: what is evaluated by recursion is at most so deep.
+const MOST_DEEP: usize = 200;
+
+/// An expression with its bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Expression {
+    pub(super) at: Range<usize>,
+    pub(super) node: Node,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Node {
+    Value(Value),
+    Name(String),
+    Negative(Box<Expression>),
+    Not(Box<Expression>),
+    Two(Box<Expression>, &'static str, Box<Expression>),
+}
+
+impl Expression {
+    /// The names in it, each with its bytes.
+    pub fn names(&self) -> Vec<(&str, Range<usize>)> {
+        let mut all = Vec::new();
+        let mut open = vec![self];
+        while let Some(one) = open.pop() {
+            match &one.node {
+                Node::Value(_) => {}
+                Node::Name(name) => all.push((name.as_str(), one.at.clone())),
+                Node::Negative(inner) | Node::Not(inner) => open.push(inner),
+                Node::Two(left, _, right) => open.extend([&**right, &**left]),
+            }
+        }
+        all
+    }
+}
+
+/// Reads a text that is one expression.
+///
+/// # Errors
+/// It is none.
+pub fn parse(text: &str) -> Result<Expression, Fault> {
+    let (expression, end) = parse_from(text, 0)?;
+    if end < text.len() {
+        return Err(Problem::new("`:` means nothing here").at(end..end + 1));
+    }
+    Ok(expression)
+}
+
+/// Reads the expression in `text[start..]` up to its end or to a `:`; and where that is.
+pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize), Fault> {
+    let (tokens, end) = tokens(text, start)?;
+    let mut parser = Parser { tokens: &tokens, next: 0, end, depth: 0 };
+    let whole = parser.level(0)?;
+    match tokens.get(parser.next) {
+        None => Ok((whole, end)),
+        Some((token, at)) => {
+            let message = match token {
+                Token::Sign(sign) => format!("{} means nothing here", quoted(sign)),
+                _ => "an operator is expected before this".to_owned(),
+            };
+            Err(Problem::new(message).at(at.clone()))
+        }
+    }
+}
+
+/// The operators from those that bind least; `not` and the sign stand between them.
+const LEVELS: [&[&str]; 5] =
+    [&["or"], &["and"], &["==", "!=", "<", "<=", ">", ">="], &["+", "-"], &["*", "/", "%"]];
+const COMPARISON: usize = 2;
+
+struct Parser<'t> {
+    tokens: &'t [(Token, Range<usize>)],
+    next: usize,
+    end: usize,
+    depth: usize,
+}
+
+impl Parser<'_> {
+    /// What the next token is as an operator or a word.
+    fn sign(&self) -> &str {
+        match self.tokens.get(self.next) {
+            Some((Token::Word(word), _)) => word,
+            Some((Token::Sign(sign), _)) => sign,
+            _ => "",
+        }
+    }
+
+    fn level(&mut self, level: usize) -> Result<Expression, Fault> {
+        let Some(operators) = LEVELS.get(level) else { return self.operand() };
+        if level == COMPARISON && self.sign() == "not" {
+            return self.prefix(level, Node::Not);
+        }
+        let mut left = self.level(level + 1)?;
+        let mut count = 0;
+        while let Some(operator) = operators.iter().copied().find(|one| *one == self.sign()) {
+            count += 1;
+            if level == COMPARISON && count > 1 {
+                let at = self.tokens[self.next].1.clone();
+                let problem = Problem::new("two comparisons in a row");
+                return Err(problem.help("join them with `and`").at(at));
+            }
+            self.next += 1;
+            let right = self.level(level + 1)?;
+            let at = left.at.start..right.at.end;
+            self.deeper(at.clone())?;
+            left = Expression { at, node: Node::Two(Box::new(left), operator, Box::new(right)) };
+        }
+        Ok(left)
+    }
+
+    /// `not` or `-`, and what follows it.
+    fn prefix(&mut self, level: usize, make: fn(Box<Expression>) -> Node) -> Result<Expression, Fault> {
+        let start = self.tokens[self.next].1.clone();
+        self.next += 1;
+        self.deeper(start.clone())?;
+        let inner = self.level(level)?;
+        self.depth -= 1;
+        Ok(Expression { at: start.start..inner.at.end, node: make(Box::new(inner)) })
+    }
+
+    fn deeper(&mut self, at: Range<usize>) -> Result<(), Fault> {
+        self.depth += 1;
+        match self.depth > MOST_DEEP {
+            true => Err(Problem::new("the expression is too long").at(at)),
+            false => Ok(()),
+        }
+    }
+
+    fn operand(&mut self) -> Result<Expression, Fault> {
+        let Some((token, at)) = self.tokens.get(self.next) else {
+            let at = self.tokens.last().map_or(self.end..self.end, |(_, at)| at.clone());
+            let message = if self.tokens.is_empty() {
+                "an expression is expected"
+            } else {
+                "something is missing after this"
+            };
+            return Err(Problem::new(message).at(at));
+        };
+        let node = match token {
+            Token::Integer(number) => Node::Value(Value::Integer(*number)),
+            Token::Text(text) => Node::Value(Value::Text(text.clone())),
+            Token::Word(word) => match word.as_str() {
+                "true" => Node::Value(Value::Boolean(true)),
+                "false" => Node::Value(Value::Boolean(false)),
+                "not" => {
+                    let problem = Problem::new("`not` stands before a comparison");
+                    return Err(problem.help("write `(not ...)`").at(at.clone()));
+                }
+                "and" | "or" => {
+                    return Err(Problem::new(format!("something is missing before `{word}`")).at(at.clone()));
+                }
+                name => Node::Name(name.to_owned()),
+            },
+            Token::Sign("-") => return self.prefix(LEVELS.len(), Node::Negative),
+            Token::Sign("(") => {
+                let open = at.clone();
+                self.next += 1;
+                self.deeper(open.clone())?;
+                let mut inner = self.level(0)?;
+                self.depth -= 1;
+                if self.sign() != ")" {
+                    return Err(Problem::new("`(` is never closed").at(open));
+                }
+                inner.at = open.start..self.tokens[self.next].1.end;
+                self.next += 1;
+                return Ok(inner);
+            }
+            Token::Sign(sign) => {
+                return Err(
+                    Problem::new(format!("something is missing before {}", quoted(sign))).at(at.clone())
+                );
+            }
+        };
+        self.next += 1;
+        Ok(Expression { at: at.clone(), node })
+    }
+}

@@ -1,0 +1,124 @@
+//! Texts with expressions in them: `Robot${index:03}`.
+
+use std::ops::Range;
+
+use super::parse::parse_from;
+use super::{Expression, Fault, Lookup, Problem, integer};
+
+/// The most digits that a number is filled up to.
+const MOST_DIGITS: usize = 18;
+
+enum Piece<'t> {
+    Literal(&'t str),
+    /// An expression and the digits that its number has at least.
+    Expression(Expression, usize),
+}
+
+/// Whether a text has an expression, or something that could be meant as one.
+pub fn has_expression(text: &str) -> bool {
+    text.contains("${")
+}
+
+/// A text with the numbers that its expressions come to. `$${` stands for `${`.
+///
+/// # Errors
+/// Every expression without a value.
+pub fn render(text: &str, lookup: &mut Lookup<'_>) -> Result<String, Vec<Fault>> {
+    let mut out = String::with_capacity(text.len());
+    let mut faults = Vec::new();
+    for piece in pieces(text) {
+        match piece {
+            Ok(Piece::Literal(literal)) => out.push_str(literal),
+            Ok(Piece::Expression(expression, digits)) => match integer(&expression, lookup) {
+                Ok(number) => out.push_str(&format!("{number:0digits$}")),
+                Err(fault) => faults.push(fault),
+            },
+            Err(fault) => faults.push(fault),
+        }
+    }
+    if faults.is_empty() { Ok(out) } else { Err(faults) }
+}
+
+/// A text with `*` for each of its expressions: what a group of replicas is called.
+pub fn pattern(text: &str) -> String {
+    let piece = |piece| match piece {
+        Ok(Piece::Literal(literal)) => literal.to_owned(),
+        Ok(Piece::Expression(..)) | Err(_) => "*".to_owned(),
+    };
+    pieces(text).map(piece).collect()
+}
+
+/// The names in the expressions of a text, as far as these can be read.
+pub fn names(text: &str) -> Vec<String> {
+    let expressions = pieces(text).filter_map(|piece| match piece {
+        Ok(Piece::Expression(expression, _)) => Some(expression),
+        _ => None,
+    });
+    expressions
+        .flat_map(|one| one.names().into_iter().map(|(name, _)| name.to_owned()).collect::<Vec<_>>())
+        .collect()
+}
+
+fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, Fault>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let rest = text.get(at..).filter(|rest| !rest.is_empty())?;
+        if rest.starts_with("$${") {
+            at += 3;
+            return Some(Ok(Piece::Literal("${")));
+        }
+        if !rest.starts_with("${") {
+            let plain = rest.find("${").unwrap_or(rest.len());
+            // The `$` of a `$${` belongs to that.
+            let escaped = rest.find("$${").unwrap_or(rest.len());
+            let end = at + plain.min(escaped).max(1);
+            let literal = &text[at..end];
+            at = end;
+            return Some(Ok(Piece::Literal(literal)));
+        }
+        let start = at;
+        let Some(length) = end_of(&text[start + 2..]) else {
+            at = text.len();
+            let problem = Problem::new("`${` is never closed");
+            return Some(Err(problem.help("write `${...}`, or `$${` for `${` itself").at(start..text.len())));
+        };
+        let end = start + 2 + length;
+        at = end + 1;
+        Some(expression(text, start + 2..end))
+    })
+}
+
+/// Where the `}` is that ends the expression; those in texts do not count.
+fn end_of(inside: &str) -> Option<usize> {
+    let mut quote = None;
+    inside.char_indices().find_map(|(at, character)| {
+        match (quote, character) {
+            (None, '}') => return Some(at),
+            (None, '\'' | '"') => quote = Some(character),
+            (Some(open), _) if open == character => quote = None,
+            _ => {}
+        }
+        None
+    })
+}
+
+fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, Fault> {
+    let upto = &text[..inside.end];
+    let (expression, end) = parse_from(upto, inside.start)?;
+    if end == inside.end {
+        return Ok(Piece::Expression(expression, 0));
+    }
+    let width = &upto[end + 1..];
+    let digits = width.strip_prefix('0').and_then(|digits| digits.parse().ok());
+    match digits {
+        Some(digits @ 1..=MOST_DIGITS) => Ok(Piece::Expression(expression, digits)),
+        _ => {
+            let problem = Problem::new("after `:` the number of digits is expected, with a `0` before it");
+            let plain = width.parse().is_ok_and(|digits: usize| (1..=MOST_DIGITS).contains(&digits));
+            let problem = if plain { problem.instead(format!("0{width}")) } else { problem };
+            Err(problem
+                .help("as in `${index:03}`, which makes 007 of 7")
+                .at(end + 1..inside.end.max(end + 1)))
+        }
+    }
+}

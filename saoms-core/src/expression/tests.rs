@@ -1,0 +1,144 @@
+use proptest::prelude::*;
+
+use super::{Problem, Value, boolean, integer, names, parse, pattern, render};
+
+fn lookup(name: &str) -> Result<Value, Problem> {
+    match name {
+        "index" => Ok(Value::Integer(7)),
+        "robots" => Ok(Value::Integer(40)),
+        "site" => Ok(Value::Text("north".to_owned())),
+        "simulated" => Ok(Value::Boolean(true)),
+        _ => Err(Problem::new(format!("no `{name}`"))),
+    }
+}
+
+/// What an expression comes to, or its fault with the bytes that it is in.
+fn of(text: &str) -> String {
+    let value = parse(text).and_then(|one| match integer(&one, &mut lookup) {
+        Err(fault) if fault.problem.message.contains("a whole number is expected") => {
+            boolean(&one, &mut lookup).map(|value| value.to_string())
+        }
+        number => number.map(|number| number.to_string()),
+    });
+    value.unwrap_or_else(|fault| {
+        let instead = fault.problem.instead.map_or_else(String::new, |instead| format!(" -> {instead}"));
+        format!("[{}] {}{instead}", &text[fault.at], fault.problem.message)
+    })
+}
+
+#[test]
+fn numbers_are_calculated_as_people_do() {
+    for (text, value) in [
+        ("index * 2 + 1", "15"),
+        ("1 + index * 2", "15"),
+        ("2 * (index - 10)", "-6"),
+        ("-index % 11", "4"),
+        ("-7 / 2", "-4"),
+        ("10 - 4 - 3", "3"),
+        ("- -3", "3"),
+        ("9223372036854775807 + 1", "[9223372036854775807 + 1] the number is too large: beyond 64 bits"),
+        ("9223372036854775808", "[9223372036854775808] `9223372036854775808` is too large"),
+        ("1 / (index - 7)", "[(index - 7)] `1` is divided by zero"),
+        ("1.5 * 2", "[1.5] `1.5` is no whole number"),
+        ("", "[] an expression is expected"),
+        ("2 *", "[*] something is missing after this"),
+        ("* 2", "[*] something is missing before `*`"),
+        ("(1 + 2", "[(] `(` is never closed"),
+        ("1 2", "[2] an operator is expected before this"),
+        ("$index", "[$] names stand for themselves here -> "),
+        ("inedx + 1", "[inedx] no `inedx`"),
+        ("site + 1", "[site] here is the text `north`, and a whole number is expected"),
+    ] {
+        assert_eq!(of(text), value, "{text}");
+    }
+}
+
+#[test]
+fn conditions_are_typed() {
+    for (text, value) in [
+        ("robots > 10 and site == 'north'", "true"),
+        ("not simulated or robots <= 40 and true", "true"),
+        ("not (simulated and site != \"south\")", "false"),
+        ("index % 2 == 1", "true"),
+        ("simulated == false", "false"),
+        ("robots == 0 or 100 / robots == 2", "true"),
+        ("robots != 0 and 1 / (robots - 40) > 3", "[(robots - 40)] `1` is divided by zero"),
+        ("robots == 0 and 1 / (robots - 40) > 3", "false"),
+        ("robots == 0 and site > 3", "[site] here is the text `north`, and a whole number is expected"),
+        ("site == 3", "[site == 3] the text `north` cannot be compared with the number 3"),
+        ("robots = 3", "[=] there is no `=` -> =="),
+        ("simulated && true", "[&&] there is no `&&` -> and"),
+        ("1 < robots < 50", "[<] two comparisons in a row"),
+        ("site", "[site] here is the text `north`, and a condition is expected"),
+        ("site == 'north", "['north] a text that does not end"),
+    ] {
+        assert_eq!(of(text), value, "{text}");
+    }
+}
+
+fn rendered(text: &str) -> String {
+    render(text, &mut lookup).unwrap_or_else(|faults| {
+        let shown =
+            faults.iter().map(|fault| format!("[{}] {}", &text[fault.at.clone()], fault.problem.message));
+        shown.collect::<Vec<_>>().join("; ")
+    })
+}
+
+#[test]
+fn texts_get_numbers_in_place_of_expressions() {
+    for (text, value) in [
+        ("Robot${index:03}", "Robot007"),
+        ("at ${index}s luggage (${index % 5},1)", "at 7s luggage (2,1)"),
+        ("${-index:04}", "-007"),
+        ("$${index} costs $5 and $${$${x", "${index} costs $5 and ${${x"),
+        ("$", "$"),
+        ("${index", "[${index] `${` is never closed"),
+        ("${}", "[] an expression is expected"),
+        ("${index:3}", "[3] after `:` the number of digits is expected, with a `0` before it"),
+        (
+            "${index:099}-${nix}",
+            "[099] after `:` the number of digits is expected, with a `0` before it; [nix] no `nix`",
+        ),
+    ] {
+        assert_eq!(rendered(text), value, "{text}");
+    }
+    assert_eq!(pattern("Robot${index:03}-${'}'}$${"), "Robot*-*${");
+    assert_eq!(names("${index * row}"), ["index", "row"]);
+}
+
+#[test]
+fn depth_is_a_fault_and_no_crash() {
+    for text in ["(".repeat(100_000), "-".repeat(100_000), "not ".repeat(100_000), "1+".repeat(100_000)] {
+        assert!(parse(&text).is_err());
+    }
+    let chain = |inner: String| format!("({inner}{})", "+1".repeat(90));
+    assert!(parse(&(0..90).fold("1".to_owned(), |inner, _| chain(inner))).is_err());
+    assert_eq!(of(&format!("{}1{}", "(".repeat(90), ")".repeat(90))), "1");
+    assert_eq!(of(&vec!["1"; 90].join(" + ")), "90");
+}
+
+proptest! {
+    #[test]
+    fn whatever_the_text_there_is_an_answer_in_it(text in "[a-z0-9 ${}:()'\"+*/%<>=!é-]{0,40}") {
+        if let Err(fault) = parse(&text) {
+            prop_assert!(text.get(fault.at).is_some());
+        }
+        for fault in render(&text, &mut lookup).err().unwrap_or_default() {
+            prop_assert!(text.get(fault.at).is_some());
+        }
+        pattern(&text);
+        names(&text);
+    }
+
+    #[test]
+    fn texts_without_expressions_stay(text in "[^$]{0,20}") {
+        prop_assert_eq!(rendered(&text), text);
+    }
+
+    #[test]
+    fn sums_are_those_of_numbers(one in -1000i64..1000, other in 1i64..1000) {
+        let text = format!("({one}) * {other} + ({one}) / {other} - ({one}) % {other}");
+        let value = one * other + one.div_euclid(other) - one.rem_euclid(other);
+        prop_assert_eq!(of(&text), value.to_string());
+    }
+}

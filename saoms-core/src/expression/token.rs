@@ -1,0 +1,85 @@
+//! From text to tokens.
+
+use std::ops::Range;
+
+use super::{Fault, Problem};
+use crate::diagnostic::quoted;
+
+/// A token.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Token {
+    Integer(i64),
+    Text(String),
+    /// A name, or one of the words `and`, `or`, `not`, `true` and `false`.
+    Word(String),
+    Sign(&'static str),
+}
+
+/// The signs, the longer ones first.
+const SIGNS: [&str; 13] = ["==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/", "%", "(", ")"];
+
+/// Signs that others use: what they are here.
+const OTHERS: [(&str, &str); 4] = [("&&", "and"), ("||", "or"), ("=", "=="), ("!", "not ")];
+
+/// The tokens of `text[start..]` with their bytes, up to its end or to a `:`; and where that is.
+pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<(Token, Range<usize>)>, usize), Fault> {
+    let mut all = Vec::new();
+    let mut at = start;
+    while let Some(first) = text[at..].chars().next() {
+        let rest = &text[at..];
+        if first.is_whitespace() {
+            at += first.len_utf8();
+            continue;
+        }
+        if first == ':' {
+            break;
+        }
+        let (token, length) = if first.is_ascii_digit() {
+            number(rest, at)?
+        } else if first.is_alphabetic() || first == '_' {
+            let length = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+            (Token::Word(rest[..length].to_owned()), length)
+        } else if first == '\'' || first == '"' {
+            let Some(length) = rest[1..].find(first) else {
+                return Err(Problem::new("a text that does not end")
+                    .help("a text stands between two `'`")
+                    .at(at..text.len()));
+            };
+            (Token::Text(rest[1..=length].to_owned()), length + 2)
+        } else if let Some(sign) = SIGNS.into_iter().find(|sign| rest.starts_with(sign)) {
+            (Token::Sign(sign), sign.len())
+        } else {
+            return Err(odd(rest, first, at));
+        };
+        all.push((token, at..at + length));
+        at += length;
+    }
+    Ok((all, at))
+}
+
+fn number(rest: &str, at: usize) -> Result<(Token, usize), Fault> {
+    let length = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+    let behind = &rest[length..];
+    if behind.starts_with('.') {
+        let all = length + 1 + behind[1..].find(|c: char| !c.is_ascii_digit()).unwrap_or(behind.len() - 1);
+        let message = format!("{} is no whole number", quoted(&rest[..all]));
+        return Err(Problem::new(message).help("expressions calculate with whole numbers").at(at..at + all));
+    }
+    match rest[..length].parse() {
+        Ok(number) => Ok((Token::Integer(number), length)),
+        Err(_) => Err(Problem::new(format!("{} is too large", quoted(&rest[..length]))).at(at..at + length)),
+    }
+}
+
+fn odd(rest: &str, first: char, at: usize) -> Fault {
+    if let Some((written, meant)) = OTHERS.into_iter().find(|(written, _)| rest.starts_with(written)) {
+        let problem = Problem::new(format!("there is no {}", quoted(written))).instead(meant);
+        return problem.at(at..at + written.len());
+    }
+    if first == '$' {
+        let problem = Problem::new("names stand for themselves here").instead("");
+        return problem.help("write the name without `$`").at(at..at + 1);
+    }
+    let shown = quoted(first.encode_utf8(&mut [0; 4]));
+    Problem::new(format!("{shown} means nothing here")).at(at..at + first.len_utf8())
+}
