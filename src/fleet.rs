@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, Setting, check};
+use saoms_core::check::{Options, Setting, Variable, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::load::{load_file, load_named, read, read_values};
 use saoms_core::model::{Composite, Contribution};
@@ -45,7 +45,9 @@ pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Resul
     let mut contribution = Contribution::of(composites);
     load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
     open_libraries(&arguments.plugins, &arguments.files, &mut contribution, &sources, &mut registry);
-    let options = Options { settings, assume_classes, ..Options::default() };
+    let variables =
+        Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
+    let options = Options { settings, variables, assume_classes, ..Options::default() };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
     Ok(Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() })
 }

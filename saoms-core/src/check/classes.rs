@@ -78,14 +78,17 @@ pub(super) fn resolve<'r>(
     let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
     for place in 0..fleet.members.len() {
         let component = fleet.members[place].component;
-        let Some(class) = runnable(component, assume_classes, report) else {
-            if assume_classes && fleet.members[place].kind == Kind::Nothing {
+        // What is not there may come with a plugin where its condition is true.
+        let assumes = assume_classes || fleet.members[place].is_absent;
+        report.about(&fleet.members[place]);
+        let Some(class) = runnable(component, assumes, report) else {
+            if assumes && fleet.members[place].kind == Kind::Nothing {
                 fleet.members[place].kind = given(component);
             }
             continue;
         };
-        if !is_in_library(component, class, contribution, registry, assume_classes, report) {
-            if assume_classes {
+        if !is_in_library(component, class, contribution, registry, assumes, report) {
+            if assumes {
                 fleet.members[place].kind = Kind::Given;
             }
             continue;
@@ -98,7 +101,7 @@ pub(super) fn resolve<'r>(
                     known.insert(class, classes.len() - 1);
                     classes.len() - 1
                 }
-                None if assume_classes => {
+                None if assumes => {
                     fleet.members[place].kind = Kind::Given;
                     continue;
                 }
@@ -111,6 +114,7 @@ pub(super) fn resolve<'r>(
         };
         fleet.members[place].kind = Kind::Class(index);
     }
+    report.about_all();
     classes
 }
 

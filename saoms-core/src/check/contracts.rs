@@ -14,6 +14,7 @@ use crate::source::{Location, Text};
 /// Checks the services and references of every component.
 pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
     for (place, member) in fleet.members.iter().enumerate() {
+        report.about(member);
         let component = member.component;
         if !component.services.is_empty() {
             let names = component.services.iter().map(|service| &service.name);
@@ -26,6 +27,7 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
             references(place, fleet, classes, report);
         }
     }
+    report.about_all();
 }
 
 /// What implements a component, for people.

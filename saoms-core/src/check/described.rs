@@ -43,6 +43,7 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
         );
     }
     for (place, member) in fleet.members.iter().enumerate() {
+        report.about(member);
         if let Some(described) = fleet.component_type(place) {
             match fleet.class_of(place, classes) {
                 Some(class) => of_class(described, class, report),
@@ -59,6 +60,7 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
                 .push(one.help("write a file of the implementation's name that ends with `.componentType`"));
         }
     }
+    report.about_all();
 }
 
 fn repeated<'t>(

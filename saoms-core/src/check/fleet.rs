@@ -1,9 +1,14 @@
 //! All components of all composites as one fleet.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use super::classes::ClassIndex;
-use crate::model::{Component, Composite, Contribution, Reference, Service};
+use super::instance::Instance;
+use super::names::Names;
+use crate::model::{Component, Composite, Contribution, Reference, Service, Wire};
+use crate::source::{FileId, Location};
+use crate::xml::ElementId;
 
 /// The components of a fleet in document order, those of inner composites behind the component that each implements.
 ///
@@ -16,6 +21,14 @@ pub(super) struct Fleet<'a> {
     pub(super) units: Vec<Unit<'a>>,
     pub(super) members: Vec<Member<'a>>,
     pub(super) by_name: HashMap<(usize, &'a str), usize>,
+    /// The replicas of each replicated component of a scope, by its name with `*` for each expression.
+    pub(super) groups: HashMap<(usize, String), Vec<usize>>,
+    /// Components that a condition keeps away, where no other has their name: with the condition.
+    pub(super) absent: HashMap<(usize, &'a str), Location>,
+    /// Wires that a condition keeps away, by the unit that they are in.
+    pub(super) absent_wires: HashSet<(usize, FileId, ElementId)>,
+    /// What the expressions in units can name, where there are any.
+    pub(super) names: Vec<Option<Rc<Names>>>,
 }
 
 /// Components that can be wired to each other.
@@ -25,6 +38,8 @@ pub(super) struct Scope {
     pub(super) owner: Option<usize>,
     pub(super) units: Vec<usize>,
     pub(super) members: Vec<usize>,
+    /// Whether some of its components could not be made, which is reported: names that lead nowhere may be theirs.
+    pub(super) is_faulty: bool,
 }
 
 /// A composite with all that it includes: one space of property, service and reference names.
@@ -32,6 +47,8 @@ pub(super) struct Unit<'a> {
     pub(super) scope: usize,
     /// The composite itself first.
     pub(super) composites: Vec<&'a Composite>,
+    /// Whether a condition keeps it away.
+    pub(super) is_absent: bool,
 }
 
 /// A component with what is found out about it.
@@ -44,6 +61,12 @@ pub(super) struct Member<'a> {
     /// Whether its composite asks for autowire.
     pub(super) autowire: bool,
     pub(super) kind: Kind,
+    /// The replica that it is.
+    pub(super) instance: Option<&'a Instance>,
+    /// Whether it, or a component around it, is a replica.
+    pub(super) is_copy: bool,
+    /// Whether a condition keeps it away: it is checked as far as it can be known, and is in no fleet.
+    pub(super) is_absent: bool,
     /// Its path, where that is more than its name.
     path: Option<Box<str>>,
 }
@@ -63,7 +86,18 @@ pub(super) enum Kind {
 
 impl<'a> Member<'a> {
     pub(super) fn new(composite: &'a Composite, unit: usize, scope: usize, component: &'a Component) -> Self {
-        Self { composite, unit, scope, component, autowire: false, kind: Kind::Nothing, path: None }
+        Self {
+            composite,
+            unit,
+            scope,
+            component,
+            autowire: false,
+            kind: Kind::Nothing,
+            instance: None,
+            is_copy: false,
+            is_absent: false,
+            path: None,
+        }
     }
 
     /// The name that tells it from all others of the fleet: the names of the components around it, and its own.
@@ -98,6 +132,28 @@ impl<'a> Fleet<'a> {
     pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
         let by_name: &HashMap<(usize, &str), usize> = &self.by_name;
         by_name.get(&(scope, name)).copied()
+    }
+
+    /// The replicas that a name such as `Robot*` stands for.
+    pub(super) fn group(&self, scope: usize, name: &str) -> Option<&[usize]> {
+        if !name.contains('*') || self.find(scope, name).is_some() {
+            return None;
+        }
+        self.groups.get(&(scope, name.to_owned())).map(Vec::as_slice)
+    }
+
+    /// The names of all groups of replicas of a scope, in order.
+    pub(super) fn group_names(&self, scope: usize) -> Vec<&str> {
+        let of_scope = self.groups.keys().filter(|(of, _)| *of == scope);
+        let mut names: Vec<&str> = of_scope.map(|(_, name)| name.as_str()).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// Whether a condition keeps a wire away.
+    pub(super) fn is_absent_wire(&self, unit: usize, wire: &Wire) -> bool {
+        !self.absent_wires.is_empty()
+            && self.absent_wires.contains(&(unit, wire.origin.file(), wire.origin.element))
     }
 
     /// The names of all components of a scope, in order.

@@ -4,6 +4,8 @@
 //! rules to dear ones and looks at everything, so that all faults come in one run. What depends on something that is wrong
 //! is not looked at: one mistake gives one diagnostic.
 
+mod absent;
+mod arena;
 mod autowire;
 mod circle;
 mod classes;
@@ -14,14 +16,19 @@ mod described;
 mod endpoint;
 mod findings;
 mod fleet;
+mod instance;
 mod loops;
+mod names;
 mod offer;
+mod once;
 mod options;
 mod parameters;
+mod presence;
 mod promote;
 mod properties;
 mod raw;
 mod rename;
+mod replicas;
 mod report;
 mod rules;
 mod setting;
@@ -34,6 +41,7 @@ mod topics;
 mod unfold;
 mod unique;
 mod values;
+mod variable;
 mod wires;
 mod written;
 
@@ -45,6 +53,7 @@ use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::Sources;
 
+use arena::Arena;
 use classes::ClassIndex;
 use findings::Subject;
 use fleet::{Fleet, Kind, Member};
@@ -55,6 +64,7 @@ pub(crate) use rename::topic_renames;
 use report::Report;
 pub use setting::Setting;
 use values::Values;
+pub use variable::Variable;
 use wires::Wiring;
 
 /// Checks composites as one fleet, and resolves them when there is no error among `diagnostics`, those from before
@@ -84,12 +94,14 @@ pub fn check(
 ) -> Option<Assembly> {
     let report = &mut Report::new(sources, diagnostics);
     report.assumes = options.assume_classes;
-    let mut fleet = unfold::unfold(contribution, options.assume_classes, report);
-    let mut parameters = Parameters::of(&fleet, &options.settings, report);
+    let replicas = Arena::new();
+    let mut fleet = unfold::unfold(contribution, options, &replicas, report);
+    let mut parameters = Parameters::of(&fleet, options, report);
     let mut classes = classes::resolve(&mut fleet, contribution, registry, options.assume_classes, report);
     let checked = properties(&fleet, &classes, &mut parameters, report);
     let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
+    let (checked, loops) = absent::remove(&mut fleet, checked, loops);
     let resolved = components(&fleet, &classes, checked, loops, report);
     written::check(&fleet, report);
     contracts::check(&fleet, &classes, report);
@@ -98,15 +110,18 @@ pub fn check(
     let wiring = wires::check(&fleet, &classes, &promoted, report);
     saoms_api::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
+        report.about(member);
         if let (Kind::Class(class), Some(resolved)) = (member.kind, resolved) {
             let without = options.without_plugin_code;
             construct::component(resolved.subject(member), &classes[class], without, report);
             resolved.loops.iter().for_each(|one| construct::looping(one, without, report));
         }
     }
+    report.about_all();
     let rules =
         registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
     rules::check(&fleet, &classes, &resolved, &wiring, rules, report);
+    report.finish();
     if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
 }
 
@@ -143,6 +158,7 @@ fn properties<'a>(
     let mut values = Values::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
+        report.about(member);
         if let Kind::Class(index) = member.kind {
             all.push(Some(properties::check(
                 &Giver::component(member),
@@ -165,6 +181,7 @@ fn properties<'a>(
         }
         all.push(None);
     }
+    report.about_all();
     all
 }
 
@@ -180,6 +197,7 @@ fn components<'f, 'a>(
     let mut topics = topics::Topics::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for ((member, checked), loops) in fleet.members.iter().zip(checked).zip(loops) {
+        report.about(member);
         let (Kind::Class(index), Some(checked)) = (member.kind, checked) else {
             all.push(None);
             continue;
@@ -199,6 +217,7 @@ fn components<'f, 'a>(
             Resolved { values, written: checked.places(&class.slots), task, loops }
         }));
     }
+    report.about_all();
     all
 }
 

@@ -1,12 +1,15 @@
 //! What a check can be told beside the composites.
 
-use super::Setting;
+use super::{Setting, Variable};
+use crate::source::Text;
 
 /// What a check can be told beside the composites.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Values of composite properties that count in place of those in the files.
     pub settings: Vec<Setting>,
+    /// Environment variables that composite properties can take their values from.
+    pub variables: Vec<Variable>,
     /// Whether what the registry does not know is taken as given: classes, and implementations of other kinds. There is no
     /// assembly then when a component has such a one.
     pub assume_classes: bool,
@@ -18,5 +21,10 @@ impl Options {
     /// With these settings, everything else as usual.
     pub fn with_settings(settings: Vec<Setting>) -> Self {
         Self { settings, ..Self::default() }
+    }
+
+    /// The value of an environment variable.
+    pub(super) fn variable(&self, name: &str) -> Option<&Text> {
+        self.variables.iter().find(|variable| variable.name == name).map(|variable| &variable.value)
     }
 }

@@ -1,12 +1,14 @@
 //! The properties of composites: what `source="$name"` and `source="$name/path"` stand for.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use super::Setting;
 use super::fleet::{Fleet, Unit};
+use super::instance::Instance;
+use super::options::Options;
 use super::raw::{Raw, raw};
 use super::report::{Report, list};
+use super::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
@@ -38,8 +40,19 @@ struct Parameter<'a> {
 enum Given<'a> {
     /// A setting from outside.
     Setting(&'a Setting),
-    /// What the component says that the composite implements: in this unit and this composite.
-    Component(usize, &'a Composite, &'a Property),
+    /// A variable of the environment.
+    Variable(&'a Variable),
+    /// What the component says that the composite implements.
+    Component(Place<'a>, &'a Property),
+}
+
+/// Where a property is that has a value.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub(super) unit: usize,
+    pub(super) composite: &'a Composite,
+    /// The replica whose numbers are in its texts.
+    pub(super) instance: Option<&'a Instance>,
 }
 
 /// The values of a property, and the `source` that leads to them.
@@ -59,20 +72,35 @@ impl<'a> Declared<'a> {
 
 impl<'a> Parameters<'a> {
     /// Collects the properties and gives them what counts in place of their own values.
-    pub(super) fn of(fleet: &Fleet<'a>, settings: &'a [Setting], report: &mut Report<'_>) -> Self {
+    pub(super) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
         let units = fleet.units.iter().map(|unit| declared(unit, report)).collect();
         let mut parameters = Self { units };
         for (place, unit) in fleet.units.iter().enumerate() {
             let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];
+            let outside = Place { unit: owner.unit, composite: owner.composite, instance: owner.instance };
             for property in &owner.component.properties {
                 if let Some(parameter) = parameters.units[place].by_name.get_mut(property.name.as_str()) {
                     // A second one is reported.
-                    parameter.given.get_or_insert(Given::Component(owner.unit, owner.composite, property));
+                    parameter.given.get_or_insert(Given::Component(outside, property));
                 }
             }
         }
-        parameters.set(fleet, settings, report);
+        parameters.set(fleet, &options.settings, report);
+        let declared = parameters.units.iter_mut().flat_map(|unit| unit.by_name.values_mut());
+        for parameter in declared.filter(|parameter| parameter.given.is_none()) {
+            let named = parameter.property.env();
+            let variable =
+                named.and_then(|named| options.variables.iter().find(|one| one.name == named.as_str()));
+            parameter.given = variable.map(Given::Variable);
+        }
+        for (unit, names) in fleet.names.iter().enumerate() {
+            for name in names.iter().flat_map(|names| names.used()) {
+                if let Some(parameter) = parameters.units[unit].by_name.get_mut(name.as_str()) {
+                    parameter.is_used = true;
+                }
+            }
+        }
         parameters
     }
 
@@ -120,19 +148,18 @@ impl<'a> Parameters<'a> {
     /// The values of a component's property: those that its `source` leads to, or its own. Faults are reported.
     pub(super) fn values(
         &mut self,
-        unit: usize,
-        composite: &'a Composite,
+        place: Place<'a>,
         property: &'a Property,
         report: &mut Report<'_>,
     ) -> Result<Found<'a>, ()> {
         if let Some(source) = property.source() {
-            let raw = self.resolve(unit, source, report)?;
+            let raw = self.resolve(place.unit, source, report)?;
             if !raw.0.is_empty() {
                 return Ok(Found { raw, source: Some(source.location) });
             }
             // A source without a value leaves what stands in the property itself, as SCA says.
         }
-        Ok(Found { raw: raw(property, &composite.document, report)?, source: None })
+        Ok(Found { raw: raw(property, &place.composite.document, place.instance, report)?, source: None })
     }
 
     /// What `source` stands for in this unit. Faults are reported.
@@ -171,13 +198,12 @@ impl<'a> Parameters<'a> {
         let (composite, property) = (parameter.composite, parameter.property);
         let mut whole = match parameter.given {
             Some(Given::Setting(setting)) => Raw::one(&setting.value),
-            Some(Given::Component(unit, composite, property)) => {
-                self.values(unit, composite, property, report)?.raw
-            }
+            Some(Given::Variable(variable)) => Raw::one(&variable.value),
+            Some(Given::Component(outside, property)) => self.values(outside, property, report)?.raw,
             None => Raw(Vec::new()),
         };
         if whole.0.is_empty() {
-            whole = raw(property, &composite.document, report)?;
+            whole = raw(property, &composite.document, None, report)?;
         }
         if whole.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
             // Reported where it should have been supplied.
@@ -193,7 +219,11 @@ impl<'a> Parameters<'a> {
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
     pub(super) fn finish(self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
-        for (unit, declared) in fleet.units.iter().zip(&self.units) {
+        // A composite may be there several times; what is used in one of them is used.
+        let all = self.units.iter().flat_map(|declared| declared.by_name.values());
+        let used = all.filter(|parameter| parameter.is_used).map(|parameter| parameter.property.origin);
+        let used: HashSet<_> = used.map(|origin| (origin.file(), origin.element)).collect();
+        for (unit, declared) in fleet.units.iter().zip(&self.units).filter(|(unit, _)| !unit.is_absent) {
             let owner = fleet.scopes[unit.scope].owner.map(|owner| fleet.members[owner].component);
             for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
                 let Some(parameter) = declared.by_name.get(property.name.as_str()) else { continue };
@@ -205,7 +235,9 @@ impl<'a> Parameters<'a> {
                 if must && !property.has_value() && parameter.given.is_none() {
                     report.push(missing(name, owner));
                 }
-                if !parameter.is_used && !declared.has_wrong_source {
+                let origin = property.origin;
+                let is_open = declared.has_wrong_source || fleet.scopes[unit.scope].is_faulty;
+                if !used.contains(&(origin.file(), origin.element)) && !is_open {
                     let message =
                         format!("the property {} of the composite is used by no component", quoted(name));
                     let one = Diagnostic::new(&codes::UNUSED_PROPERTY, name.location, message);
@@ -265,7 +297,7 @@ fn expression(source: &str) -> Option<(&str, Option<&str>)> {
 
 /// The part of a complex value that a path of element names leads to; prefixes do not count.
 fn walk<'a>(whole: Raw<'a>, path: &str) -> Result<Raw<'a>, (Range<usize>, String)> {
-    let Some(mut here) = whole.elements() else {
+    let Some((mut here, instance)) = whole.elements() else {
         return Err((0..path.len(), "the property has a simple value: there are no parts in it".to_owned()));
     };
     // `$order/total` also means the `total` of a value that is written as one element.
@@ -293,7 +325,7 @@ fn walk<'a>(whole: Raw<'a>, path: &str) -> Result<Raw<'a>, (Range<usize>, String
                 let known = list(here.iter().map(|one| one.local_name()));
                 return Err((at, format!("there is no part {}; the parts are {known}", quoted(step))));
             }
-            _ if steps.peek().is_none() => return Ok(Raw::of_elements(&found)),
+            _ if steps.peek().is_none() => return Ok(Raw::of_elements(&found, instance)),
             [one] => here = one.children().collect(),
             _ => return Err((at, format!("there are {} parts {}", found.len(), quoted(step)))),
         }

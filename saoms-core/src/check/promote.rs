@@ -6,7 +6,7 @@ use super::classes::ClassIndex;
 use super::contracts::of_class;
 use super::fleet::{Fleet, Unit};
 use super::report::{Report, list};
-use super::target::Uri;
+use super::target::{Uri, spread};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Multiplicity, Part, Reference};
 use crate::source::{Location, Text};
@@ -64,7 +64,8 @@ pub(super) fn check<'f>(
             let found = reference
                 .promote()
                 .iter()
-                .filter_map(|promote| find(promote, Side::Reference, unit, fleet, classes, report));
+                .flat_map(|promote| spread(promote, unit.scope, fleet))
+                .filter_map(|promote| find(&promote, Side::Reference, unit, fleet, classes, report));
             let found: Vec<Place<'f>> = found.collect();
             found.iter().for_each(|inner| may_be_promoted(*inner, reference, fleet, classes, report));
             match owner {
@@ -162,7 +163,7 @@ fn repeated<'a>(
 
 /// What a URI promotes. Faults are reported.
 fn find<'f>(
-    text: &'f Text,
+    text: &Text,
     side: Side,
     unit: &Unit<'_>,
     fleet: &'f Fleet<'_>,

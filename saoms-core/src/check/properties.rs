@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use saoms_api::PropertyValue;
 
 use super::fleet::{Member, Unit};
-use super::parameters::{Found, Parameters};
+use super::parameters::{Found, Parameters, Place};
 use super::raw::Piece;
 use super::report::Report;
 use super::slots::{Slot, Slots};
@@ -187,7 +187,8 @@ fn value<'a>(
     report: &mut Report<'_>,
 ) -> Result<Option<Given>, ()> {
     let path = Path { outer: None, name: &property.name };
-    let Found { raw: found, source } = parameters.values(member.unit, member.composite, property, report)?;
+    let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
+    let Found { raw: found, source } = parameters.values(place, property, report)?;
     if source.is_none() && property.source().is_some() && found.0.is_empty() {
         return Ok(None);
     }

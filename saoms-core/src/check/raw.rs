@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::instance::Instance;
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Part, Property};
@@ -15,8 +16,8 @@ pub(super) struct Raw<'a>(pub(super) Vec<Piece<'a>>);
 pub(super) enum Piece<'a> {
     /// A text.
     Text(Cow<'a, Text>),
-    /// Elements: the named values of a complex property.
-    Elements(Vec<Element<'a>>),
+    /// Elements: the named values of a complex property, and the replica whose numbers are in their texts.
+    Elements(Vec<Element<'a>>, Option<&'a Instance>),
 }
 
 impl<'a> Raw<'a> {
@@ -26,14 +27,14 @@ impl<'a> Raw<'a> {
     }
 
     /// What is inside these elements, a value each.
-    pub(super) fn of_elements(elements: &[Element<'a>]) -> Self {
-        Self(elements.iter().map(|element| Piece::inside(*element)).collect())
+    pub(super) fn of_elements(elements: &[Element<'a>], instance: Option<&'a Instance>) -> Self {
+        Self(elements.iter().map(|element| Piece::inside(*element, instance)).collect())
     }
 
     /// The elements of a complex value.
-    pub(super) fn elements(self) -> Option<Vec<Element<'a>>> {
+    pub(super) fn elements(self) -> Option<(Vec<Element<'a>>, Option<&'a Instance>)> {
         match <[Piece<'a>; 1]>::try_from(self.0) {
-            Ok([Piece::Elements(elements)]) => Some(elements),
+            Ok([Piece::Elements(elements, instance)]) => Some((elements, instance)),
             _ => None,
         }
     }
@@ -41,13 +42,17 @@ impl<'a> Raw<'a> {
 
 impl<'a> Piece<'a> {
     /// What is inside an element.
-    pub(super) fn inside(element: Element<'a>) -> Self {
+    pub(super) fn inside(element: Element<'a>, instance: Option<&'a Instance>) -> Self {
         let children: Vec<Element<'a>> = element.children().collect();
         if !children.is_empty() {
-            return Self::Elements(children);
+            return Self::Elements(children, instance);
         }
         let nothing = || Located::new("".into(), element.name_location());
-        Self::Text(Cow::Owned(element.trimmed_text().unwrap_or_else(nothing)))
+        let text = Cow::Owned(element.trimmed_text().unwrap_or_else(nothing));
+        Self::Text(match instance {
+            Some(instance) => instance.text(text),
+            None => text,
+        })
     }
 
     /// Where it is.
@@ -55,7 +60,7 @@ impl<'a> Piece<'a> {
         match self {
             Self::Text(text) => text.location,
             // Never without any: it was made from some.
-            Self::Elements(elements) => elements[0].name_location(),
+            Self::Elements(elements, _) => elements[0].name_location(),
         }
     }
 }
@@ -65,6 +70,7 @@ impl<'a> Piece<'a> {
 pub(super) fn raw<'a>(
     property: &'a Property,
     document: &'a Document,
+    instance: Option<&'a Instance>,
     report: &mut Report<'_>,
 ) -> Result<Raw<'a>, ()> {
     let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
@@ -79,13 +85,13 @@ pub(super) fn raw<'a>(
             if value.content.is_empty() {
                 return Piece::Text(Cow::Borrowed(&value.text));
             }
-            Piece::Elements(value.content.iter().map(|id| document.element(*id)).collect())
+            Piece::Elements(value.content.iter().map(|id| document.element(*id)).collect(), instance)
         });
         ways.push((first.tag(), Raw(values.collect())));
     }
     if let Some(first) = property.content().first() {
         let elements = property.content().iter().map(|id| document.element(*id)).collect();
-        ways.push((document.element(*first).name_location(), Raw(vec![Piece::Elements(elements)])));
+        ways.push((document.element(*first).name_location(), Raw(vec![Piece::Elements(elements, instance)])));
     }
     if let Some(file) = property.file() {
         let Some(value) = property.from_file() else {

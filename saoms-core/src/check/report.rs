@@ -1,10 +1,12 @@
 //! Where the rules put what they find.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::ops::Range;
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, nearest, quoted};
+use super::fleet::Member;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Suggestion, nearest, quoted};
+use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
 use crate::xml::written_part;
 
@@ -22,6 +24,18 @@ pub(super) struct Report<'a> {
     escalated: HashSet<(&'static str, FileId)>,
     /// What was said where: a composite that implements several components has its faults once.
     said: HashSet<(&'static str, Location, u64)>,
+    /// The replica that is looked at.
+    copy: Option<Copied>,
+    /// What was said of replicas, by its code and place: of the first, and of how many more.
+    copies: Vec<(Diagnostic, Copied, usize)>,
+    known_copies: HashMap<(&'static str, Location), usize>,
+}
+
+/// A component that is a replica, or inside one.
+#[derive(Clone, PartialEq)]
+struct Copied {
+    path: Box<str>,
+    index: Option<i64>,
 }
 
 /// How many diagnostics are remembered.
@@ -36,11 +50,73 @@ impl<'a> Report<'a> {
             assumes: false,
             escalated: HashSet::new(),
             said: HashSet::new(),
+            copy: None,
+            copies: Vec::new(),
+            known_copies: HashMap::new(),
         }
+    }
+
+    /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
+    pub(super) fn about(&mut self, member: &Member<'_>) {
+        let index = member.instance.map(|instance| instance.index);
+        self.copy = member.is_copy.then(|| Copied { path: member.path().into(), index });
+    }
+
+    /// Lets what follows be about the replica of this name and index.
+    pub(super) fn about_replica(&mut self, name: &str, index: i64) {
+        self.copy = Some(Copied { path: name.into(), index: Some(index) });
+    }
+
+    /// Lets what follows be about the fleet.
+    pub(super) fn about_all(&mut self) {
+        self.copy = None;
+    }
+
+    /// Tells what was said of replicas.
+    pub(super) fn finish(&mut self) {
+        for (mut one, Copied { path, index }, more) in std::mem::take(&mut self.copies) {
+            let path = quoted(&path);
+            let mut about = if one.message.contains(&path) { Vec::new() } else { vec![format!("in {path}")] };
+            about.extend(index.map(|index| format!("index {index}")));
+            if more > 0 {
+                about.push(format!("and in {more} more"));
+            }
+            if !about.is_empty() {
+                one.message = format!("{} ({})", one.message, about.join(", "));
+            }
+            self.diagnostics.push(one);
+        }
+        self.known_copies.clear();
+    }
+
+    /// Keeps a diagnostic about a replica for [`Report::finish`].
+    fn push_copy(&mut self, mut one: Diagnostic, copy: Copied) {
+        let key = (one.code.id, one.location);
+        if let Some(known) = self.known_copies.get(&key) {
+            let (_, last, more) = &mut self.copies[*known];
+            if *last != copy {
+                *more += 1;
+            }
+            return;
+        }
+        let own = one.location;
+        one.labels.retain(|label| label.location != own);
+        // An edit there would be one of all replicas.
+        let is_of_all = |suggestion: &Suggestion| {
+            suggestion.edits.iter().any(|edit| has_expression(self.sources.snippet(edit.location)))
+        };
+        let (of_all, suggestions): (Vec<_>, Vec<_>) = one.suggestions.into_iter().partition(is_of_all);
+        one.suggestions = suggestions;
+        one.help.extend(of_all.into_iter().map(|suggestion| suggestion.description));
+        self.known_copies.insert(key, self.copies.len());
+        self.copies.push((one, copy, 0));
     }
 
     /// Adds a diagnostic, unless the same was said of the same place.
     pub(super) fn push(&mut self, diagnostic: Diagnostic) {
+        if let Some(copy) = &self.copy {
+            return self.push_copy(diagnostic, copy.clone());
+        }
         let message = BuildHasherDefault::<DefaultHasher>::default().hash_one(&diagnostic.message);
         let said = (diagnostic.code.id, diagnostic.location, message);
         if self.said.len() >= REMEMBERED || self.said.insert(said) {
@@ -56,7 +132,7 @@ impl<'a> Report<'a> {
     }
 
     pub(super) fn has_errors(&self) -> bool {
-        self.diagnostics.has_errors()
+        self.diagnostics.has_errors() || self.copies.iter().any(|(one, ..)| one.severity == Severity::Error)
     }
 
     /// The place of a part of `text`, in bytes of the text as it is meant.

@@ -24,6 +24,9 @@ pub(super) fn check<'s>(
     let runs = |member: &Member<'_>| !matches!(member.kind, Kind::Composite(_));
     let mut places = Vec::with_capacity(fleet.members.len());
     let mut missing = Vec::new();
+    if fleet.scopes.iter().any(|scope| scope.is_faulty) {
+        missing.push(None);
+    }
     let mut subjects: Vec<Subject<'s>> = Vec::new();
     let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
     for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
@@ -84,6 +87,10 @@ pub(super) fn check<'s>(
             let severity = finding.own_severity().unwrap_or(rule.code().severity);
             let named = |index: usize| subjects.get(index).copied();
             let own = finding.place().component_index().and_then(named).unwrap_or(first);
+            match finding.place().component_index().and_then(|index| parts.get(index)) {
+                Some((place, ..)) => report.about(&fleet.members[*place]),
+                None => report.about_all(),
+            }
             if let Some(one) = diagnostic(rule.code(), severity, finding, own, &named, report) {
                 report.push(one);
             }

@@ -1,5 +1,6 @@
 //! What URIs such as `Robot001/move` stand for.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::classes::ClassIndex;
@@ -82,9 +83,22 @@ impl<'t> Uri<'t> {
     ) -> Option<usize> {
         let found = fleet.find(scope, self.component);
         if found.is_none() {
+            if fleet.scopes[scope].is_faulty {
+                return None;
+            }
+            if let Some(condition) = fleet.absent.get(&(scope, self.component)) {
+                let message = format!("the component {} is not there", quoted(self.component));
+                let at = report.part(text, 0..self.component.len());
+                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+                report.push(
+                    one.label(*condition, "this is false").help("give what names it the same condition"),
+                );
+                return None;
+            }
             let message = format!("there is no component {}", quoted(self.component));
             let at = report.part(text, 0..self.component.len());
-            let known = ("the components are", fleet.names(scope));
+            let groups = fleet.group_names(scope);
+            let known = ("the components are", fleet.names(scope).chain(groups));
             let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known);
             report.push(match rule {
                 Some(rule) => one.rule(rule),
@@ -93,6 +107,15 @@ impl<'t> Uri<'t> {
         }
         found
     }
+}
+
+/// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group.
+pub(super) fn spread<'t>(text: &'t Text, scope: usize, fleet: &Fleet<'_>) -> Vec<Cow<'t, Text>> {
+    let (component, _) = parts(text);
+    let Some(members) = fleet.group(scope, component) else { return vec![Cow::Borrowed(text)] };
+    let rest = &text[component.len()..];
+    let named = members.iter().map(|member| format!("{}{rest}", fleet.members[*member].component.name));
+    named.map(|name| Cow::Owned(Text::new(name.into(), text.location))).collect()
 }
 
 /// The service that a target in a scope leads to, for a reference with this interface, or with any. Faults are reported.

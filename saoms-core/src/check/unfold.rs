@@ -1,23 +1,29 @@
 //! From composites to the components that they come to: what is included stands where it is included, and a component that a
 //! composite implements has the components of it inside.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
+use super::arena::{Arena, End};
 use super::fleet::{Fleet, Kind, Member, Scope, Unit};
+use super::instance::{Instance, Replica};
+use super::once;
+use super::options::Options;
+use super::replicas::{MOST_REPLICAS, Plan, condition};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::expression::pattern;
 use crate::model::{Component, Composite, Contribution, Include, Link, Missing, Naming};
-use crate::source::Location;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
-const MOST_MEMBERS: usize = 1_000_000;
+pub(super) const MOST_MEMBERS: usize = 1_000_000;
 /// Composites inside each other.
 const MOST_DEEP: usize = 250;
 
 /// Collects the components and checks that names are unique.
 pub(super) fn unfold<'a>(
     contribution: &'a Contribution,
-    assume_classes: bool,
+    options: &'a Options,
+    replicas: &'a Arena<Replica>,
     report: &mut Report<'_>,
 ) -> Fleet<'a> {
     let asked_for = contribution.asked_for();
@@ -28,57 +34,33 @@ pub(super) fn unfold<'a>(
         units: Vec::with_capacity(asked_for.len()),
         members: Vec::with_capacity(count),
         by_name: HashMap::with_capacity(count),
+        groups: HashMap::new(),
+        absent: HashMap::new(),
+        absent_wires: HashSet::new(),
+        names: Vec::new(),
     };
-    let mut unfolding =
-        Unfolding { fleet, open: Vec::new(), is_full: false, assume_classes, sizes: HashMap::new() };
-    repeated_composites(asked_for, report);
+    let mut unfolding = Unfolding {
+        fleet,
+        open: Vec::new(),
+        is_full: false,
+        options,
+        sizes: HashMap::new(),
+        replicas: replicas.end(),
+        replicas_left: MOST_REPLICAS,
+    };
+    once::composites(asked_for, report);
     let included = included(contribution);
     for (place, composite) in asked_for.iter().enumerate() {
         // It stands where it is included.
         if !included[place] {
             let unit = unfolding.unit(0);
-            unfolding.open(place, composite, unit, None);
+            unfolding.open(place, composite, unit, None, report);
             unfolding.walk(report);
         }
     }
     let fleet = unfolding.fleet;
-    paths(&fleet, report);
+    once::paths(&fleet, report);
     fleet
-}
-
-/// Checks that no two components have one path. Where nobody gives one, names alone see to that.
-fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    if fleet.members.iter().all(|member| member.component.path.is_none()) {
-        return;
-    }
-    let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());
-    for member in fleet.members.iter().filter(|member| !member.component.name.is_empty()) {
-        let given = member.component.path.as_deref();
-        let place = given.unwrap_or(&member.component.name).location;
-        let earlier = first.entry(member.path()).or_insert(place);
-        if *earlier != place && given.is_some() {
-            let message = format!("there are two components of the path {}", quoted(member.path()));
-            let one = Diagnostic::new(&codes::COMPONENT_REPEATED, place, message);
-            report.push(one.label(*earlier, "the first").help("give each its own path, or none"));
-        }
-    }
-}
-
-fn repeated_composites(composites: &[Composite], report: &mut Report<'_>) {
-    let mut names: HashMap<(&str, &str), &Composite> = HashMap::new();
-    for composite in composites.iter().filter(|composite| !composite.name.is_empty()) {
-        let name = (composite.namespace(), composite.name.as_str());
-        let Some(first) = names.get(&name) else {
-            names.insert(name, composite);
-            continue;
-        };
-        let message = format!("there are two composites {} in one namespace", quoted(name.1));
-        report.push(
-            Diagnostic::new(&codes::COMPOSITE_REPEATED, composite.name.location, message)
-                .label(first.name.location, "the first")
-                .help("give each its own name; was one file given twice?"),
-        );
-    }
 }
 
 /// Which of the composites that were asked for another one of them includes, directly or not.
@@ -106,15 +88,17 @@ fn included(contribution: &Contribution) -> Vec<bool> {
     included
 }
 
-struct Unfolding<'a> {
-    fleet: Fleet<'a>,
+pub(super) struct Unfolding<'a> {
+    pub(super) fleet: Fleet<'a>,
     /// From the outermost composite to the one at hand.
-    open: Vec<Open<'a>>,
+    pub(super) open: Vec<Open<'a>>,
     /// Whether there are too many components; reported.
-    is_full: bool,
-    assume_classes: bool,
+    pub(super) is_full: bool,
+    pub(super) options: &'a Options,
     /// How many components the composites come to that were asked about.
     sizes: HashMap<usize, usize>,
+    replicas: End<'a, Replica>,
+    replicas_left: u64,
 }
 
 /// How many components a composite comes to, known before they are made.
@@ -138,9 +122,9 @@ fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut Hash
 }
 
 /// A composite whose components are being collected.
-struct Open<'a> {
+pub(super) struct Open<'a> {
     place: usize,
-    composite: &'a Composite,
+    pub(super) composite: &'a Composite,
     unit: usize,
     /// What the composites around it say of autowire, its own word before theirs.
     autowire: bool,
@@ -148,6 +132,10 @@ struct Open<'a> {
     by: Option<Naming<'a>>,
     next_component: usize,
     next_include: usize,
+    /// Replicas of the last component that are still to be made.
+    plan: Option<Plan<'a>>,
+    /// Whether a condition keeps it away.
+    is_absent: bool,
 }
 
 enum Next<'a> {
@@ -180,24 +168,51 @@ impl<'a> Open<'a> {
 
 impl<'a> Unfolding<'a> {
     fn unit(&mut self, scope: usize) -> usize {
-        self.fleet.units.push(Unit { scope, composites: Vec::with_capacity(1) });
+        self.fleet.units.push(Unit { scope, composites: Vec::with_capacity(1), is_absent: false });
         let unit = self.fleet.units.len() - 1;
         self.fleet.scopes[scope].units.push(unit);
         unit
     }
 
-    fn open(&mut self, place: usize, composite: &'a Composite, unit: usize, by: Option<Naming<'a>>) {
+    fn open(
+        &mut self,
+        place: usize,
+        composite: &'a Composite,
+        unit: usize,
+        by: Option<Naming<'a>>,
+        report: &mut Report<'_>,
+    ) {
         // An included composite without a word of its own does as the one around it.
         let around = self.open.last().filter(|around| around.unit == unit);
         let around = around.is_some_and(|around| around.autowire);
         let autowire = composite.autowire.map_or(around, |autowire| autowire.value);
+        let is_absent = self.fleet.units[unit].is_absent;
         self.fleet.units[unit].composites.push(composite);
-        self.open.push(Open { place, composite, unit, autowire, by, next_component: 0, next_include: 0 });
+        self.open.push(Open {
+            place,
+            composite,
+            unit,
+            autowire,
+            by,
+            next_component: 0,
+            next_include: 0,
+            plan: None,
+            is_absent,
+        });
+        self.wires(composite, unit, report);
     }
 
     fn walk(&mut self, report: &mut Report<'_>) {
-        while let Some(open) = self.open.last_mut() {
-            match open.next() {
+        while let Some(last) = self.open.len().checked_sub(1) {
+            if let Some(mut plan) = self.open[last].plan.take() {
+                if let Some(index) = plan.next()
+                    && self.replica(&plan, index, report)
+                {
+                    self.open[last].plan = Some(plan);
+                }
+                continue;
+            }
+            match self.open[last].next() {
                 None => _ = self.open.pop(),
                 Some(Next::Include(include)) => self.include(include, report),
                 Some(Next::Component(component)) => self.component(component, report),
@@ -212,6 +227,11 @@ impl<'a> Unfolding<'a> {
         let Some((place, composite)) = self.find(naming, report) else { return };
         if self.is_circle(place, naming, report) {
             return;
+        }
+        if include.condition.as_ref().is_some_and(|condition| !self.holds(condition, unit, report)) {
+            // Its components see what they would see, and nobody sees them.
+            let unit = self.absent_unit(unit);
+            return self.open(place, composite, unit, Some(naming), report);
         }
         let is_again = self.fleet.units[unit].composites.iter().any(|known| std::ptr::eq(*known, composite));
         if is_again {
@@ -232,33 +252,116 @@ impl<'a> Unfolding<'a> {
                 None => one,
             });
         }
-        self.open(place, composite, unit, Some(naming));
+        self.open(place, composite, unit, Some(naming), report);
     }
 
     fn component(&mut self, component: &'a Component, report: &mut Report<'_>) {
         let Some(open) = self.open.last() else { return };
+        let unit = open.unit;
+        let Some(replicas) = &component.replicas else {
+            let condition = component.condition.as_deref();
+            let is_absent = condition.is_some_and(|condition| !self.holds(condition, unit, report));
+            return self.member(component, component, None, is_absent, report);
+        };
+        let names = self.names(unit);
+        let Some(plan) = Plan::of(component, replicas, names, self.replicas_left, report) else {
+            self.fault(unit);
+            return;
+        };
+        let group = (self.fleet.units[unit].scope, pattern(&component.name));
+        let (is_empty, index) = (plan.count == 0, plan.sample());
+        self.fleet.groups.entry(group).or_default();
+        if self.complex(&plan, report) {
+            self.fault(unit);
+            return;
+        }
+        if is_empty {
+            let instance = plan.instance(index);
+            let (made, faults) = instance.of(component, None);
+            self.faults(&plan, faults, report);
+            let Replica { component: made, instance } =
+                self.replicas.add(Replica { component: made, instance });
+            return self.member(component, made, Some(instance), true, report);
+        }
+        self.replicas_left -= plan.count;
+        if let Some(open) = self.open.last_mut() {
+            open.plan = Some(plan);
+        }
+    }
+
+    /// Makes one of the replicas of a component; `false` with a fault that the others would have as well.
+    fn replica(&mut self, plan: &Plan<'a>, index: i64, report: &mut Report<'_>) -> bool {
+        let Some(open) = self.open.last() else { return false };
+        let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
+        let instance = plan.instance(index);
+        let (made, faults) = instance.of(plan.component, plan.row(index));
+        let Replica { component, instance } = self.replicas.add(Replica { component: made, instance });
+        report.about_replica(&component.name, index);
+        let asked = plan.component.condition.as_deref();
+        let holds = asked.map(|text| condition(text, &plan.names, &mut |name| instance.value(name), report));
+        let is_absent = matches!(holds, Some(Some(false)));
+        let is_faulty = !faults.is_empty() || matches!(holds, Some(None));
+        self.faults(plan, faults, report);
+        report.about_all();
+        if is_faulty || self.is_beyond(plan.component, report) {
+            self.fault(unit);
+            return false;
+        }
+        let member = self.fleet.members.len();
+        self.member(plan.component, component, Some(instance), is_absent, report);
+        if !is_absent && !self.fleet.units[unit].is_absent {
+            self.fleet.groups.entry((scope, pattern(&plan.component.name))).or_default().push(member);
+        }
+        true
+    }
+
+    /// Adds a component as it is `written`, and what is inside it.
+    fn member(
+        &mut self,
+        written: &'a Component,
+        component: &'a Component,
+        instance: Option<&'a Instance>,
+        is_absent: bool,
+        report: &mut Report<'_>,
+    ) {
+        let Some(open) = self.open.last() else { return };
         let (composite, unit, autowire) = (open.composite, open.unit, open.autowire);
+        let is_seen = !is_absent && !open.is_absent;
         let scope = self.fleet.units[unit].scope;
         let index = self.fleet.members.len();
         let mut member = Member::new(composite, unit, scope, component);
+        let owner = self.fleet.scopes[scope].owner;
         member.autowire = autowire;
+        member.instance = instance;
+        member.is_absent = !is_seen;
+        member.is_copy = instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy);
         let own = component.path.as_deref().unwrap_or(&component.name);
-        match self.fleet.scopes[scope].owner {
+        match owner {
             Some(owner) => member.set_path(format!("{}/{own}", self.fleet.members[owner].path())),
             None if component.path.is_some() => member.set_path(own.to_string()),
             None => {}
         }
         self.fleet.members.push(member);
-        self.fleet.scopes[scope].members.push(index);
         let name = component.name.as_str();
-        if !name.is_empty() {
-            match self.fleet.by_name.get(&(scope, name)) {
-                None => _ = self.fleet.by_name.insert((scope, name), index),
-                Some(&first) => self.repeated(component, first, report),
+        if is_seen {
+            self.fleet.scopes[scope].members.push(index);
+        }
+        match self.fleet.by_name.get(&(scope, name)) {
+            _ if name.is_empty() => {}
+            None if is_seen => _ = self.fleet.by_name.insert((scope, name), index),
+            Some(&first) if is_seen => {
+                report.about(&self.fleet.members[index]);
+                self.repeated(component, first, report);
+                report.about_all();
+            }
+            _ => {
+                let condition =
+                    written.condition.as_deref().map_or(component.name.location, |text| text.location);
+                self.fleet.absent.insert((scope, name), condition);
             }
         }
         if let Some(naming) = Naming::of_component(component) {
-            self.inner(index, naming, report);
+            self.inner(index, naming, !is_seen, report);
         }
     }
 
@@ -275,9 +378,9 @@ impl<'a> Unfolding<'a> {
     }
 
     /// Opens the composite that implements a component.
-    fn inner(&mut self, member: usize, naming: Naming<'a>, report: &mut Report<'_>) {
+    fn inner(&mut self, member: usize, naming: Naming<'a>, is_absent: bool, report: &mut Report<'_>) {
         let Some((place, composite)) = self.find(naming, report) else {
-            let is_given = self.assume_classes
+            let is_given = self.options.assume_classes
                 && !matches!(self.fleet.contribution.link(naming.origin), Some(Link::Faulty));
             if is_given {
                 self.fleet.members[member].kind = Kind::Given;
@@ -291,7 +394,8 @@ impl<'a> Unfolding<'a> {
         self.fleet.scopes.push(Scope { owner: Some(member), ..Scope::default() });
         self.fleet.members[member].kind = Kind::Composite(scope);
         let unit = self.unit(scope);
-        self.open(place, composite, unit, Some(naming));
+        self.fleet.units[unit].is_absent = is_absent;
+        self.open(place, composite, unit, Some(naming), report);
     }
 
     fn is_full(&mut self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
@@ -319,7 +423,7 @@ impl<'a> Unfolding<'a> {
             Link::Faulty => None,
             Link::Missing(missing) => {
                 let composite = self.open.last()?.composite;
-                report.push(not_found(naming, missing, composite, self.assume_classes));
+                report.push(not_found(naming, missing, composite, self.options.assume_classes));
                 None
             }
         }

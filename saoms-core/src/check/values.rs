@@ -6,6 +6,7 @@ use std::fmt;
 use saoms_api::PropertyValue;
 use saoms_api::declaration::{PropertyKind, parse_scalar};
 
+use super::instance::Instance;
 use super::raw::{Piece, Raw};
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
@@ -74,7 +75,7 @@ impl Values {
         match pieces.pop() {
             Some(piece) => self.piece(piece, path, declarations, used, report),
             None if main.kind == PropertyKind::Complex => {
-                self.piece(Piece::Elements(Vec::new()), path, declarations, used, report)
+                self.piece(Piece::Elements(Vec::new(), None), path, declarations, used, report)
             }
             None => {
                 let nothing = Text::new("".into(), used.property);
@@ -93,10 +94,10 @@ impl Values {
     ) -> Option<PropertyValue> {
         let main = declarations.first()?;
         match (piece, main.kind) {
-            (Piece::Elements(elements), PropertyKind::Complex) => {
-                self.complex(&elements, path, main, used, report)
+            (Piece::Elements(elements, instance), PropertyKind::Complex) => {
+                self.complex((&elements, instance), path, main, used, report)
             }
-            (Piece::Elements(elements), _) => {
+            (Piece::Elements(elements, _), _) => {
                 let at = elements.first().map_or(used.property, |first| first.name_location());
                 let message = format!(
                     "the property {} has elements inside: expected {}",
@@ -139,7 +140,7 @@ impl Values {
 
     fn complex(
         &mut self,
-        elements: &[Element<'_>],
+        (elements, instance): (&[Element<'_>], Option<&Instance>),
         path: Path<'_>,
         declaration: &PropertyDeclaration,
         used: Use,
@@ -188,7 +189,7 @@ impl Values {
                 continue;
             }
             let used = Use { property: given[0].name_location(), ..used };
-            match self.convert(Raw::of_elements(&given), inner, &[part], used, report) {
+            match self.convert(Raw::of_elements(&given, instance), inner, &[part], used, report) {
                 Some(value) => values.push((part.name.clone(), value)),
                 None => is_sound = false,
             }

@@ -3,6 +3,7 @@
 //! A reference of a component of a class collects its targets from the inside out: those of its own component, and those of
 //! every component around it that a composite's reference promotes it to.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use super::autowire::Autowire;
@@ -12,7 +13,7 @@ use super::contracts::of_class;
 use super::fleet::{Fleet, Kind};
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
-use super::target::{Provider, Target, Uri, target};
+use super::target::{Provider, Target, Uri, parts, spread, target};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Multiplicity, Reference};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
@@ -55,6 +56,7 @@ pub(super) fn check(
     let mut circles = Circles::new(fleet.members.len());
     let mut wiring = Wiring::with_capacity(fleet.members.len());
     for member in 0..fleet.members.len() {
+        report.about(&fleet.members[member]);
         let Some(class) = fleet.class_of(member, classes) else {
             all.given(member, report);
             wiring.push(Vec::new());
@@ -70,6 +72,7 @@ pub(super) fn check(
         }
         wiring.push(providers);
     }
+    report.about_all();
     circles.check(fleet, report);
     wiring
 }
@@ -81,21 +84,31 @@ fn wires<'f>(
     report: &mut Report<'_>,
 ) -> HashMap<(usize, &'f str), Vec<Wire<'f>>> {
     let mut all: HashMap<(usize, &str), Vec<Wire<'f>>> = HashMap::new();
-    for unit in &fleet.units {
+    for (place, unit) in fleet.units.iter().enumerate() {
         let scope = unit.scope;
         for wire in unit.composites.iter().flat_map(|composite| &composite.wires) {
             let (Some(source), Some(to)) = (&wire.source, &wire.target) else { continue };
-            let Some((member, name)) = source_of(source, scope, fleet, classes, report) else { continue };
+            if fleet.is_absent_wire(place, wire) {
+                let _ = (Uri::of(source, 2, report), Uri::of(to, 3, report));
+                continue;
+            }
             let is_replacing = wire.replace.as_ref().is_some_and(|replace| replace.value);
-            all.entry((member, name)).or_default().push(Wire { target: to, scope, is_replacing });
+            for one in spread(source, scope, fleet) {
+                let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
+                    continue;
+                };
+                all.entry((member, name)).or_default().push(Wire { target: to, scope, is_replacing });
+            }
         }
     }
     all
 }
 
-/// The component and the reference that a wire starts from; an empty name where any reference may be meant.
+/// The component and the reference that a wire starts from; an empty name where any reference may be meant. `source` is `written`, or one
+/// of the replicas that this stands for.
 fn source_of<'f>(
-    source: &'f Text,
+    source: &Text,
+    written: &'f Text,
     scope: usize,
     fleet: &'f Fleet<'_>,
     classes: &'f [ClassIndex<'_>],
@@ -103,7 +116,7 @@ fn source_of<'f>(
 ) -> Option<(usize, &'f str)> {
     let uri = Uri::of(source, 2, report)?;
     let member = uri.member(source, scope, fleet, None, report)?;
-    let named = uri.part.as_ref().map_or("", |(name, _)| *name);
+    let named = parts(written).1.unwrap_or_default();
     let Some(names) = fleet.reference_names(member, classes) else {
         return (fleet.members[member].kind == Kind::Given).then_some((member, named));
     };
@@ -269,16 +282,23 @@ impl<'f, 'a> Wires<'f, 'a> {
         let is_replaced = wires.iter().any(|wire| wire.is_replacing);
         let mut level = Level::default();
         let mut add = |text: &Text, scope: usize, counts: bool| {
-            let found = target(text, scope, interface, fleet, classes, report);
-            match found {
-                Target::Service(provider) if counts => {
-                    level.ends.all.push(End { provider, place: text.location });
+            for one in spread(text, scope, fleet) {
+                // A group stands for the others.
+                let is_own = |one: &Text| fleet.find(scope, parts(one).0) == Some(member);
+                if matches!(&one, Cow::Owned(one) if is_own(one)) {
+                    continue;
                 }
-                Target::Service(_) => {}
-                Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
-            }
-            if counts {
-                level.places.push(text.location);
+                let found = target(&one, scope, interface, fleet, classes, report);
+                match found {
+                    Target::Service(provider) if counts => {
+                        level.ends.all.push(End { provider, place: text.location });
+                    }
+                    Target::Service(_) => {}
+                    Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
+                }
+                if counts {
+                    level.places.push(text.location);
+                }
             }
         };
         if let Some(reference) = fleet.members[member].component.reference(name) {

@@ -24,11 +24,13 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         }
     }
     for member in &fleet.members {
+        report.about(member);
         let component = member.component;
         component.properties.iter().for_each(|property| type_and_element(property, "ASM50035", report));
         component.services.iter().for_each(|one| service(one, member.composite.version, report));
         component.references.iter().for_each(|one| reference(one, member.composite.version, report));
     }
+    report.about_all();
 }
 
 fn service(service: &Service, version: Version, report: &mut Report<'_>) {

@@ -109,6 +109,9 @@ codes! {
     COMPOSITE_VALUE_TYPE = "S2042" Error "composite-value-type" ("ASM50027"): "The value of a composite's property is not of its type.";
     COMPONENT_TYPE_REPEATED = "S2043" Error "component-type-repeated": "A component type has two services, references or properties of one name. In SCA 1.0 files a warning.";
     COMPONENT_TYPE_MISSING = "S2044" Error "component-type-missing" ("ASM40001"): "An implementation that says nothing by itself has no component type beside it.";
+    EXPRESSION = "S2045" Error "expression": "An expression of a replica or a condition is malformed, or has no value.";
+    REPLICAS = "S2046" Error "replicas": "What is said about the replicas of a component contradicts itself.";
+    OVERRIDES = "S2047" Error "overrides": "A table of overrides is malformed, or is about replicas that do not exist.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";

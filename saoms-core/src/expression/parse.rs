@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::token::{Token, tokens};
+use super::token::{Placed, Token, tokens};
 use super::{Fault, Problem, Value};
 use crate::diagnostic::quoted;
 
@@ -77,7 +77,7 @@ const LEVELS: [&[&str]; 5] =
 const COMPARISON: usize = 2;
 
 struct Parser<'t> {
-    tokens: &'t [(Token, Range<usize>)],
+    tokens: &'t [Placed],
     next: usize,
     end: usize,
     depth: usize,

@@ -15,6 +15,9 @@ pub(super) enum Token {
     Sign(&'static str),
 }
 
+/// A token with its bytes.
+pub(super) type Placed = (Token, Range<usize>);
+
 /// The signs, the longer ones first.
 const SIGNS: [&str; 13] = ["==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/", "%", "(", ")"];
 
@@ -22,7 +25,7 @@ const SIGNS: [&str; 13] = ["==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/",
 const OTHERS: [(&str, &str); 4] = [("&&", "and"), ("||", "or"), ("=", "=="), ("!", "not ")];
 
 /// The tokens of `text[start..]` with their bytes, up to its end or to a `:`; and where that is.
-pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<(Token, Range<usize>)>, usize), Fault> {
+pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), Fault> {
     let mut all = Vec::new();
     let mut at = start;
     while let Some(first) = text[at..].chars().next() {
@@ -60,8 +63,8 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<(Token, Range<usiz
 fn number(rest: &str, at: usize) -> Result<(Token, usize), Fault> {
     let length = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
     let behind = &rest[length..];
-    if behind.starts_with('.') {
-        let all = length + 1 + behind[1..].find(|c: char| !c.is_ascii_digit()).unwrap_or(behind.len() - 1);
+    if let Some(digits) = behind.strip_prefix('.') {
+        let all = length + 1 + digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
         let message = format!("{} is no whole number", quoted(&rest[..all]));
         return Err(Problem::new(message).help("expressions calculate with whole numbers").at(at..at + all));
     }

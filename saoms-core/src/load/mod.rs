@@ -19,6 +19,7 @@ mod property;
 mod read;
 mod root;
 mod shelf;
+mod table;
 #[cfg(test)]
 mod tests;
 mod values;

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::read;
+use super::table::table;
 use crate::diagnostic::Diagnostics;
 use crate::model::Composite;
 use crate::source::{Sources, Span, Text};
@@ -12,7 +13,7 @@ use crate::source::{Sources, Span, Text};
 /// relative to the folder of the composite.
 ///
 /// What the file holds, without white space at its ends, is the value; its place is in that file. A file that cannot be read is
-/// reported where it is named.
+/// reported where it is named. So are the tables that replicated components name with `overrides`.
 pub fn read_values(
     composite: &mut Composite,
     max_size: u64,
@@ -38,6 +39,17 @@ pub fn read_values(
             }
         }
         details.from_file = known.get(&path).cloned();
+    }
+    for replicas in composite.components.iter_mut().filter_map(|component| component.replicas.as_mut()) {
+        let Some(file) = &replicas.overrides else { continue };
+        let path = folder.join(file.as_str());
+        match read::value(&path, max_size, file.location, sources.open()) {
+            Ok(text) => {
+                let file = sources.add(path.display().to_string(), text);
+                replicas.table = table(file, sources, diagnostics);
+            }
+            Err(diagnostic) => diagnostics.push(*diagnostic),
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::properties::robot;
 use crate::support::{fleet, shown};
 
 /// Writes the composite and files beside it, checks it from another folder, and gives what is wrong without that folder's name.
-fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> (Option<Assembly>, String) {
+pub(crate) fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> (Option<Assembly>, String) {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in beside {
         let path = folder.path().join(name);

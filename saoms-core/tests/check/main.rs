@@ -8,6 +8,7 @@ mod corpus;
 mod expanded;
 mod files;
 mod findings;
+mod fleets;
 mod loop_classes;
 mod loops;
 mod mutations;

@@ -62,6 +62,7 @@ pub(super) fn resolve<'a>(
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, checked) in checked.iter().enumerate() {
         let member = &fleet.members[place];
+        report.about(member);
         let (Kind::Class(index), Some(checked)) = (member.kind, checked) else {
             without_class(member, parameters, report);
             all.push(None);
@@ -85,6 +86,7 @@ pub(super) fn resolve<'a>(
             loops.iter().map(|one| resolved(one, member, parameters, &mut values, report)).collect();
         all.push(resolved.into_iter().collect::<Option<Vec<_>>>().filter(|_| is_team));
     }
+    report.about_all();
     all
 }
 

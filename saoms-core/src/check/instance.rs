@@ -1,0 +1,136 @@
+//! Components made of one that is replicated: its texts with the numbers of one index.
+
+use std::borrow::Cow;
+use std::rc::Rc;
+
+use super::names::Names;
+use crate::diagnostic::nearest;
+use crate::expression::{Fault, Problem, Value, has_expression, render};
+use crate::model::{Component, Property, Table};
+use crate::source::Text;
+
+/// What the replicas of a component are counted by.
+pub(super) const INDEX: &str = "index";
+
+/// One of the replicas.
+pub(super) struct Instance {
+    pub(super) index: i64,
+    pub(super) names: Rc<Names>,
+}
+
+/// A component of a replica.
+pub(super) struct Replica {
+    pub(super) component: Component,
+    pub(super) instance: Instance,
+}
+
+impl Instance {
+    /// The value of a name in an expression.
+    pub(super) fn value(&self, name: &str) -> Result<Value, Problem> {
+        match name {
+            INDEX => Ok(Value::Integer(self.index)),
+            name => self.names.value(name).map_err(|problem| match nearest(name, [INDEX]) {
+                Some(_) => problem.instead(INDEX),
+                None => problem,
+            }),
+        }
+    }
+
+    /// A text of a complex value; as it is where it has a fault, which is reported.
+    pub(super) fn text<'t>(&self, text: Cow<'t, Text>) -> Cow<'t, Text> {
+        if !has_expression(&text) {
+            return text;
+        }
+        match render(&text, &mut |name| self.value(name)) {
+            Ok(value) => Cow::Owned(Text::new(value.into(), text.location)),
+            Err(_) => text,
+        }
+    }
+
+    /// A component with the numbers of this index in all its texts; and the faults in these, each with the text it is in.
+    pub(super) fn of(
+        &self,
+        template: &Component,
+        table: Option<(&Table, usize)>,
+    ) -> (Component, Vec<(Text, Fault)>) {
+        let mut component = template.clone();
+        component.replicas = None;
+        component.condition = None;
+        let mut faults = Vec::new();
+        each_text(&mut component, &mut |text| {
+            if !has_expression(text) {
+                return;
+            }
+            match render(text, &mut |name| self.value(name)) {
+                Ok(value) => text.value = value.into(),
+                Err(found) => faults.extend(found.into_iter().map(|fault| (text.clone(), fault))),
+            }
+        });
+        if let Some((table, row)) = table {
+            replace(&mut component, table, row);
+        }
+        (component, faults)
+    }
+}
+
+/// Gives a component the values of a line of a table.
+fn replace(component: &mut Component, table: &Table, row: usize) {
+    for (name, value) in table.properties.iter().zip(&table.rows[row].values) {
+        let Some(value) = value else { continue };
+        component.properties.retain(|property| property.name != *name.as_str());
+        component.properties.push(Property {
+            origin: component.origin,
+            name: name.clone(),
+            value: Some(value.clone()),
+            text: None,
+            details: None,
+        });
+    }
+}
+
+/// Every text of a component but those that lead to other files.
+fn each_text(component: &mut Component, each: &mut dyn FnMut(&mut Text)) {
+    each(&mut component.name);
+    component.path.iter_mut().for_each(|path| each(path));
+    if let Some(implementation) = &mut component.implementation {
+        use crate::model::ImplementationKind::{Java, Rust};
+        if let Java { class } | Rust { class, .. } = &mut implementation.kind {
+            class.iter_mut().for_each(&mut *each);
+        }
+    }
+    component.properties.iter_mut().for_each(|property| of_property(property, each));
+    for service in &mut component.services {
+        each(&mut service.name);
+    }
+    for reference in &mut component.references {
+        each(&mut reference.name);
+        reference.targets.iter_mut().for_each(&mut *each);
+        reference.bindings.iter_mut().filter_map(|binding| binding.uri.as_mut()).for_each(&mut *each);
+    }
+    for one in &mut component.loops {
+        each(&mut one.name);
+        [&mut one.class, &mut one.before, &mut one.after].into_iter().flatten().for_each(&mut *each);
+        one.properties.iter_mut().for_each(|property| of_property(property, each));
+    }
+}
+
+fn of_property(property: &mut Property, each: &mut dyn FnMut(&mut Text)) {
+    each(&mut property.name);
+    [&mut property.value, &mut property.text].into_iter().flatten().for_each(&mut *each);
+    if let Some(details) = &mut property.details {
+        [&mut details.source, &mut details.from_file].into_iter().flatten().for_each(&mut *each);
+        details.values.iter_mut().for_each(|value| each(&mut value.text));
+    }
+}
+
+/// The texts in complex values of a component, which stay in the document and are rendered when they are asked for.
+pub(super) fn complex_texts(component: &Component, document: &crate::xml::Document) -> Vec<Text> {
+    let of_loops = component.loops.iter().flat_map(|one| &one.properties);
+    let properties = component.properties.iter().chain(of_loops);
+    let content = properties.flat_map(|property| {
+        let listed = property.values().iter().flat_map(|value| &value.content);
+        property.content().iter().chain(listed)
+    });
+    let elements = content.flat_map(|id| document.element(*id).descendants());
+    elements.filter_map(|element| element.trimmed_text()).filter(|text| has_expression(text)).collect()
+}

@@ -1,0 +1,153 @@
+//! What the names in expressions stand for: the properties of a composite.
+
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
+
+use super::options::Options;
+use super::report::list;
+use crate::diagnostic::{nearest, quoted};
+use crate::expression::{Problem, Value};
+use crate::model::{Component, Composite, Contribution, Link, Property};
+use crate::source::{Location, Text};
+
+/// The properties of a composite and of what it includes, as far as they are simple.
+#[derive(Default)]
+pub(super) struct Names {
+    all: HashMap<String, Name>,
+    used: RefCell<HashSet<String>>,
+}
+
+struct Name {
+    /// The text of the value and where it stands.
+    text: Option<Text>,
+    value: Result<Value, Problem>,
+}
+
+/// Who gives the properties of a composite their values: the component that it implements, and the names that its sources lead to.
+#[derive(Clone, Copy)]
+pub(super) struct Outside<'n> {
+    pub(super) component: &'n Component,
+    pub(super) names: &'n Names,
+}
+
+impl Names {
+    /// The names that the expressions in a composite can use.
+    pub(super) fn of(
+        main: &Composite,
+        contribution: &Contribution,
+        outside: Option<Outside<'_>>,
+        options: &Options,
+    ) -> Self {
+        let mut names = Self::default();
+        for composite in with_included(main, contribution) {
+            for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
+                names.all.entry(property.name.to_string()).or_insert_with(|| {
+                    let text = given(property, outside, options).or_else(|| property.simple_value().cloned());
+                    Name { value: value(property, text.as_ref()), text }
+                });
+            }
+        }
+        names
+    }
+
+    /// The value of a name.
+    pub(super) fn value(&self, name: &str) -> Result<Value, Problem> {
+        let Some(found) = self.all.get(name) else { return Err(self.unknown(name)) };
+        self.used.borrow_mut().insert(name.to_owned());
+        found.value.clone()
+    }
+
+    /// Where the value of a name is written.
+    pub(super) fn place(&self, name: &str) -> Option<Location> {
+        Some(self.all.get(name)?.text.as_ref()?.location)
+    }
+
+    /// The names that were asked for.
+    pub(super) fn used(&self) -> Vec<String> {
+        self.used.borrow().iter().cloned().collect()
+    }
+
+    fn unknown(&self, name: &str) -> Problem {
+        let mut known: Vec<&str> = self.all.keys().map(String::as_str).collect();
+        known.sort_unstable();
+        let problem = Problem::new(format!("the composite has no property {}", quoted(name)));
+        match nearest(name, known.iter().copied()) {
+            Some(meant) => problem.instead(meant),
+            None if known.is_empty() => {
+                problem.help("declare it: `<property name=\"...\">...</property>` in the composite")
+            }
+            None => problem.help(format!("its properties are {}", list(known))),
+        }
+    }
+}
+
+/// A composite and what it includes, directly or not.
+fn with_included<'a>(main: &'a Composite, contribution: &'a Contribution) -> Vec<&'a Composite> {
+    let mut all = vec![main];
+    let mut next = 0;
+    while let Some(composite) = all.get(next).copied() {
+        next += 1;
+        for include in &composite.includes {
+            if let Some(Link::To(place)) = contribution.link(include.origin) {
+                let included = &contribution.composites()[*place];
+                if !all.iter().any(|known| std::ptr::eq(*known, included)) {
+                    all.push(included);
+                }
+            }
+        }
+    }
+    all
+}
+
+/// What counts in place of the property's own value.
+fn given(property: &Property, outside: Option<Outside<'_>>, options: &Options) -> Option<Text> {
+    let name = property.name.as_str();
+    let by_outside = match outside {
+        None => options.settings.iter().find(|setting| setting.name == *name).map(|set| set.value.clone()),
+        Some(outside) => outside.component.property(name).and_then(|given| match given.source() {
+            Some(source) => {
+                let name = source.strip_prefix('$')?;
+                let found = outside.names.all.get(name)?;
+                outside.names.used.borrow_mut().insert(name.to_owned());
+                found.text.clone()
+            }
+            None => given.simple_value().or(given.from_file()).cloned(),
+        }),
+    };
+    by_outside.or_else(|| options.variable(property.env()?).cloned())
+}
+
+/// The value of a property as its type has it; without a type, as what it looks like.
+fn value(property: &Property, text: Option<&Text>) -> Result<Value, Problem> {
+    let name = quoted(&property.name);
+    let Some(text) = text else {
+        return Err(Problem::new(format!("the property {name} has no simple value")));
+    };
+    let of = property.r#type().map(|of| of.rsplit(':').next().unwrap_or(of)).unwrap_or_default();
+    let boolean = match text.as_str() {
+        "true" => Some(true),
+        "false" => Some(false),
+        "1" if of == "boolean" => Some(true),
+        "0" if of == "boolean" => Some(false),
+        _ => None,
+    };
+    let wrong = |expected: &str| {
+        Err(Problem::new(format!(
+            "the property {name} is {}, and its type asks for {expected}",
+            quoted(text)
+        )))
+    };
+    match of {
+        "boolean" => boolean.map_or_else(|| wrong("`true` or `false`"), |value| Ok(Value::Boolean(value))),
+        "int" | "integer" | "long" | "short" | "byte" | "nonNegativeInteger" | "positiveInteger"
+        | "unsignedInt" | "unsignedLong" | "unsignedShort" | "unsignedByte" => text
+            .parse()
+            .map_or_else(|_| wrong("a whole number of at most 64 bits"), |value| Ok(Value::Integer(value))),
+        "" => Ok(match (boolean, text.parse()) {
+            (Some(value), _) => Value::Boolean(value),
+            (None, Ok(number)) => Value::Integer(number),
+            _ => Value::Text(text.as_str().to_owned()),
+        }),
+        _ => Ok(Value::Text(text.as_str().to_owned())),
+    }
+}

@@ -1,0 +1,45 @@
+//! Names of composites and paths of components, of which there can be one each.
+
+use std::collections::HashMap;
+
+use super::fleet::Fleet;
+use super::report::Report;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::Composite;
+use crate::source::Location;
+
+/// Checks that no two components have one path. Where nobody gives one, names alone see to that.
+pub(super) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    if fleet.members.iter().all(|member| member.component.path.is_none()) {
+        return;
+    }
+    let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());
+    for member in fleet.members.iter().filter(|member| !member.component.name.is_empty()) {
+        let given = member.component.path.as_deref();
+        let place = given.unwrap_or(&member.component.name).location;
+        let earlier = first.entry(member.path()).or_insert(place);
+        if *earlier != place && given.is_some() {
+            let message = format!("there are two components of the path {}", quoted(member.path()));
+            let one = Diagnostic::new(&codes::COMPONENT_REPEATED, place, message);
+            report.push(one.label(*earlier, "the first").help("give each its own path, or none"));
+        }
+    }
+}
+
+/// Checks that no two composites of one namespace have one name.
+pub(super) fn composites(composites: &[Composite], report: &mut Report<'_>) {
+    let mut names: HashMap<(&str, &str), &Composite> = HashMap::new();
+    for composite in composites.iter().filter(|composite| !composite.name.is_empty()) {
+        let name = (composite.namespace(), composite.name.as_str());
+        let Some(first) = names.get(&name) else {
+            names.insert(name, composite);
+            continue;
+        };
+        let message = format!("there are two composites {} in one namespace", quoted(name.1));
+        report.push(
+            Diagnostic::new(&codes::COMPOSITE_REPEATED, composite.name.location, message)
+                .label(first.name.location, "the first")
+                .help("give each its own name; was one file given twice?"),
+        );
+    }
+}

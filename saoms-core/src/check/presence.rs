@@ -1,0 +1,101 @@
+//! What conditions and replicas ask of the composites that are being unfolded.
+
+use std::rc::Rc;
+
+use super::fleet::Unit;
+use super::instance::complex_texts;
+use super::names::{Names, Outside};
+use super::replicas::{Plan, condition, wrong};
+use super::report::Report;
+use super::unfold::{MOST_MEMBERS, Unfolding};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::expression::{Fault, render};
+use crate::model::{Component, Composite};
+use crate::source::Text;
+
+impl<'a> Unfolding<'a> {
+    /// What expressions in a unit can name.
+    pub(super) fn names(&mut self, unit: usize) -> Rc<Names> {
+        if let Some(Some(known)) = self.fleet.names.get(unit) {
+            return Rc::clone(known);
+        }
+        let owner = self.fleet.scopes[self.fleet.units[unit].scope].owner;
+        let outer = owner.map(|owner| self.names(self.fleet.members[owner].unit));
+        let component = owner.map(|owner| self.fleet.members[owner].component);
+        let outside = component.zip(outer.as_deref()).map(|(component, names)| Outside { component, names });
+        let main = self.fleet.units[unit].main();
+        let names = Rc::new(Names::of(main, self.fleet.contribution, outside, self.options));
+        if self.fleet.names.len() <= unit {
+            self.fleet.names.resize(unit + 1, None);
+        }
+        self.fleet.names[unit] = Some(Rc::clone(&names));
+        names
+    }
+
+    /// Whether a condition in a unit is true. A faulty one is reported, and taken as false.
+    pub(super) fn holds(&mut self, text: &Text, unit: usize, report: &mut Report<'_>) -> bool {
+        let names = self.names(unit);
+        let holds = condition(text, &names, &mut |name| names.value(name), report);
+        if holds.is_none() {
+            self.fault(unit);
+        }
+        holds.unwrap_or(false)
+    }
+
+    /// Finds the wires of a composite that conditions keep away.
+    pub(super) fn wires(&mut self, composite: &'a Composite, unit: usize, report: &mut Report<'_>) {
+        for wire in &composite.wires {
+            if wire.condition.as_ref().is_some_and(|condition| !self.holds(condition, unit, report)) {
+                self.fleet.absent_wires.insert((unit, wire.origin.file(), wire.origin.element));
+            }
+        }
+    }
+
+    /// A unit of its own for a composite that is included in `unit` and kept away.
+    pub(super) fn absent_unit(&mut self, unit: usize) -> usize {
+        let Unit { scope, composites, .. } = &self.fleet.units[unit];
+        let absent = Unit { scope: *scope, composites: composites.clone(), is_absent: true };
+        self.fleet.units.push(absent);
+        self.fleet.units.len() - 1
+    }
+
+    /// Remembers that components of a unit could not be made.
+    pub(super) fn fault(&mut self, unit: usize) {
+        let scope = self.fleet.units[unit].scope;
+        self.fleet.scopes[scope].is_faulty = true;
+    }
+
+    /// Reports faults in the texts of a replica.
+    pub(super) fn faults(&mut self, plan: &Plan<'a>, faults: Vec<(Text, Fault)>, report: &mut Report<'_>) {
+        for (text, fault) in &faults {
+            report.push(wrong(text, fault, &plan.names, report));
+        }
+    }
+
+    /// Whether complex values of a replicated component have faults, which are reported.
+    pub(super) fn complex(&mut self, plan: &Plan<'a>, report: &mut Report<'_>) -> bool {
+        let Some(open) = self.open.last() else { return false };
+        let mut has_faults = false;
+        let instance = plan.instance(plan.sample());
+        for text in complex_texts(plan.component, &open.composite.document) {
+            let faults = render(&text, &mut |name| instance.value(name)).err().unwrap_or_default();
+            has_faults |= !faults.is_empty();
+            for fault in &faults {
+                report.push(wrong(&text, fault, &plan.names, report));
+            }
+        }
+        has_faults
+    }
+
+    /// Whether the fleet is as large as one can be. That is reported.
+    pub(super) fn is_beyond(&mut self, component: &Component, report: &mut Report<'_>) -> bool {
+        let is_beyond = self.fleet.members.len() >= MOST_MEMBERS;
+        if is_beyond && !std::mem::replace(&mut self.is_full, true) {
+            let message =
+                format!("replicas and composites in them come to more than {MOST_MEMBERS} components");
+            let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, component.name.location, message);
+            report.push(one.help("replicas of composites with replicas multiply: is this what is meant?"));
+        }
+        is_beyond
+    }
+}

@@ -1,0 +1,230 @@
+//! How many components a replicated one comes to, and what differs among them.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::instance::{INDEX, Instance};
+use super::names::Names;
+use super::report::Report;
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::expression::{self, Expression, Fault, Problem, Value, boolean, integer, parse, render};
+use crate::model::{Component, Replicas, Table};
+use crate::source::Text;
+
+/// Replicas of a fleet in all: a slip of the finger must not take all memory.
+pub(super) const MOST_REPLICAS: u64 = 100_000;
+
+/// The replicas of a component that are still to be made.
+pub(super) struct Plan<'a> {
+    pub(super) component: &'a Component,
+    pub(super) names: Rc<Names>,
+    next: i64,
+    /// How many there are in all, and still to come.
+    pub(super) count: u64,
+    left: u64,
+    /// By index, the line of the table.
+    rows: HashMap<i64, usize>,
+}
+
+impl<'a> Plan<'a> {
+    /// What a component says about its replicas; `None` with a fault, which is reported. `left` is how many there may be.
+    pub(super) fn of(
+        component: &'a Component,
+        replicas: &'a Replicas,
+        names: Rc<Names>,
+        left: u64,
+        report: &mut Report<'_>,
+    ) -> Option<Self> {
+        let Some(written) = &replicas.count else {
+            let (name, at) = match (&replicas.from, &replicas.overrides) {
+                (Some(from), _) => ("from", from.location),
+                (_, Some(overrides)) => ("overrides", overrides.location),
+                _ => ("count", component.name.location),
+            };
+            let message = format!("`{name}` is about replicas, and nothing says how many there are");
+            let one = Diagnostic::new(&codes::REPLICAS, at, message);
+            report.push(one.help("add `saoms:count=\"...\"`"));
+            return None;
+        };
+        if let (Some(file), None) = (&replicas.overrides, &replicas.table) {
+            // As a rule it was reported by who tried to read it.
+            if !report.has_errors() {
+                report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
+            }
+            return None;
+        }
+        let count = number(written, &names, report);
+        let from = replicas.from.as_ref().map_or(Some(1), |from| number(from, &names, report));
+        let is_named = has_index(component, &names, report);
+        let (count, from) = (count?, from?);
+        let fault = |message: String, help: &str, report: &mut Report<'_>| {
+            let mut one = Diagnostic::new(&codes::REPLICAS, written.location, message).help(help);
+            for (name, _) in parse(written).ok().iter().flat_map(Expression::names) {
+                if let Some(at) = names.place(name) {
+                    one = one.label(at, format!("{} is this", quoted(name)));
+                }
+            }
+            report.push(one);
+        };
+        let Ok(count) = u64::try_from(count) else {
+            fault(format!("there cannot be {count} replicas"), "the number of replicas is 0 or more", report);
+            return None;
+        };
+        if count > left {
+            let message = match left {
+                MOST_REPLICAS => format!("{count} replicas are more than a fleet can have"),
+                _ => format!("with {count} replicas here there are more than a fleet can have"),
+            };
+            fault(message, &format!("a fleet has at most {MOST_REPLICAS} replicas"), report);
+            return None;
+        }
+        if from.checked_add_unsigned(count).is_none() {
+            fault("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`", report);
+            return None;
+        }
+        let mut plan = Self { component, names, next: from, count, left: count, rows: HashMap::new() };
+        let is_sound = replicas.table.as_ref().is_none_or(|table| plan.rows(table, report));
+        (is_sound && is_named).then_some(plan)
+    }
+
+    /// The next replica: its index.
+    pub(super) fn next(&mut self) -> Option<i64> {
+        self.left = self.left.checked_sub(1)?;
+        self.next += 1;
+        Some(self.next - 1)
+    }
+
+    /// The first replica, whether there is one or not: what can be known about the others is known by it.
+    pub(super) fn sample(&self) -> i64 {
+        self.next
+    }
+
+    /// The instance of an index.
+    pub(super) fn instance(&self, index: i64) -> Instance {
+        Instance { index, names: Rc::clone(&self.names) }
+    }
+
+    /// What the table says about an index.
+    pub(super) fn row(&self, index: i64) -> Option<(&'a Table, usize)> {
+        let table = self.component.replicas.as_ref()?.table.as_ref()?;
+        Some((table, *self.rows.get(&index)?))
+    }
+
+    /// Finds the line of each replica. What is wrong with the lines is reported.
+    fn rows(&mut self, table: &Table, report: &mut Report<'_>) -> bool {
+        let last = self.next.saturating_add(self.count as i64 - 1);
+        let by_name = (table.key == *"name").then(|| self.by_name());
+        let mut seen: HashMap<i64, &Text> = HashMap::new();
+        let mut is_sound = true;
+        for (place, row) in table.rows.iter().enumerate() {
+            let found = match &by_name {
+                Some(by_name) => by_name.get(row.key.as_str()).copied(),
+                None => row.key.parse().ok().filter(|index| (self.next..=last).contains(index)),
+            };
+            let is_number = by_name.is_some() || row.key.parse::<i64>().is_ok();
+            let Some(index) = found else {
+                is_sound &= is_number;
+                let message = format!("there is no replica {}", quoted(&row.key));
+                let one = match &by_name {
+                    Some(by_name) => {
+                        let mut names: Vec<&str> = by_name.keys().map(String::as_str).collect();
+                        names.sort_unstable();
+                        let known = ("the replicas are", names.iter().copied());
+                        report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known)
+                    }
+                    None => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
+                        .help(format!("the indices go from {} to {last}", self.next)),
+                };
+                // Fewer robots than the table knows are no mistake where the number is set from outside.
+                let severity = if is_number { Severity::Warning } else { Severity::Error };
+                report.push(one.severity(severity));
+                continue;
+            };
+            if let Some(first) = seen.insert(index, &row.key) {
+                is_sound = false;
+                let message = format!("there are two lines about the replica {}", quoted(&row.key));
+                let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
+                report.push(one.label(first.location, "the first").help("make one of them"));
+            }
+            self.rows.insert(index, place);
+        }
+        is_sound
+    }
+
+    /// The index of each name.
+    fn by_name(&self) -> HashMap<String, i64> {
+        let indices = (self.next..).take(self.count as usize);
+        let named = indices.filter_map(|index| {
+            let instance = self.instance(index);
+            Some((render(&self.component.name, &mut |name| instance.value(name)).ok()?, index))
+        });
+        named.collect()
+    }
+}
+
+/// Checks that the name of a replicated component differs from replica to replica.
+fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) -> bool {
+    let name = &component.name;
+    if name.is_empty() || expression::names(name).iter().any(|name| name == INDEX) {
+        return !name.is_empty();
+    }
+    // A wrong expression is reported when it is used.
+    let instance = Instance { index: 0, names: Rc::clone(names) };
+    if render(name, &mut |name| instance.value(name)).is_err() {
+        return true;
+    }
+    let message = format!("all replicas would be called {}", quoted(name));
+    let meant = format!("{name}${{index}}");
+    let one = Diagnostic::new(&codes::REPLICAS, name.location, message);
+    report.push(one.suggest(
+        format!("replace {} with {}", quoted(name), quoted(&meant)),
+        name.location,
+        meant,
+    ));
+    false
+}
+
+/// The number that an attribute comes to. Faults are reported.
+fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Option<i64> {
+    let value = parse(text).and_then(|one| integer(&one, &mut |name| names.value(name)));
+    value.map_err(|fault| report.push(wrong(text, &fault, names, report))).ok()
+}
+
+/// Whether a condition is true. Faults are reported.
+pub(super) fn condition(
+    text: &Text,
+    names: &Names,
+    value: &mut dyn FnMut(&str) -> Result<Value, Problem>,
+    report: &mut Report<'_>,
+) -> Option<bool> {
+    let holds = parse(text).and_then(|one| boolean(&one, value));
+    holds.map_err(|fault| report.push(wrong(text, &fault, names, report))).ok()
+}
+
+/// What is wrong with an expression in a text.
+pub(super) fn wrong(text: &Text, fault: &Fault, names: &Names, report: &Report<'_>) -> Diagnostic {
+    let code: &'static Code = &codes::EXPRESSION;
+    let at = report.part(text, fault.at.clone());
+    let Problem { message, help, instead, .. } = &fault.problem;
+    let mut one = Diagnostic::new(code, at, message.clone());
+    let written = text.get(fault.at.clone()).unwrap_or_default();
+    let inside = parse(written).ok();
+    for (name, _) in inside.iter().flat_map(Expression::names) {
+        if let Some(place) = names.place(name) {
+            one = one.label(place, format!("{} is this", quoted(name)));
+        }
+    }
+    if let Some(help) = help {
+        one = one.help(help.clone());
+    }
+    match instead {
+        Some(instead) if instead.is_empty() => one.suggest(format!("remove {}", quoted(written)), at, ""),
+        Some(instead) => one.suggest(
+            super::report::replacing(written, instead.trim()),
+            at,
+            super::report::escaped(instead),
+        ),
+        None if help.is_none() => one.help("`docs/fleets.md` says what expressions are"),
+        None => one,
+    }
+}

@@ -1,0 +1,136 @@
+//! Tables of what differs from one replica to another: comma-separated values (RFC 4180).
+
+use std::collections::HashMap;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::model::{Row, Table};
+use crate::source::{FileId, Location, Sources, Span, Text};
+
+/// The columns that can say which replica a line is about.
+const KEYS: [&str; 2] = ["index", "name"];
+
+/// Reads a table. `None` with a fault, which is reported at its line and column; all of them are.
+pub(super) fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
+    let before = diagnostics.errors();
+    let lines = lines(file, sources.get(file).text(), diagnostics);
+    let mut lines = lines.into_iter();
+    let Some(mut head) = lines.next().map(Vec::into_iter) else {
+        let one = Diagnostic::new(&codes::OVERRIDES, Span::empty(0).in_file(file), "the table is empty");
+        diagnostics.push(one.help("its first line names the columns: `index` or `name`, and properties"));
+        return None;
+    };
+    let key = head.next()?;
+    let report = |at: Location, message: String| Diagnostic::new(&codes::OVERRIDES, at, message);
+    if !KEYS.contains(&key.as_str()) {
+        let one = report(
+            key.location,
+            format!("the first column is {}, and has to be `index` or `name`", quoted(&key)),
+        );
+        diagnostics.push(match nearest(&key, KEYS) {
+            Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), key.location, meant),
+            None => one.help("it says which replica a line is about, the other columns are properties"),
+        });
+    }
+    let properties: Vec<Text> = head.collect();
+    let mut first: HashMap<&str, Location> = HashMap::new();
+    for name in &properties {
+        if name.is_empty() {
+            let one = report(name.location, "a column without a name".to_owned());
+            diagnostics.push(one.help("the first line names the property of each column"));
+        } else if let Some(first) = first.insert(name, name.location) {
+            let one = report(name.location, format!("there are two columns {}", quoted(name)));
+            diagnostics.push(one.label(first, "the first").help("make one of them"));
+        }
+    }
+    let mut rows = Vec::new();
+    for line in lines {
+        let count = line.len();
+        let mut cells = line.into_iter();
+        let Some(of) = cells.next() else { continue };
+        let mut values: Vec<Option<Text>> = cells.by_ref().take(properties.len()).map(given).collect();
+        if let Some(beyond) = cells.next() {
+            let columns = properties.len() + 1;
+            let one = report(
+                beyond.location,
+                format!("a line with {count} values, and there are {columns} columns"),
+            );
+            diagnostics.push(one.help("a value that holds a comma stands between two `\"`"));
+        }
+        values.resize(properties.len(), None);
+        rows.push(Row { key: of, values });
+    }
+    (diagnostics.errors() == before).then_some(Table { file, key, properties, rows })
+}
+
+/// An empty value is none.
+fn given(cell: Text) -> Option<Text> {
+    (!cell.is_empty()).then_some(cell)
+}
+
+/// The values of all lines that are not empty.
+fn lines(file: FileId, text: &str, diagnostics: &mut Diagnostics) -> Vec<Vec<Text>> {
+    let mut lines = Vec::new();
+    let mut line = Vec::new();
+    let mut at = text.len() - text.trim_start_matches('\u{feff}').len();
+    while at < text.len() {
+        let (cell, end) = cell(file, text, at, diagnostics);
+        line.push(cell);
+        at = end;
+        if text[at..].starts_with(',') {
+            at += 1;
+            // A comma at the end of the file is followed by an empty value.
+            if at < text.len() {
+                continue;
+            }
+            line.push(Text::new("".into(), Span::empty(at as u32).in_file(file)));
+        }
+        at += text[at..].chars().next().map_or(0, char::len_utf8);
+        let whole = std::mem::take(&mut line);
+        if whole.iter().any(|cell| !cell.is_empty()) {
+            lines.push(whole);
+        }
+    }
+    lines
+}
+
+/// The value at a place, and where the comma or the end of the line behind it is.
+fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (Text, usize) {
+    let is_end = |c: char| c == ',' || c == '\n';
+    let end_of = |from: usize| text[from..].find(is_end).map_or(text.len(), |length| from + length);
+    let blank = text[at..].len() - text[at..].trim_start_matches([' ', '\t']).len();
+    let start = at + blank;
+    if !text[start..].starts_with('"') {
+        let end = end_of(at);
+        let value = text[at..end].trim();
+        let start = if value.is_empty() { at } else { start };
+        let span = Span::new(start as u32, (start + value.len()) as u32);
+        return (Text::new(value.into(), span.in_file(file)), end);
+    }
+    let mut value = String::new();
+    let mut inside = start + 1;
+    loop {
+        let Some(length) = text[inside..].find('"') else {
+            let place = Span::new(start as u32, start as u32 + 1).in_file(file);
+            let one = Diagnostic::new(&codes::OVERRIDES, place, "a `\"` that is never closed");
+            diagnostics.push(one.help("a `\"` in a value between two of them is written twice"));
+            return (Text::new("".into(), place), text.len());
+        };
+        value.push_str(&text[inside..inside + length]);
+        inside += length + 1;
+        if !text[inside..].starts_with('"') {
+            break;
+        }
+        value.push('"');
+        inside += 1;
+    }
+    let end = end_of(inside);
+    let behind = text[inside..end].trim();
+    if !behind.is_empty() {
+        let place = Span::new(inside as u32, end as u32).in_file(file);
+        let one =
+            Diagnostic::new(&codes::OVERRIDES, place, format!("{} behind a closing `\"`", quoted(behind)));
+        diagnostics.push(one.help("a `\"` in a value between two of them is written twice"));
+    }
+    let span = Span::new(start as u32 + 1, inside as u32 - 1).in_file(file);
+    (Text::new(value.trim().into(), span), end)
+}

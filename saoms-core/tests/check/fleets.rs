@@ -1,0 +1,437 @@
+//! Fleets in few lines: replicas, tables of what differs, conditions, values from the environment.
+
+use expect_test::expect;
+use saoms_core::check::{Options, Setting, Variable, check};
+use saoms_core::diagnostic::Diagnostics;
+use saoms_core::load::load_file;
+use saoms_core::model::Contribution;
+use saoms_core::source::Sources;
+
+use crate::classes::registry;
+use crate::files::checked;
+use crate::support::{outcome, part, shown};
+
+/// A composite with the prefix of SAOMS.
+fn fleet(inside: &str) -> String {
+    part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside)
+}
+
+fn of(inside: &str, settings: &[&str]) -> String {
+    outcome(&[&fleet(inside)], settings)
+}
+
+const ROBOTS: &str = r#"<property name="robots">3</property>
+<component name="Robot${index:03}" saoms:count="robots"><implementation.java class="example.Robot"/>
+<property name="ID">Robot${index:03}</property><property name="period" value="${100 + index}"/><property name="number">${index * 2 + 1}</property>
+<property name="charger"><x xmlns="">${index % 2}</x><y xmlns="">${robots}</y></property>
+<reference name="gps" target="Gps${ index }"/></component>
+<component name="Gps${index}" saoms:count="robots"><implementation.java class="example.Gps"/></component>"#;
+
+#[test]
+fn replicas_have_their_index_in_names_values_and_targets() {
+    expect![[r#"
+        Robot001 (example.Robot) ID=Text("Robot001") number=Text("3") charger=Complex([("x", Text("1")), ("y", Text("3"))]) gps->Gps1/position
+        Robot002 (example.Robot) ID=Text("Robot002") number=Text("5") charger=Complex([("x", Text("0")), ("y", Text("3"))]) gps->Gps2/position
+        Robot003 (example.Robot) ID=Text("Robot003") number=Text("7") charger=Complex([("x", Text("1")), ("y", Text("3"))]) gps->Gps3/position
+        Gps1 (example.Gps) other->
+        Gps2 (example.Gps) other->
+        Gps3 (example.Gps) other->
+    "#]].assert_eq(&of(ROBOTS, &[]));
+    expect![[r#"
+        Robot001 (example.Robot) ID=Text("Robot001") number=Text("3") charger=Complex([("x", Text("1")), ("y", Text("1"))]) gps->Gps1/position
+        Gps1 (example.Gps) other->
+    "#]].assert_eq(&of(ROBOTS, &["robots=1"]));
+    expect![""].assert_eq(&of(ROBOTS, &["robots=0"]));
+    expect![[r#"
+        Gps-2 (example.Gps) other->
+        Gps-1 (example.Gps) other->
+        x (example.Reader) title=Text("$${index} of ${index}")
+        B1 (example.Reader) title=Text("${index} of 1")
+    "#]].assert_eq(&of(
+        r#"<component name="Gps${index:02}" saoms:count="2" saoms:from="2 - 4"><implementation.java class="example.Gps"/></component>
+<component name="B" saoms:path="x"><implementation.java class="example.Reader"/><property name="title">$${index} of ${index}</property></component>
+<component name="B${index}" saoms:count="1"><implementation.java class="example.Reader"/><property name="title">$${index} of ${index}</property></component>"#,
+        &[],
+    ));
+}
+
+#[test]
+fn a_star_names_all_replicas() {
+    expect![[r#"
+        N1 (example.Navigator) wheels->R01/move task->
+        N2 (example.Navigator) wheels->R01/move task->
+        R01 (example.Robot) ID=Text("R1") number=Text("1") gps->G1/position
+        R02 (example.Robot) ID=Text("R2") number=Text("2") gps->G1/position
+        G1 (example.Gps) other->
+        G2 (example.Gps) other->
+        C (example.Conductor) wheels->R01/move+R02/move gps->G1/position+G2/position
+    "#]].assert_eq(&of(
+        r#"<component name="N${index}" saoms:count="2"><implementation.java class="example.Navigator"/></component>
+<component name="R${index:02}" saoms:count="2"><implementation.java class="example.Robot"/><property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property></component>
+<component name="G${index}" saoms:count="2"><implementation.java class="example.Gps"/></component>
+<component name="C"><implementation.java class="example.Conductor"/><reference name="wheels" target="R*/move"/><reference name="gps" target="G*"/></component>
+<wire source="N*/wheels" target="R01"/>
+<wire source="R*/gps" target="G1"/>"#,
+        &[],
+    ));
+    expect![[r#"
+        2:119-121 error S2020: components call each other in a circle: `G1` -> `G2` -> `G1`
+          2:119-121 `G1` calls `G2` through `other`
+          help: a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic
+        3:99-101 error S2011: there is no component `H*`
+          fix: replace `H*` with `G*` [3:99-101 "G*"]
+    "#]].assert_eq(&of(
+        r#"<component name="G${index}" saoms:count="2"><implementation.java class="example.Gps"/><reference name="other" target="G*"/></component>
+<component name="C"><implementation.java class="example.Conductor"/><reference name="gps" target="H*"/></component>"#,
+        &[],
+    ));
+}
+
+#[test]
+fn composites_are_replicated_with_all_that_is_in_them() {
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="hall">1</property><service name="s" promote="G1"/>
+<component name="G${index}" saoms:count="hall"><implementation.java class="example.Gps"/></component>
+<component name="R"><implementation.java class="example.Robot"/><property name="ID" source="$id"/><property name="period">1</property><property name="number" source="$hall"/></component>
+<property name="id"/>"#,
+    );
+    let inside = r#"<component name="Hall${index}" saoms:count="2"><implementation.composite name="t:hall"/><property name="hall">${index}</property><property name="id">R${index}</property></component>
+<component name="C"><implementation.java class="example.Conductor"/><reference name="gps" target="Hall*/s"/></component>"#;
+    expect![[r#"
+        Hall1/G1 (example.Gps) other->
+        Hall1/R (example.Robot) ID=Text("R1") number=Text("1") gps->
+        Hall2/G1 (example.Gps) other->
+        Hall2/G2 (example.Gps) other->
+        Hall2/R (example.Robot) ID=Text("R2") number=Text("2") gps->
+        C (example.Conductor) wheels-> gps->Hall1/G1/position+Hall2/G1/position
+    "#]]
+    .assert_eq(&outcome(&[&fleet(inside), &hall], &[]));
+    let wrong = inside
+        .replace("${index}</property><property name=\"id\"", "${index * 60}</property><property name=\"id\"");
+    expect![[r#"
+        2:111-124 error S3008: property `number`: `120` is out of range: expected a whole number from 1 to 99 (in `Hall2/R`)
+          hall:4:167-172 used here as `number`
+          help: `number`: The number of the robot
+    "#]].assert_eq(&outcome(
+        &[&fleet(&wrong), &hall.replace("saoms:count=\"hall\"", "saoms:count=\"1\"")],
+        &[],
+    ));
+}
+
+#[test]
+fn what_is_wrong_with_replicas_is_found_at_its_place() {
+    expect![[r#"
+        3:18-19 error S2046: all replicas would be called `A`
+          fix: replace `A` with `A${index}` [3:18-19 "A${index}"]
+        4:41-42 error S2046: `from` is about replicas, and nothing says how many there are
+          help: add `saoms:count="..."`
+        5:42-48 error S2046: there cannot be -1 replicas
+          2:63-65 `robots` is this
+          help: the number of replicas is 0 or more
+        6:42-46 error S2046: 200000 replicas are more than a fleet can have
+          2:98-104 `many` is this
+          help: a fleet has at most 100000 replicas
+        7:42-46 error S2045: here is the text `north`, and a whole number is expected
+          2:23-28 `site` is this
+          help: `docs/fleets.md` says what expressions are
+        8:21-26 error S2045: the composite has no property `inedx` (in `F${inedx}`, index 1)
+          help: its properties are `many`, `robots` and `site`
+          fix: replace `inedx` with `index` [8:21-26 "index"]
+        9:18-27 error S3006: component `G-1` lacks the property `number` (index -1)
+          help: add `<property name="number">...</property>`: a whole number from 1 to 99
+        9:131-136 error S2045: `1` is divided by zero (in `G0`, index 0)
+          help: `docs/fleets.md` says what expressions are
+        10:18-31 error S2002: there are two components `H1` (index 3)
+          help: give each its own name
+        11:19-26 error S2045: `${` is never closed (in `I${index`, index 1)
+          help: write `${...}`, or `$${` for `${` itself
+        12:44-49 error S2045: the composite has no property `robts`
+          fix: replace `robts` with `robots` [12:44-49 "robots"]
+        13:29-40 error S1007: `component` has no attribute `saoms:cuont`
+          fix: replace `saoms:cuont` with `saoms:count` [13:29-40 "saoms:count"]
+        14:45-50 error S1007: `component` has no attribute `count`
+          help: it is an attribute of SAOMS: write `saoms:count`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
+        15:42-43 error S2046: the indices go beyond 64 bits
+          help: choose a smaller `saoms:from`
+        16:128-131 error S2045: the composite has no property `nix`
+          help: its properties are `many`, `robots` and `site`
+    "#]].assert_eq(&of(
+        r#"<property name="site">north</property><property name="robots">-1</property><property name="many">200000</property>
+<component name="A" saoms:count="2"><implementation.java class="example.Gps"/></component>
+<component name="B${index}" saoms:from="2"><implementation.java class="example.Gps"/></component>
+<component name="C${index}" saoms:count="robots"><implementation.java class="example.Gps"/></component>
+<component name="D${index}" saoms:count="many"><implementation.java class="example.Gps"/></component>
+<component name="E${index}" saoms:count="site"><implementation.java class="example.Gps"/></component>
+<component name="F${inedx}" saoms:count="2"><implementation.java class="example.Gps"/></component>
+<component name="G${index}" saoms:count="3" saoms:from="-1"><implementation.java class="example.Robot"/><property name="ID">${1 / index}</property></component>
+<component name="H${index % 2}" saoms:count="3"><implementation.java class="example.Gps"/></component>
+<component name="I${index" saoms:count="1"><implementation.java class="example.Gps"/></component>
+<component name="J${index:3}" saoms:count="robts"><implementation.java class="example.Gps"/></component>
+<component name="K${index}" saoms:cuont="3"><implementation.java class="example.Gps"/></component>
+<component name="L${index}" saoms:count="3" count="4"><implementation.java class="example.Gps"/></component>
+<component name="M${index}" saoms:count="1" saoms:from="9223372036854775807"><implementation.java class="example.Gps"/></component>
+<component name="N${index}" saoms:count="1"><implementation.java class="example.Robot"/><property name="charger"><x xmlns="">${nix}</x></property></component>"#,
+        &[],
+    ));
+    expect![[r#"
+        3:49-55 error S2046: 4000000 replicas are more than a fleet can have
+          --set:1:8-15 `robots` is this
+          help: a fleet has at most 100000 replicas
+        7:44-50 error S2046: 4000000 replicas are more than a fleet can have
+          --set:1:8-15 `robots` is this
+          help: a fleet has at most 100000 replicas
+    "#]]
+    .assert_eq(&of(ROBOTS, &["robots=4000000"]));
+}
+
+#[test]
+fn what_is_said_of_many_replicas_is_told_once() {
+    expect![[r#"
+        2:18-30 error S3006: component `R01` lacks the property `period` (index 1, and in 11 more)
+          help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        3:21-22 error S3013: components `R01` and `R02` have the same `ID` `R` (index 2, and in 10 more)
+          help: every robot needs its own
+        3:57-70 error S3008: property `number`: `100` is out of range: expected a whole number from 1 to 99 (in `R10`, index 10, and in 2 more)
+          help: `number`: The number of the robot
+        3:97-101 error S3004: class `example.Robot` has no property `sped` (in `R01`, index 1, and in 11 more)
+          fix: replace `sped` with `speed` [3:97-101 "speed"]
+        3:138-143 error S3007: property `awake`: `maybe` is not a boolean: expected `true` or `false` (in `R01`, index 1, and in 11 more)
+          help: the default is `true`
+        4:31-40 error S2011: there is no component `G1` (in `R01`, index 1, and in 11 more)
+          help: the components are `R01`, `R02`, `R03`, `R04`, `R05`, `R06`, `R07`, `R08`, `R09`, `R10`, `R11`, `R12`, `X01`, `X02`, `X03`, `R*` and `X*`
+        5:76-90 error S3001: there is no class `example.Robott` (in `X01`, index 1, and in 2 more)
+          help: looked among the 18 classes linked into this program; `saoms components` lists them
+          fix: replace `example.Robott` with `example.Robot` [5:76-90 "example.Robot"]
+          fix: replace `example.Robott` with `example.Robot001` [5:76-90 "example.Robot001"]
+    "#]].assert_eq(&of(
+        r#"<component name="R${index:02}" saoms:count="12"><implementation.java class="example.Robot"/>
+<property name="ID">R</property><property name="number">${index * 10}</property><property name="sped">1</property><property name="awake">maybe</property>
+<reference name="gps" target="G${index}"/></component>
+<component name="X${index:02}" saoms:count="3"><implementation.java class="example.Robott"/></component>"#,
+        &[],
+    ));
+}
+
+#[test]
+fn tables_say_what_differs() {
+    let inside = r#"<component xmlns:saoms="urn:saoms:1" name="R${index:02}" saoms:count="4" saoms:overrides="robots.csv"><implementation.java class="example.Robot"/>
+<property name="ID">R${index}</property><property name="period">100</property><property name="number">${index}</property></component>"#;
+    let found = |table: &str| {
+        let (assembly, found) = checked(inside, &[("robots.csv", table.as_bytes())], 1_000_000);
+        let components = assembly.iter().flat_map(|assembly| &assembly.components);
+        let values = components.map(|one| {
+            let period = one.task.as_ref().unwrap().period;
+            format!("{} {:?} {period:?}\n", one.path, one.values)
+        });
+        found + &values.collect::<String>()
+    };
+    expect![[r#"
+        R01 [("ID", Text("R1")), ("number", Text("1"))] 100ms
+        R02 [("ID", Text("R2")), ("number", Text("2")), ("colour", Text("red"))] 100ms
+        R03 [("ID", Text("R3")), ("number", Text("3"))] 100ms
+        R04 [("ID", Text("R4")), ("number", Text("4")), ("colour", Text("red"))] 200ms
+    "#]]
+    .assert_eq(&found("index,colour,period\n2,red,\n 4 ,\"red\",200\n"));
+    expect![[r#"
+        R01 [("ID", Text("R1")), ("number", Text("1"))] 100ms
+        R02 [("ID", Text("R2")), ("number", Text("2"))] 100ms
+        R03 [("ID", Text("R3")), ("number", Text("30"))] 100ms
+        R04 [("ID", Text("R4")), ("number", Text("4"))] 100ms
+    "#]]
+    .assert_eq(&found("name,number\r\nR03,30\r\n\r\n"));
+    expect![[r#"
+        robots.csv:1:1-1 error S2047: the table is empty
+          help: its first line names the columns: `index` or `name`, and properties
+    "#]]
+    .assert_eq(&found(""));
+    expect![[r#"
+        robots.csv:1:1-6 error S2047: the first column is `robot`, and has to be `index` or `name`
+          help: it says which replica a line is about, the other columns are properties
+        robots.csv:1:14-20 error S2047: there are two columns `colour`
+          robots.csv:1:7-13 the first
+          help: make one of them
+        robots.csv:1:21-21 error S2047: a column without a name
+          help: the first line names the property of each column
+    "#]]
+    .assert_eq(&found("robot,colour,colour,\n1,red,blue,x\n"));
+    expect![[r#"
+        robots.csv:4:9-10 error S2047: a line with 4 values, and there are 3 columns
+          help: a value that holds a comma stands between two `"`
+        robots.csv:6:8-9 error S2047: `x` behind a closing `"`
+          help: a `"` in a value between two of them is written twice
+        robots.csv:6:10-11 error S2047: a `"` that is never closed
+          help: a `"` in a value between two of them is written twice
+    "#]]
+    .assert_eq(&found("index,colour,sped\n1,rde,\n5,red,\n1,blue,,7\nx,blue,2\n2,\"red\"x,\"1\n"));
+    expect![[r#"
+        robots.csv:2:1-3 warning S2047: there is no replica `R3`
+          fix: replace `R3` with `R03` [robots.csv:2:1-3 "R03"]
+        R01 [("ID", Text("R1")), ("number", Text("1"))] 100ms
+        R02 [("ID", Text("R2")), ("number", Text("2"))] 100ms
+        R03 [("ID", Text("R3")), ("number", Text("3"))] 100ms
+        R04 [("ID", Text("R4")), ("number", Text("4"))] 100ms
+    "#]]
+    .assert_eq(&found("name,speed\nR3,1\n"));
+    expect![[r#"
+        robots.csv:1:7-11 error S3004: class `example.Robot` has no property `sped` (in `R01`, index 1)
+          fix: replace `sped` with `speed` [robots.csv:1:7-11 "speed"]
+        robots.csv:3:4-7 error S3008: property `number`: `300` is out of range: expected a whole number from 1 to 99 (in `R02`, index 2)
+          help: `number`: The number of the robot
+        robots.csv:3:8-11 error S3009: property `colour`: `rde` is not allowed: expected `red` or `blue` (in `R02`, index 2)
+          help: the default is `blue`
+          fix: replace `rde` with `red` [robots.csv:3:8-11 "red"]
+    "#]].assert_eq(&found("index,sped,number,colour\n1,7,70,\n2,,300,rde\n"));
+    let (_, missing) = checked(inside, &[("robot.csv", b"")], 1_000_000);
+    expect![[r#"
+        2:91-101 error S0001: there is no such file
+          help: there is `robot.csv`
+    "#]]
+    .assert_eq(&missing);
+}
+
+#[test]
+fn conditions_take_away_what_is_checked_all_the_same() {
+    let inside = r#"<property name="simulated">true</property><property name="site">north</property>
+<component name="Gps" saoms:if="simulated"><implementation.java class="example.Gps"/></component>
+<component name="Gps" saoms:if="not simulated"><implementation.java class="real.Gps"/></component>
+<component name="Spare" saoms:if="site == 'south'"><implementation.java class="example.Gps"/></component>
+<component name="R${index}" saoms:count="5" saoms:if="index != 3"><implementation.java class="example.Robot"/><property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property></component>
+<component name="N"><implementation.java class="example.Navigator"/></component>
+<wire source="N/wheels" target="R1" saoms:if="simulated"/><wire source="N/wheels" target="R2" saoms:if="not simulated"/>"#;
+    expect![[r#"
+        Gps (example.Gps) other->
+        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+        R2 (example.Robot) ID=Text("R2") number=Text("2") gps->
+        R4 (example.Robot) ID=Text("R4") number=Text("4") gps->
+        R5 (example.Robot) ID=Text("R5") number=Text("5") gps->
+        N (example.Navigator) wheels->R1/move task->
+    "#]]
+    .assert_eq(&of(inside, &[]));
+    expect![[r#"
+        Gps (example.Gps) other->
+        Spare (example.Gps) other->
+        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+        R2 (example.Robot) ID=Text("R2") number=Text("2") gps->
+        R4 (example.Robot) ID=Text("R4") number=Text("4") gps->
+        R5 (example.Robot) ID=Text("R5") number=Text("5") gps->
+        N (example.Navigator) wheels->R1/move task->
+    "#]]
+    .assert_eq(&of(inside, &["site=south"]));
+    expect![[r#"
+        3:18-19 error S3006: component `A` lacks the property `period`
+          help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+        3:148-151 error S3008: property `number`: `100` is out of range: expected a whole number from 1 to 99
+          help: `number`: The number of the robot
+        3:178-182 error S3004: class `example.Robot` has no property `sped`
+          fix: replace `sped` with `speed` [3:178-182 "speed"]
+        4:31-35 error S2045: here is the text `north`, and a condition is expected
+          2:23-28 `site` is this
+          help: compare it with something, as in `robots > 10`
+        5:31-40 error S2045: the text `north` cannot be compared with the number 3
+          2:23-28 `site` is this
+          help: texts stand between two `'`, numbers and `true` and `false` do not
+        6:35-36 error S2045: there is no `=`
+          fix: replace `=` with `==` [6:35-36 "=="]
+        7:31-36 error S2045: the composite has no property `index`
+          help: its properties are `site`
+        8:21-32 error S1011: the attribute `saoms:if` is empty
+    "#]].assert_eq(&of(
+        r#"<property name="site">north</property>
+<component name="A" saoms:if="site == 'south'"><implementation.java class="example.Robot"/><property name="ID">A</property><property name="number">100</property><property name="sped">1</property></component>
+<component name="B" saoms:if="site"><implementation.java class="example.Gps"/></component>
+<component name="C" saoms:if="site == 3"><implementation.java class="example.Gps"/></component>
+<component name="D" saoms:if="sit = 'north'"><implementation.java class="example.Gps"/></component>
+<component name="E" saoms:if="index == 3"><implementation.java class="example.Gps"/></component>
+<component name="F" saoms:if=""><implementation.java class="example.Gps"/></component>"#,
+        &[],
+    ));
+    expect![[r#"
+        4:95-96 error S2011: the component `A` is not there
+          3:31-46 this is false
+          help: give what names it the same condition
+        6:15-26 error S2010: `B/other/x/y` has the wrong form
+          help: write `component` or `component/name`
+    "#]]
+    .assert_eq(&of(
+        r#"<property name="site">north</property>
+<component name="A" saoms:if="site == 'south'"><implementation.java class="example.Gps"/></component>
+<component name="B"><implementation.java class="example.Gps"/><reference name="other" target="A"/></component>
+<wire source="B/other" target="A" saoms:if="site == 'south'"/>
+<wire source="B/other/x/y" target="A" saoms:if="site == 'south'"/>"#,
+        &[],
+    ));
+}
+
+#[test]
+fn includes_and_composites_can_be_absent() {
+    let more = part(
+        "more",
+        "",
+        r#"<property name="used">1</property><component name="M"><implementation.java class="example.Gps"/></component>
+<component name="N"><implementation.java class="example.Robot"/><property name="ID">N</property><property name="period" source="$used"/><property name="number">7</property></component>
+<wire source="M/other" target="Nobody"/>"#,
+    );
+    let inside = r#"<property name="more">false</property><include name="t:more" saoms:if="more"/>
+<component name="In" saoms:if="more"><implementation.composite name="t:more"/></component>
+<component name="Out" saoms:if="not more"><implementation.java class="example.Gps"/></component>"#;
+    expect![[r#"
+        Out (example.Gps) other->
+    "#]]
+    .assert_eq(&outcome(&[&fleet(inside), &more], &[]));
+    expect![[r#"
+        more:3:85-86 error S3013: components `N` and `In/N` have the same `ID` `N`
+          more:3:85-86 the first
+          help: every robot needs its own
+    "#]]
+    .assert_eq(&outcome(
+        &[&fleet(inside), &more.replace("<wire source=\"M/other\" target=\"Nobody\"/>", "")],
+        &["more=true"],
+    ));
+}
+
+#[test]
+fn values_come_from_the_environment_unless_somebody_gives_one() {
+    let text = fleet(
+        r#"<property name="robots" saoms:env="ROBOTS">1</property><property name="speed" saoms:env="SPEED">1</property>
+<component name="R${index}" saoms:count="robots"><implementation.java class="example.Robot"/><property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property>
+<property name="speed" source="$speed"/></component>"#,
+    );
+    let found = |environment: &[(&str, &str)], settings: &[&str]| {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let file = sources.add("fleet", text.as_str());
+        let settings = settings
+            .iter()
+            .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
+            .collect();
+        let fleet = Contribution::of(load_file(file, &sources, &mut diagnostics).into_iter().collect());
+        let get =
+            |name: &str| environment.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into());
+        let variables = Variable::read(&fleet, get, &mut sources, &mut diagnostics);
+        let options = Options { settings, variables, ..Options::default() };
+        let assembly = check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+        let count = assembly.map(|assembly| assembly.components.len());
+        let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+        format!("{count:?}\n{found}")
+    };
+    expect![[r#"
+        Some(1)
+    "#]]
+    .assert_eq(&found(&[], &[]));
+    expect![[r#"
+        Some(3)
+    "#]]
+    .assert_eq(&found(&[("ROBOTS", " 3 ")], &[]));
+    expect![[r#"
+        Some(2)
+    "#]]
+    .assert_eq(&found(&[("ROBOTS", "3")], &["robots=2"]));
+    expect![[r#"
+        None
+        3:42-48 error S2045: here is the text `many`, and a whole number is expected
+          environment:1:8-12 `robots` is this
+          help: `docs/fleets.md` says what expressions are
+    "#]]
+    .assert_eq(&found(&[("SPEED", "9"), ("ROBOTS", "many")], &[]));
+}
