@@ -236,6 +236,20 @@ fn a_second_ctrl_c_ends_at_once() {
     drop(unread);
 }
 
+#[test]
+fn virtual_time_that_nothing_ends_says_so() {
+    let fleet = file(&folder("endless"), "one.composite", ONE_ROBOT);
+    let mut child = command(&["run", &fleet, "--virtual"]).stdout(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let told = lines.any(|line| line.unwrap().contains("virtual time goes on until Ctrl-C"));
+    let pid = i32::try_from(child.id()).unwrap();
+    // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
+    assert_eq!(unsafe { libc::kill(pid, libc::SIGINT) }, 0);
+    lines.for_each(drop);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(told, "it ended without a word");
+}
+
 /// Each text is wrong in one way; the diagnostic has to name the place and the thing.
 #[test]
 fn wrong_input_is_told_at_its_place_and_starts_nothing() {

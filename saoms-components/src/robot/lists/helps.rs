@@ -35,8 +35,25 @@ pub struct Helps {
     open: Vec<Help>,
     /// The one that this robot would heal: no longer on the list.
     claimed: Option<Help>,
-    /// Whom somebody heals, and when he said so: the request may arrive later than that.
-    settled: Vec<(u32, Time)>,
+    /// What is settled: the request may arrive later than that.
+    settled: Vec<Settled>,
+}
+
+/// That somebody takes care of a robot.
+#[derive(Clone, Copy, Debug)]
+struct Settled {
+    critical: u32,
+    /// Whether somebody only stands in for it. That leaves its job open.
+    stands_in: bool,
+    /// When he said so.
+    time: Time,
+}
+
+impl Settled {
+    fn settles(&self, situation: &CriticalSituation) -> bool {
+        let covered = !self.stands_in || situation.kind == CriticalKind::Idle;
+        self.critical == situation.critical && covered
+    }
 }
 
 impl Helps {
@@ -63,16 +80,19 @@ impl Helps {
             CriticalStage::Request | CriticalStage::Taken | CriticalStage::StandsIn => {}
         };
         self.open.iter_mut().chain(&mut self.claimed).filter(|help| help.is_of(critical)).for_each(respond);
-        if matches!(message.stage, CriticalStage::Taken | CriticalStage::StandsIn) {
-            self.settled.retain(|(robot, _)| *robot != critical);
-            self.settled.push((critical, header.sent));
-            self.drop(critical);
+        let stands_in = message.stage == CriticalStage::StandsIn;
+        if stands_in || message.stage == CriticalStage::Taken {
+            let settled = Settled { critical, stands_in, time: header.sent };
+            self.settled.retain(|old| (old.critical, old.stands_in) != (critical, stands_in));
+            self.settled.push(settled);
+            self.open.retain(|help| !settled.settles(&help.situation));
+            self.claimed.take_if(|claimed| settled.settles(&claimed.situation));
         }
     }
 
     /// A robot that asks again has another reason: what was known of the last one does not count any more.
     fn hear_request(&mut self, message: &CriticalSituation, header: Header) {
-        if self.settled.iter().any(|(robot, time)| *robot == message.critical && *time > header.sent) {
+        if self.settled.iter().any(|settled| settled.settles(message) && settled.time > header.sent) {
             return;
         }
         let help = Help {
@@ -154,11 +174,6 @@ impl Helps {
     /// Leaves a request to others for good.
     pub fn refuse(&mut self, critical: u32) {
         self.open.retain(|help| !help.is_of(critical));
-    }
-
-    fn drop(&mut self, critical: u32) {
-        self.open.retain(|help| !help.is_of(critical));
-        self.claimed.take_if(|claimed| claimed.is_of(critical));
     }
 }
 

@@ -1,3 +1,4 @@
+use std::collections::BTreeSet;
 use std::fmt;
 
 use saoms_api::{Cause, Header, Time};
@@ -28,7 +29,7 @@ pub struct Request {
     pub rivals: Vec<Rival>,
     /// How many executions the battery has to last before this robot thinks about it again; 0 while it did not.
     pub needs: u32,
-    /// Whether this robot found out, while it sleeps, that the luggage is not out of its reach.
+    /// Whether this robot found out, while it could take nothing, that the luggage is not out of its reach.
     pub judged: bool,
 }
 
@@ -65,12 +66,14 @@ pub struct Requests {
     claimed: Option<Request>,
     /// Luggage that this robot leaves to others for good.
     refused: Vec<u32>,
+    /// Luggage that other robots leave to others for good, and those robots.
+    refusals: BTreeSet<(u32, u32)>,
 }
 
 impl Requests {
     /// None, for the robot of this number.
     pub fn new(number: u32) -> Requests {
-        Requests { number, open: Vec::new(), claimed: None, refused: Vec::new() }
+        Requests { number, open: Vec::new(), claimed: None, refused: Vec::new(), refusals: BTreeSet::new() }
     }
 
     /// Takes in a request or a response; the own responses do not count.
@@ -80,6 +83,13 @@ impl Requests {
         }
         if event.robot == self.number {
             return;
+        }
+        match event.stage {
+            LuggageStage::Refused => _ = self.refusals.insert((event.luggage, event.robot)),
+            LuggageStage::Delivered | LuggageStage::GivenUp => {
+                self.refusals.retain(|(luggage, _)| *luggage != event.luggage);
+            }
+            _ => {}
         }
         let gone =
             matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
@@ -158,6 +168,16 @@ impl Requests {
             let place = self.open.partition_point(|open| open.since <= request.since);
             self.open.insert(place, request);
         }
+    }
+
+    /// Whether another robot leaves luggage to others for good.
+    pub fn is_refused_by(&self, luggage: u32, robot: u32) -> bool {
+        self.refusals.contains(&(luggage, robot))
+    }
+
+    /// What was found out about requests while this robot could take none does not hold any more.
+    pub fn judge_again(&mut self) {
+        self.open.iter_mut().for_each(|request| request.judged = false);
     }
 
     /// Leaves luggage to others for good.

@@ -15,8 +15,8 @@ const LEAST_RESERVE: u32 = 2;
 /// A robot that turned back so often during one job asks itself whether it can be done at all.
 const IN_VAIN: u32 = 3;
 
-/// A robot in charge makes way for others when its battery lasts for so many executions.
-const YIELD_FROM: u32 = 15;
+/// A robot in charge makes way for others when its battery lasts for so many moves beyond the reserve.
+const YIELD_FROM: u32 = 3;
 
 /// What a robot found out about its battery.
 #[derive(Debug)]
@@ -72,8 +72,11 @@ impl Energy {
 impl RobotKnowledge {
     /// Whether a robot at its charger has too little to make way for others.
     pub(super) fn holds_charger(&self) -> bool {
-        let wanted = YIELD_FROM.min(self.battery.executions_when_full() / 2);
-        self.is_at_charger() && self.battery.executions_left() < wanted
+        if !self.is_at_charger() {
+            return false;
+        }
+        let wanted = self.usual_reserve().saturating_add(self.energy.pace.job(YIELD_FROM, 0));
+        self.battery.executions_left() < wanted.min(self.battery.executions_when_full())
     }
 
     /// Whether the robot need not turn to its charger yet: enough is left to do so later, or to finish its job before.
@@ -180,6 +183,13 @@ impl RobotKnowledge {
             self.energy.pace.job(way.saturating_add(self.routes.between(job.from, job.to)), 2)
         };
         executions.saturating_add(self.home(job.to))
+    }
+
+    /// Executions for a whole job from the charger and back, where nobody is in the way.
+    pub(super) fn executions_from_charger(&mut self, job: &Job) -> u32 {
+        let ways = [(self.charge_block, job.from), (job.from, job.to), (job.to, self.charge_block)];
+        let moves = ways.map(|(from, to)| self.routes.between(from, to));
+        self.energy.pace.job_alone(moves.into_iter().fold(0, u32::saturating_add), 2)
     }
 
     /// Whether a full battery lasts for each half of a job, from the charger and back.

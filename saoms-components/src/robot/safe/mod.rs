@@ -17,6 +17,7 @@ mod gripper;
 mod leg;
 mod pace;
 mod path_follower;
+mod patience;
 mod robot_list;
 mod robot_state;
 mod traffic;

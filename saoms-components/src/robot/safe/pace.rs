@@ -57,6 +57,11 @@ impl Pace {
         self.way(moves, self.waiting).saturating_add(handlings * self.handling)
     }
 
+    /// The same where the robot never waits.
+    pub(super) fn job_alone(&self, moves: u32, handlings: u32) -> u32 {
+        self.way(moves, 0).saturating_add(handlings * self.handling)
+    }
+
     fn way(&self, moves: u32, waiting: u32) -> u32 {
         moves
             .saturating_mul(self.moving)

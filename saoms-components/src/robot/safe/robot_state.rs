@@ -1,7 +1,7 @@
 use saoms_api::{Cause, Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, record};
 
-use crate::messages::{ROBOT_STATE, RobotState};
-use crate::robot::{Request, RobotKnowledge};
+use crate::messages::{ROBOT_STATE, RobotList, RobotState};
+use crate::robot::{Help, Request, RobotKnowledge};
 
 /// For so many executions a sleeping robot leaves luggage to whoever could be awaked for it.
 const TURN: u32 = 5;
@@ -9,7 +9,7 @@ const TURN: u32 = 5;
 /// Awakes the robot and lets it sleep, as others ask.
 ///
 /// A robot that is sent to sleep finishes its job, goes to its charger and takes no jobs until it is awaked. It goes on to listen and to make
-/// way. It awakes by itself where a robot needs help, or luggage waits, and no other robot is awake.
+/// way. It awakes by itself where a robot needs help, or luggage waits, and no other robot is awake that can do it.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.RobotMS",
@@ -37,12 +37,12 @@ pub enum RobotSymptom {
     },
     /// Somebody sends the robot to its charger.
     SentToSleep,
-    /// A robot needs help, and nobody is awake.
+    /// A robot needs help, and nobody is awake who can give it.
     NobodyAwake {
         /// The robot.
         critical: u32,
     },
-    /// Luggage waits, and nobody is awake.
+    /// Luggage waits, and nobody is awake who can bring it.
     NobodyForLuggage {
         /// The luggage.
         luggage: u32,
@@ -74,10 +74,10 @@ impl Recordable for RobotSymptom {
             RobotSymptom::Awaked { emulate } => record!("is awaked in place of robot {emulate}", emulate),
             RobotSymptom::SentToSleep => record!("is sent to sleep"),
             RobotSymptom::NobodyAwake { critical } => {
-                record!("robot {critical} needs help, and no robot is awake", critical)
+                record!("robot {critical} needs help, and no robot that is awake can give it", critical)
             }
             RobotSymptom::NobodyForLuggage { luggage } => {
-                record!("luggage {luggage} waits, and no robot is awake", luggage)
+                record!("luggage {luggage} waits, and no robot that is awake can bring it", luggage)
             }
             RobotSymptom::AtRest => record!("is at its charger and was sent to sleep"),
         }
@@ -205,24 +205,44 @@ impl RobotKnowledge {
         !self.variables.busy && !self.variables.transporter && !self.offers_help
     }
 
-    /// The robot that needs help, if this one is the first to awake where nobody is awake.
+    /// The robot that needs help, if this one is the first to awake where nobody who is awake can help it.
     fn has_to_help(&self) -> Option<(u32, Cause)> {
-        let request = self.lists.helps.open().iter().find(|request| self.is_to_be_helped(request))?;
-        let first = self.lists.sleepers().all(|other| self.number < other.robot);
-        let first = first && !self.lists.anybody_awake();
-        first.then_some((request.situation.critical, request.cause))
+        let mut requests = self.lists.helps.open().iter().filter(|request| self.is_to_be_helped(request));
+        let mine = |request: &&Help| {
+            let luggage = request.situation.job().map(|job| job.luggage);
+            let first = self.sleepers_for(luggage).all(|other| self.number < other.robot);
+            first && !self.is_awake_for(luggage)
+        };
+        let request = requests.find(mine)?;
+        Some((request.situation.critical, request.cause))
     }
 
-    /// The luggage for which nobody is awake and that is in reach, if it is this robot's turn: sleepers of lower numbers are asked first.
+    /// The luggage that nobody who is awake can bring and that is in reach, if it is this robot's turn: sleepers of lower numbers are asked first.
     fn has_to_bring(&self, context: &Context<'_>) -> Option<(u32, Cause)> {
-        if self.lists.anybody_awake() {
-            return None;
-        }
-        let ahead = self.lists.sleepers().filter(|other| other.robot < self.number).count();
-        let turn = u32::try_from(ahead + 1).unwrap_or(u32::MAX).saturating_mul(TURN);
-        let patience = context.period().saturating_mul(turn);
-        let waits = |request: &&Request| request.judged && context.now().since(request.since) >= patience;
+        let waits = |request: &&Request| {
+            let luggage = Some(request.job.luggage);
+            if !request.judged || self.is_awake_for(luggage) {
+                return false;
+            }
+            let ahead = self.sleepers_for(luggage).filter(|other| other.robot < self.number).count();
+            let turn = u32::try_from(ahead + 1).unwrap_or(u32::MAX).saturating_mul(TURN);
+            context.now().since(request.since) >= context.period().saturating_mul(turn)
+        };
         let request = self.lists.requests.open().iter().find(waits)?;
         Some((request.job.luggage, request.cause))
+    }
+
+    /// Whether another robot is awake that did not refuse the luggage.
+    fn is_awake_for(&self, luggage: Option<u32>) -> bool {
+        self.lists.active.iter().any(|robot| !robot.asleep && !self.refused(luggage, robot.robot))
+    }
+
+    /// The other robots that sleep and did not refuse the luggage.
+    fn sleepers_for(&self, luggage: Option<u32>) -> impl Iterator<Item = &RobotList> {
+        self.lists.sleepers().filter(move |robot| !self.refused(luggage, robot.robot))
+    }
+
+    fn refused(&self, luggage: Option<u32>, robot: u32) -> bool {
+        luggage.is_some_and(|luggage| self.lists.requests.is_refused_by(luggage, robot))
     }
 }

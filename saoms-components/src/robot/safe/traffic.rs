@@ -171,16 +171,20 @@ impl Traffic {
         wanted
     }
 
-    /// After waiting in vain: not the same block again while the same robot holds it.
+    /// After waiting in vain: not the same block again while the same robot holds it, unless there was no other way.
     fn give_up(&mut self, claim: &Claim, routes: &Routes, chance: &mut Chance) {
+        // Two robots in each other's way must not give up at the same time for ever.
+        self.waited = u32::try_from(chance.below(u64::from(SHORT_PATIENCE))).unwrap_or(0);
+        if self.wanted(claim.at).is_none() && self.avoided.take().is_some() {
+            // Its holder only makes way for who asks again.
+            return;
+        }
         let toward = |block: &Block| claim.goal.map_or(0, |goal| routes.to_goal(*block, goal));
         let first =
             || claim.at.neighbours().into_iter().filter(|block| routes.is_free(*block)).min_by_key(toward);
         let blocked = self.wanted(claim.at).or_else(first);
         self.avoided = blocked.and_then(|block| Some((block, self.holder(block)?)));
         self.wanted = None;
-        // Two robots in each other's way must not give up at the same time for ever.
-        self.waited = u32::try_from(chance.below(u64::from(SHORT_PATIENCE))).unwrap_or(0);
     }
 
     /// Whether the robot that should make way heard of it, as its priority shows, and cannot.

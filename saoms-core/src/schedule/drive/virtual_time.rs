@@ -1,5 +1,7 @@
 use std::sync::Arc;
 
+use saoms_api::Level;
+
 use super::super::ending::Cause;
 use super::super::engine::{Engine, Next, Phase};
 use super::super::shared::Shared;
@@ -7,11 +9,15 @@ use super::super::slot::NEVER;
 use super::super::sys;
 use super::{announce_end, heed_stop};
 
+/// A run that nothing ends says so after an hour of its own time, in nanoseconds.
+const ENDLESS: u64 = 3_600_000_000_000;
+
 /// Drives the engine in virtual time, as long as the role's number is this: what is due runs in order, then time jumps to what is due next.
 pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     let mut engine = shared.lock();
     engine.roles.thread = sys::thread_id();
     let mut now = shared.clock.now();
+    let mut endless = if engine.limit == NEVER { ENDLESS } else { NEVER };
     loop {
         if engine.roles.timer != role {
             return shared.release(engine);
@@ -43,6 +49,17 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             Next::Wait(until) if engine.phase == Phase::Running && until.min(engine.pause) < NEVER => {
                 now = until.min(engine.pause);
                 shared.clock.jump(now);
+                if now >= endless && engine.pause == NEVER {
+                    endless = NEVER;
+                    if engine.votes.voters == 0 {
+                        shared.note(
+                            Level::Warning,
+                            "no component says when its work is done, so virtual time goes on until Ctrl-C: \
+                             give the run an end with `--for`, or a world and an environment with a scenario"
+                                .to_owned(),
+                        );
+                    }
+                }
             }
             Next::Wait(_) => {
                 // Nobody will ever be due: no time passes that somebody could wait for.

@@ -13,6 +13,7 @@ use crate::messages::{
 use crate::robot::{Help, Rival, RobotKnowledge, Trouble};
 
 use super::energy::Means;
+use super::patience::Idle;
 
 use records::doing;
 pub(super) use records::{CriticalDecision, CriticalSymptom};
@@ -56,6 +57,7 @@ pub struct CriticalSituationMS {
     missing: Cause,
     /// Whether it was in charge in the last execution.
     was_in_charge: bool,
+    idle: Idle,
 }
 
 impl Loop for CriticalSituationMS {
@@ -146,7 +148,15 @@ impl Loop for CriticalSituationMS {
                 self.substitution = None;
             }
         }
-        if let Some((symptom, cause)) = look_for_help_requests(knowledge) {
+        if let Some((situation, cause)) = self.look_at_idleness(knowledge, context) {
+            context.because(cause);
+            return Ok(Some(CriticalSymptom::InVain(situation)));
+        }
+        let mut found = look_for_help_requests(knowledge);
+        if found.is_none() && (knowledge.energy.must_charge() || knowledge.relieved) {
+            found = look_for_hopeless_requests(knowledge);
+        }
+        if let Some((symptom, cause)) = found {
             context.because(cause);
             return Ok(Some(symptom));
         }
@@ -175,6 +185,7 @@ impl Loop for CriticalSituationMS {
                     Means::Never => CriticalDecision::Refuse(situation),
                 },
             },
+            CriticalSymptom::InVain(situation) => CriticalDecision::Refuse(situation),
             CriticalSymptom::Alone(situation) => CriticalDecision::Heal(situation),
             CriticalSymptom::Beaten { situation, .. } => CriticalDecision::Release(situation),
             CriticalSymptom::Gone => CriticalDecision::Forget,
@@ -286,6 +297,18 @@ impl CriticalSituationMS {
         request.rivals.is_empty().then_some(CriticalSymptom::Alone(situation))
     }
 
+    /// A request that waits in vain for this robot, and what caused it.
+    fn look_at_idleness(
+        &mut self,
+        knowledge: &RobotKnowledge,
+        context: &Context<'_>,
+    ) -> Option<(CriticalSituation, Cause)> {
+        let oldest = knowledge.lists.helps.open().iter().find(|help| help.situation.job().is_some());
+        self.idle.note(oldest.is_some() && knowledge.job.is_none());
+        let oldest = oldest.filter(|help| self.idle.is_in_vain(help.since, context))?;
+        Some((oldest.situation.clone(), oldest.cause))
+    }
+
     fn heal(
         &mut self,
         knowledge: &mut RobotKnowledge,
@@ -373,7 +396,7 @@ fn look_for_help_requests(knowledge: &mut RobotKnowledge) -> Option<(CriticalSym
     Some((CriticalSymptom::NeedsHelp { situation, distance }, cause))
 }
 
-/// A request with a job that is out of this robot's reach: others may have to know that nobody can do it, also where this one sleeps.
+/// A request with a job that is out of this robot's reach: others may have to know that nobody can do it, also where this one takes none now.
 fn look_for_hopeless_requests(knowledge: &mut RobotKnowledge) -> Option<(CriticalSymptom, Cause)> {
     let open = knowledge.lists.helps.open().len();
     (0..open).find_map(|place| {

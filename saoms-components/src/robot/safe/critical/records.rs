@@ -23,6 +23,8 @@ pub enum CriticalSymptom {
         /// How far it is to where the help begins.
         distance: u32,
     },
+    /// Another robot has needed help for very long, while this robot did nothing else, and others were in its way.
+    InVain(CriticalSituation),
     /// This robot would help, and nobody else would.
     Alone(CriticalSituation),
     /// Another robot would help and is closer, or the battery got low.
@@ -126,6 +128,10 @@ impl Recordable for CriticalSymptom {
                     distance
                 )
             }
+            CriticalSymptom::InVain(CriticalSituation { critical, .. }) => record!(
+                "could not begin to help robot {critical} for very long: others are in its way",
+                critical
+            ),
             CriticalSymptom::Alone(CriticalSituation { critical, .. }) => {
                 record!("no other robot would help robot {critical}", critical)
             }

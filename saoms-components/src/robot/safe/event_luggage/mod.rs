@@ -1,12 +1,17 @@
-use saoms_api::{
-    Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
-};
+//! Luggage that waits for a robot, and how robots part it among them.
+
+mod records;
+
+use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subscription};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
 
 use super::energy::Means;
+use super::patience::{Attempt, Idle};
+
+pub(super) use records::{EventLuggageDecision, EventLuggageSymptom, Hindrance};
 
 /// A request that waits for so many executions counts as one block closer, so that none waits for ever.
 const PATIENCE: u64 = 4;
@@ -32,147 +37,12 @@ pub struct EventLuggageMS {
     said: Cause,
     /// Whether it warned that some luggage is out of its reach.
     warned: bool,
-    /// How often other ways had become necessary when it looked at its way.
-    changes: u32,
+    /// How often other ways had become necessary when it looked at its way, and to where that led.
+    seen: (u32, Option<Block>),
+    attempt: Attempt,
+    idle: Idle,
     luggage: Publisher<EventLuggage>,
     luggage_heard: Subscription<EventLuggage>,
-}
-
-/// What there is to decide about luggage.
-#[derive(Clone, Copy, Debug)]
-pub enum EventLuggageSymptom {
-    /// Luggage waits, and suits this robot best.
-    Waiting {
-        /// Its place on the list.
-        place: usize,
-        /// What there is to bring.
-        job: Job,
-        /// How far away it is.
-        distance: u32,
-    },
-    /// This robot is interested, and nobody else is.
-    Alone(Job),
-    /// Another robot is interested and closer, or the battery got low.
-    Beaten {
-        /// What this robot was interested in.
-        job: Job,
-        /// The other robot; `None` where this one has to charge.
-        by: Option<u32>,
-    },
-    /// Another robot took what this one was interested in.
-    Gone,
-    /// No way leads any more to where this robot has to go.
-    CutOff {
-        /// What it brings.
-        job: Job,
-        /// Where it has to go.
-        to: Block,
-        /// Whether it carries it.
-        carries: bool,
-    },
-    /// Charged and turned back again and again, it knows by now that no full battery lasts.
-    TooFar {
-        /// What it brings.
-        job: Job,
-        /// Where it has to go.
-        to: Block,
-        /// Whether it carries it.
-        carries: bool,
-    },
-}
-
-/// What to do about it.
-#[derive(Clone, Copy, Debug)]
-pub enum EventLuggageDecision {
-    /// Take an interest, and say so.
-    TakeInterest {
-        /// The request's place on the list.
-        place: usize,
-        /// What there is to bring.
-        job: Job,
-    },
-    /// Think about it again when the battery lasts for so many executions.
-    Postpone {
-        /// The request's place on the list.
-        place: usize,
-        /// The executions.
-        needs: u32,
-    },
-    /// Leave it to others: it is out of reach.
-    Refuse(Job),
-    /// Bring it.
-    Take(Job),
-    /// Take the interest back.
-    Release(Job),
-    /// Look for other luggage.
-    Forget,
-    /// Leave what it did not collect yet to others.
-    Return(Job),
-    /// Give up what it carries.
-    GiveUp(Job),
-}
-
-impl Recordable for EventLuggageSymptom {
-    fn record(&self) -> Record {
-        match *self {
-            EventLuggageSymptom::Waiting { job: Job { luggage, from, .. }, distance, .. } => {
-                record!("luggage {luggage} waits at {from}, {distance} blocks away", luggage, from, distance)
-            }
-            EventLuggageSymptom::Alone(Job { luggage, .. }) => {
-                record!("no other robot is interested in luggage {luggage}", luggage)
-            }
-            EventLuggageSymptom::Beaten { job: Job { luggage, .. }, by: Some(robot) } => {
-                record!("robot {robot} is closer to luggage {luggage}", robot, luggage)
-            }
-            EventLuggageSymptom::Beaten { job: Job { luggage, .. }, by: None } => {
-                record!("has to charge, and said that it would bring luggage {luggage}", luggage)
-            }
-            EventLuggageSymptom::Gone => record!("another robot takes the luggage"),
-            EventLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
-                record!(
-                    "no way leads to {to} any more, where it has to go for luggage {luggage}",
-                    to,
-                    luggage
-                )
-            }
-            EventLuggageSymptom::TooFar { job: Job { luggage, .. }, to, .. } => {
-                record!(
-                    "turned back from the way to {to} again and again: no full battery lasts to bring luggage {luggage}",
-                    to,
-                    luggage
-                )
-            }
-        }
-    }
-}
-
-impl Recordable for EventLuggageDecision {
-    fn record(&self) -> Record {
-        match *self {
-            EventLuggageDecision::TakeInterest { job: Job { luggage, .. }, .. } => {
-                record!("would bring luggage {luggage}, and asks who else would", luggage)
-            }
-            EventLuggageDecision::Postpone { needs, .. } => {
-                record!("charges first: that takes {needs} executions", needs)
-            }
-            EventLuggageDecision::Refuse(Job { luggage, .. }) => {
-                record!("leaves luggage {luggage} to others: it can never bring that", luggage)
-            }
-            EventLuggageDecision::Take(Job { luggage, from, to }) => {
-                record!("brings luggage {luggage} from {from} to {to}", luggage, from, to)
-            }
-            EventLuggageDecision::Release(Job { luggage, .. }) => {
-                record!("leaves luggage {luggage} to others", luggage)
-            }
-            EventLuggageDecision::Forget => record!("looks for other luggage"),
-            EventLuggageDecision::Return(Job { luggage, .. }) => {
-                record!("leaves luggage {luggage} to others", luggage)
-            }
-            EventLuggageDecision::GiveUp(Job { luggage, .. }) => {
-                record!("gives luggage {luggage} up", luggage)
-            }
-        }
-    }
 }
 
 impl Loop for EventLuggageMS {
@@ -212,6 +82,12 @@ impl Loop for EventLuggageMS {
             let carries = knowledge.variables.has_luggage;
             return Ok(Some(EventLuggageSymptom::TooFar { job, to, carries }));
         }
+        let in_vain = self.look_at_idleness(knowledge, context);
+        if knowledge.hooks.running().is_none()
+            && let Some(symptom) = self.look_at_time(knowledge)
+        {
+            return Ok(Some(symptom));
+        }
         let variables = &knowledge.variables;
         if variables.busy || variables.critical || knowledge.hooks.running().is_some() {
             return Ok(None);
@@ -220,11 +96,11 @@ impl Loop for EventLuggageMS {
             context.because(self.said);
             return Ok(self.look_at_claimed(knowledge));
         }
-        if knowledge.variables.asleep {
-            return Ok(judge(knowledge));
+        if in_vain.is_some() {
+            return Ok(in_vain);
         }
-        if knowledge.energy.must_charge() || knowledge.relieved {
-            return Ok(None);
+        if knowledge.variables.asleep || knowledge.energy.must_charge() || knowledge.relieved {
+            return Ok(judge(knowledge));
         }
         if knowledge.offers_help {
             return Ok(None);
@@ -245,19 +121,15 @@ impl Loop for EventLuggageMS {
             EventLuggageSymptom::Waiting { place, job, .. } => match knowledge.means(&job) {
                 Means::Enough => EventLuggageDecision::TakeInterest { place, job },
                 Means::Needs(needs) => EventLuggageDecision::Postpone { place, needs },
-                Means::Never => EventLuggageDecision::Refuse(job),
+                Means::Never => EventLuggageDecision::Refuse { job, why: Hindrance::Battery },
             },
+            EventLuggageSymptom::InVain(job) => EventLuggageDecision::Refuse { job, why: Hindrance::Others },
             EventLuggageSymptom::Alone(job) => EventLuggageDecision::Take(job),
             EventLuggageSymptom::Beaten { job, .. } => EventLuggageDecision::Release(job),
             EventLuggageSymptom::Gone => EventLuggageDecision::Forget,
-            EventLuggageSymptom::CutOff { job, carries, .. }
-            | EventLuggageSymptom::TooFar { job, carries, .. } => {
-                if carries {
-                    EventLuggageDecision::GiveUp(job)
-                } else {
-                    EventLuggageDecision::Return(job)
-                }
-            }
+            EventLuggageSymptom::CutOff { job, carries, .. } => leave(job, carries, Hindrance::NoWay),
+            EventLuggageSymptom::TooFar { job, carries, .. } => leave(job, carries, Hindrance::Battery),
+            EventLuggageSymptom::Stuck { job, carries, .. } => leave(job, carries, Hindrance::Others),
         }))
     }
 
@@ -280,10 +152,10 @@ impl Loop for EventLuggageMS {
                 knowledge.lists.requests.open_mut()[place].needs = needs;
                 return Ok(());
             }
-            EventLuggageDecision::Refuse(job) => {
+            EventLuggageDecision::Refuse { job, why } => {
                 knowledge.lists.requests.refuse(job.luggage);
                 if !knowledge.is_loaded {
-                    self.warn(&job, knowledge, context);
+                    self.warn(&job, why, knowledge, context);
                 }
                 (job, LuggageStage::Refused)
             }
@@ -309,20 +181,15 @@ impl Loop for EventLuggageMS {
                 knowledge.untold = Some((job, LuggageStage::Refused));
                 return knowledge.tell(self.luggage, context);
             }
-            EventLuggageDecision::GiveUp(job) => {
+            EventLuggageDecision::GiveUp { job, why } => {
                 knowledge.drop_job();
                 // With that on board it is of no use, until somebody helps.
                 (knowledge.relieved, knowledge.is_loaded) = (true, true);
                 context.count("assistance", 1);
-                let Job { luggage, to, .. } = job;
-                let why = if knowledge.routes.between(knowledge.next, to) == UNREACHABLE {
-                    "no way leads"
-                } else {
-                    "no full battery lasts for the way"
-                };
+                let (Job { luggage, to, .. }, why) = (job, why.words());
                 context.log(
                     Level::Error,
-                    format_args!("cannot bring luggage {luggage} any more: {why} to {to}; needs assistance"),
+                    format_args!("cannot bring luggage {luggage} to {to} any more: {why}; needs assistance"),
                 );
                 (job, LuggageStage::GivenUp)
             }
@@ -333,16 +200,41 @@ impl Loop for EventLuggageMS {
 }
 
 impl EventLuggageMS {
-    /// Whether a way still leads to where the robot has to go, when something changed about the ways.
+    /// Whether a way still leads to where the robot has to go, when that or something about the ways changed.
     fn look_at_way(&mut self, knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
-        let changes = knowledge.routes.changes();
-        if std::mem::replace(&mut self.changes, changes) == changes {
+        let seen = (knowledge.routes.changes(), knowledge.job.and(knowledge.destination()));
+        let before = std::mem::replace(&mut self.seen, seen);
+        if before == seen {
             return None;
         }
-        let (job, to) = (knowledge.job?, knowledge.destination()?);
+        if before.0 != seen.0 {
+            knowledge.lists.requests.judge_again();
+        }
+        let (job, to) = (knowledge.job?, seen.1?);
         let reached = knowledge.routes.between(knowledge.next, to) != UNREACHABLE;
         let carries = knowledge.variables.has_luggage;
         (!reached).then_some(EventLuggageSymptom::CutOff { job, to, carries })
+    }
+
+    /// Whether the robot has been on its job for many times as long as it takes.
+    fn look_at_time(&mut self, knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
+        let job = knowledge.job;
+        let longest = || job.map_or(u32::MAX, |job| knowledge.executions_from_charger(&job));
+        let executions = self.attempt.note(job.map(|job| job.luggage), longest)?;
+        Some(EventLuggageSymptom::Stuck { job: job?, executions, carries: knowledge.variables.has_luggage })
+    }
+
+    /// Luggage that waits in vain for this robot.
+    fn look_at_idleness(
+        &mut self,
+        knowledge: &RobotKnowledge,
+        context: &Context<'_>,
+    ) -> Option<EventLuggageSymptom> {
+        let requests = &knowledge.lists.requests;
+        let waits = !requests.open().is_empty() || requests.claimed().is_some();
+        self.idle.note(waits && knowledge.job.is_none() && !knowledge.variables.asleep);
+        let oldest = requests.open().first()?;
+        self.idle.is_in_vain(oldest.since, context).then_some(EventLuggageSymptom::InVain(oldest.job))
     }
 
     /// How what this robot is interested in stands; `None` while it waits for others to take their interest back.
@@ -361,20 +253,30 @@ impl EventLuggageMS {
         request.rivals.is_empty().then_some(EventLuggageSymptom::Alone(job))
     }
 
-    fn warn(&mut self, job: &Job, knowledge: &RobotKnowledge, context: &mut Context<'_>) {
+    fn warn(&mut self, job: &Job, why: Hindrance, knowledge: &RobotKnowledge, context: &mut Context<'_>) {
         let level = if std::mem::replace(&mut self.warned, true) { Level::Debug } else { Level::Warning };
         let Job { luggage, from, to } = *job;
         let full = knowledge.battery.executions_when_full();
-        context.log(
-            level,
-            format_args!(
-                "cannot bring luggage {luggage} from {from} to {to}: no way leads there and back within the {full} executions of a full battery"
+        let what = format_args!("cannot bring luggage {luggage} from {from} to {to}");
+        match why {
+            Hindrance::Others => context.log(level, format_args!("{what}: {}", why.words())),
+            Hindrance::Battery | Hindrance::NoWay => context.log(
+                level,
+                format_args!(
+                    "{what}: no way leads there and back within the {full} executions of a full battery"
+                ),
             ),
-        );
+        }
     }
 }
 
-/// Whether the next request that a sleeping robot did not think about yet is out of its reach: others may have to know that nobody can.
+/// What to do with a job that comes to nothing.
+fn leave(job: Job, carries: bool, why: Hindrance) -> EventLuggageDecision {
+    if carries { EventLuggageDecision::GiveUp { job, why } } else { EventLuggageDecision::Return(job) }
+}
+
+/// Whether the next request that a robot which takes none now did not think about yet is out of its reach: others may have to know that nobody
+/// can.
 fn judge(knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
     let requests = knowledge.lists.requests.open_mut();
     let place = requests.iter().position(|request| !request.judged)?;
