@@ -46,6 +46,13 @@ fn shipped_fleets_run_the_same_when_they_are_expanded() {
     }
 }
 
+#[test]
+fn a_fleet_comes_to_what_it_came_to() {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fleets");
+    let pair = Fleet::of_file(tests.join("pair.composite")).set("period", "50");
+    pair.expect_expanded(tests.join("pair.expanded"));
+}
+
 /// Counts what it is asked.
 #[interface(name = "expand.Lamp")]
 pub trait Lamp {

@@ -12,8 +12,9 @@ use saoms_core::plugin::{Search, open_named};
 use saoms_core::registry::Registry;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Events, Settings};
-use saoms_core::source::Sources;
+use saoms_core::source::{FileId, SourceFile, Sources};
 
+use crate::expected::{Checked, Found};
 use crate::run::{Log, Run};
 
 /// A fleet under test: one or several composites, and values for their properties.
@@ -64,6 +65,22 @@ impl Fleet {
             let _ = writeln!(text, "{severity} {code} {}:{} {}", place.line, place.column, one.message);
         }
         text
+    }
+
+    /// Every text that was read, with what the checker finds in it.
+    pub(crate) fn texts(&self) -> Vec<Checked> {
+        let (_, sources, diagnostics, _) = self.checked();
+        let text = |(id, file): (FileId, &SourceFile)| {
+            let own = diagnostics.iter().filter(|one| one.location.file == id);
+            let found = own.map(|one| Found {
+                line: file.range(one.location.span).start.line,
+                severity: one.severity.name(),
+                code: one.code.id,
+                message: one.message.clone(),
+            });
+            Checked { path: file.path().to_owned(), text: file.text().to_string(), found: found.collect() }
+        };
+        sources.iter().map(text).collect()
     }
 
     /// The one composite that is left when all is resolved, as `saoms expand` writes it: what a test can hold an assembly to.

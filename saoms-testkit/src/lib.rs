@@ -18,6 +18,9 @@
 //! assert_eq!(run.components[0].executions, 200);
 //! ```
 //!
+//! A composite says in comments what is wrong with it, and [`expect_diagnostics`] holds it to them; [`Run::expect`] asks what a component did in a run.
+//! `docs/testing.md` of the project is the guide.
+//!
 //! A test holds a fleet to how it adapts itself by the [journal](saoms_core::journal) of a run: what each loop saw, decided and did, when, and
 //! what came from what.
 //!
@@ -38,13 +41,18 @@
 
 mod bench;
 mod comply;
+mod expected;
 mod fleet;
+mod golden;
+mod moment;
 mod run;
 mod stage;
 
 pub use bench::Bench;
 pub use comply::{comply, comply_as};
+pub use expected::expect_diagnostics;
 pub use fleet::Fleet;
+pub use moment::{Expect, Moment, Point};
 pub use run::Run;
 use saoms_components as _;
 
@@ -52,3 +60,8 @@ use saoms_components as _;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/loops.md")]
 struct Loops;
+
+/// The examples of `docs/testing.md`, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/testing.md")]
+struct Testing;

@@ -2,7 +2,7 @@ use std::fmt::Write;
 use std::ops::Deref;
 use std::sync::{Mutex, PoisonError};
 
-use saoms_api::Level;
+use saoms_api::{Level, Time};
 use saoms_core::journal::Journal;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Event, Events};
@@ -37,8 +37,13 @@ impl Run {
 
     /// The lines of one component, by its path, without time and name.
     pub fn log_of(&self, component: &str) -> Vec<String> {
-        let own = self.log.iter().filter(|event| event.component.as_deref() == Some(component));
-        own.map(|event| event.what.to_string()).collect()
+        self.log_lines(component).map(|(_, text)| text).collect()
+    }
+
+    /// The same with the time of each.
+    pub(crate) fn log_lines(&self, component: &str) -> impl Iterator<Item = (Time, String)> {
+        let own = self.log.iter().filter(move |event| event.component.as_deref() == Some(component));
+        own.map(|event| (event.time, event.what.to_string()))
     }
 
     /// The report alone.

@@ -1,0 +1,262 @@
+//! What happened in a run, and in which order.
+
+use std::fmt;
+use std::time::Duration;
+
+use saoms_api::{Cause, Time};
+
+use crate::Run;
+
+/// How much of what a component did is shown where it did not do what was expected.
+const SHOWN: usize = 40;
+
+/// What is expected of a component of a run; see [`Run::expect`].
+#[derive(Clone, Copy, Debug)]
+pub struct Expect<'r> {
+    run: &'r Run,
+    component: &'r str,
+}
+
+/// Something that a component did.
+#[derive(Clone, Debug)]
+pub struct Moment<'r> {
+    of: Expect<'r>,
+    /// The words by which it was found.
+    words: String,
+    /// Its place among what the component did.
+    place: usize,
+    record: Told,
+}
+
+/// A record of the journal, or a line of the log.
+#[derive(Clone, Debug)]
+struct Told {
+    time: Time,
+    /// The number of a record.
+    number: Option<Cause>,
+    text: String,
+}
+
+/// A point in a run that others can be compared with: a [`Moment`], or the [time](Duration) since the start.
+pub trait Point {
+    /// When it is; records of one time are told apart by their numbers.
+    fn when(&self) -> (Time, Option<Cause>);
+    /// In words.
+    fn describe(&self) -> String;
+}
+
+impl Point for Duration {
+    fn when(&self) -> (Time, Option<Cause>) {
+        (Time::START + *self, None)
+    }
+
+    fn describe(&self) -> String {
+        self.when().0.to_string()
+    }
+}
+
+impl Point for Moment<'_> {
+    fn when(&self) -> (Time, Option<Cause>) {
+        (self.record.time, self.record.number)
+    }
+
+    fn describe(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl<P: Point> Point for &P {
+    fn when(&self) -> (Time, Option<Cause>) {
+        (*self).when()
+    }
+
+    fn describe(&self) -> String {
+        (*self).describe()
+    }
+}
+
+impl Run {
+    /// What a component is expected to have done, by its path: what its loops wrote to the journal, and what it wrote to its log.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use saoms_testkit::Fleet;
+    ///
+    /// let run = Fleet::of_file("../composites/hall.composite").run(7, Duration::from_secs(60));
+    /// let takes = run.expect("Robot7").to("takes luggage 1");
+    /// let collects = run.expect("Robot7").to("collects luggage 1").after(&takes);
+    /// collects.because("is at (3,1), where luggage 1 is").before(Duration::from_secs(10));
+    /// run.expect("Robot7").never_to("breaks down");
+    /// assert_eq!(run.expect("Robot7").count("collects luggage 1"), 1);
+    /// ```
+    ///
+    /// # Panics
+    /// When the run has no such component.
+    #[track_caller]
+    #[expect(clippy::panic, reason = "a test that asks for a component that is not there has failed")]
+    pub fn expect<'r>(&'r self, component: &'r str) -> Expect<'r> {
+        if self.components.iter().all(|one| one.name != component) {
+            let names: Vec<&str> = self.components.iter().map(|one| one.name.as_str()).collect();
+            panic!("the run has no component `{component}`; it has {}", names.join(", "));
+        }
+        Expect { run: self, component }
+    }
+}
+
+impl<'r> Expect<'r> {
+    /// The first time that it did something with these words in it.
+    ///
+    /// # Panics
+    /// With what it did instead.
+    #[track_caller]
+    #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
+    pub fn to(self, words: &str) -> Moment<'r> {
+        let all = self.told();
+        let place = all.iter().position(|told| told.text.contains(words));
+        let Some(place) = place else { panic!("{} did not do `{words}`; {}", self.component, did(&all)) };
+        Moment { of: self, words: words.to_owned(), place, record: all[place].clone() }
+    }
+
+    /// That it did nothing with these words in it.
+    ///
+    /// # Panics
+    /// When it did, and when records of the run were overwritten, so that nobody knows.
+    #[track_caller]
+    #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
+    pub fn never_to(self, words: &str) {
+        let all = self.told();
+        if let Some(told) = all.iter().find(|told| told.text.contains(words)) {
+            panic!("{} did `{words}`: {} {}", self.component, told.time, told.text);
+        }
+        self.all_known();
+    }
+
+    /// How often it did something with these words in it.
+    ///
+    /// # Panics
+    /// When records of the run were overwritten, so that nobody knows.
+    #[track_caller]
+    pub fn count(self, words: &str) -> usize {
+        self.all_known();
+        self.told().iter().filter(|told| told.text.contains(words)).count()
+    }
+
+    #[track_caller]
+    fn all_known(self) {
+        let overwritten = self.run.journal().overwritten;
+        assert!(overwritten == 0, "{overwritten} records of this run were overwritten: let it be shorter");
+    }
+
+    /// All that it did, in order. What is told twice, in the journal and in the log, stands there twice.
+    fn told(self) -> Vec<Told> {
+        let entries = self.run.journal().of(self.component);
+        let entries = entries.iter().map(|entry| Told {
+            time: entry.time(),
+            number: Some(entry.id()),
+            text: entry.text(),
+        });
+        let lines = self.run.log_lines(self.component).map(|(time, text)| Told { time, number: None, text });
+        let mut all: Vec<Told> = entries.chain(lines).collect();
+        all.sort_by_key(|told| told.time);
+        all
+    }
+}
+
+/// What a component did, as far as it can be shown.
+fn did(all: &[Told]) -> String {
+    if all.is_empty() {
+        return "it did nothing".to_owned();
+    }
+    let shown: String =
+        all.iter().take(SHOWN).map(|told| format!("\n  {} {}", told.time, told.text)).collect();
+    match all.len().checked_sub(SHOWN) {
+        None | Some(0) => format!("it did{shown}"),
+        Some(more) => format!("it did{shown}\n  and {more} more"),
+    }
+}
+
+impl<'r> Moment<'r> {
+    /// When it was, since the start of the run.
+    pub fn time(&self) -> Duration {
+        self.record.time.since(Time::START)
+    }
+
+    /// All that was told of it.
+    pub fn text(&self) -> &str {
+        &self.record.text
+    }
+
+    /// The next time that the component did something with the same words.
+    ///
+    /// # Panics
+    /// When it did not.
+    #[track_caller]
+    #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
+    pub fn again(&self) -> Moment<'r> {
+        let all = self.of.told();
+        let next = all.iter().skip(self.place + 1).position(|told| told.text.contains(&self.words));
+        match next {
+            Some(next) => {
+                let place = self.place + 1 + next;
+                Moment { place, record: all[place].clone(), ..self.clone() }
+            }
+            None => {
+                panic!("{} did not do `{}` again after {}", self.of.component, self.words, self.record.time)
+            }
+        }
+    }
+
+    /// That it was before another one, or before a time of the run.
+    ///
+    /// # Panics
+    /// When it was not.
+    #[track_caller]
+    pub fn before(self, other: impl Point) -> Self {
+        let (this, that) = (self.when(), other.when());
+        let is_before =
+            this.0 < that.0 || this.0 == that.0 && this.1.zip(that.1).is_some_and(|(this, that)| this < that);
+        assert!(is_before, "{self} is not before {}", other.describe());
+        self
+    }
+
+    /// That it was after another one, or after a time of the run.
+    ///
+    /// # Panics
+    /// When it was not.
+    #[track_caller]
+    pub fn after(self, other: impl Point) -> Self {
+        let (this, that) = (self.when(), other.when());
+        let is_after =
+            this.0 > that.0 || this.0 == that.0 && this.1.zip(that.1).is_some_and(|(this, that)| this > that);
+        assert!(is_after, "{self} is not after {}", other.describe());
+        self
+    }
+
+    /// That it follows, directly or through others, from something with these words in it, whoever did that.
+    ///
+    /// # Panics
+    /// With what it follows from, when it does not; or when it is a line of the log, which follows from nothing that is known.
+    #[track_caller]
+    #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
+    pub fn because(self, words: &str) -> Self {
+        let journal = self.of.run.journal();
+        let Some(entry) = self.record.number.and_then(|number| journal.entry(number)) else {
+            panic!(
+                "{self} is a line of the log, of which no reasons are known: ask for a record of the journal"
+            );
+        };
+        let (reasons, lost) = journal.reasons(entry);
+        if !reasons.iter().any(|reason| reason.text().contains(words)) {
+            let known: String = reasons.iter().map(|reason| format!("\n  {reason}")).collect();
+            let lost = lost.map_or("", |_| "\n  and from what was overwritten");
+            panic!("{self} does not follow from `{words}`, but from{known}{lost}");
+        }
+        self
+    }
+}
+
+impl fmt::Display for Moment<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "`{} {}` ({})", self.of.component, self.record.text, self.record.time)
+    }
+}
