@@ -67,8 +67,8 @@ pub struct HostFunctions {
     pub period: unsafe extern "C" fn(state: *mut c_void) -> u64,
     /// 1 if a long execution should end early: the component was unscheduled, or the run ends.
     pub cancelled: unsafe extern "C" fn(state: *mut c_void) -> u32,
-    /// The state of the component's xoshiro256++, which may be advanced in place until the call ends.
-    pub chance: unsafe extern "C" fn(state: *mut c_void) -> *mut [u64; 4],
+    /// The state of the component's xoshiro256++, four numbers, which may be advanced in place until the call ends.
+    pub chance: unsafe extern "C" fn(state: *mut c_void) -> *mut u64,
     /// The next random number of the component's own source: the same seed gives the same ones.
     pub next_random: unsafe extern "C" fn(state: *mut c_void) -> u64,
     /// Becomes a publisher of a topic that the class declares, in `initialize` alone; gives the index to send with.
@@ -153,7 +153,7 @@ pub struct HostFunctions {
 pub type LoopVisitor = unsafe extern "C" fn(
     visitor: *mut c_void,
     name: Bytes,
-    class: Bytes,
+    class_name: Bytes,
     values: *const PropertyView,
     value_count: usize,
 );
@@ -188,7 +188,7 @@ getters! {
     execution -> u64, 0, |host| host.execution();
     period -> u64, 0, |host| nanos(host.period());
     cancelled -> u32, 0, |host| u32::from(host.cancelled());
-    chance -> *mut [u64; 4], std::ptr::null_mut(), |host| host.chance().state();
+    chance -> *mut u64, std::ptr::null_mut(), |host| host.chance().state().cast();
     next_random -> u64, 0, |host| host.chance().next_u64();
     cause -> u64, 0, |host| host.cause().0;
 }

@@ -57,7 +57,7 @@ pub struct MemberView {
     /// Its path in the composite.
     pub path: Bytes,
     /// The name of its class, as declared.
-    pub class: Bytes,
+    pub class_name: Bytes,
     /// The declaration of its class.
     pub declaration: Bytes,
     /// The declarations of the classes that its class extends, the nearest first.
@@ -164,7 +164,7 @@ impl MemberView {
         unsafe {
             Ok(ComponentView {
                 path: self.path.get_text()?,
-                class: self.class.get_text()?,
+                class: self.class_name.get_text()?,
                 declaration: self.declaration.get_text()?,
                 values,
                 period: (self.period != u64::MAX).then(|| Duration::from_nanos(self.period)),
@@ -227,7 +227,7 @@ impl ImportedRule {
             .enumerate()
             .map(|(place, one)| MemberView {
                 path: Bytes::text(one.path),
-                class: Bytes::text(one.class),
+                class_name: Bytes::text(one.class),
                 declaration: Bytes::text(one.declaration),
                 extends: texts[place][0].list(),
                 values: values[place].top.as_ptr(),
