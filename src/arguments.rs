@@ -141,6 +141,10 @@ pub(crate) struct CheckArguments {
     /// Take classes that this program does not know as given, and implementations of other kinds: check all that can be checked without them
     #[arg(long)]
     pub(crate) assume_classes: bool,
+
+    /// Report the wiring of the whole fleet: every topic with who publishes and reads it how often, and what is odd about it
+    #[arg(long, conflicts_with = "assume_classes")]
+    pub(crate) wiring: bool,
 }
 
 #[derive(Debug, Args)]

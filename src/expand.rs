@@ -1,6 +1,7 @@
 //! `saoms expand`: shows what is left of composites when all is resolved.
 
 use saoms_core::assembly::expanded;
+use saoms_core::check::Options;
 use saoms_core::diagnostic::Severity;
 use saoms_core::format::{WIDTH, format};
 use saoms_core::source::FileId;
@@ -12,7 +13,7 @@ use crate::fleet::checked;
 use crate::output::{counted, eprint, print};
 
 pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
-    let outcome = match checked(&arguments.fleet, false) {
+    let outcome = match checked(&arguments.fleet, Options::default()) {
         Ok(outcome) => outcome,
         Err(exit) => return exit,
     };

@@ -8,6 +8,7 @@ use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sar
 use saoms_core::load::{load_file, load_named, read, read_values};
 use saoms_core::model::{Composite, Contribution};
 use saoms_core::source::Sources;
+use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
@@ -22,11 +23,11 @@ pub(crate) struct Checked {
     diagnostics: Vec<Diagnostic>,
 }
 
-/// Loads the files and checks them as one fleet. Classes that are not known may be taken as given; there is no assembly then.
+/// Loads the files and checks them as one fleet, as it is asked.
 ///
 /// # Errors
 /// A plugin cannot be used, which was told.
-pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Result<Checked, Exit> {
+pub(crate) fn checked(arguments: &FleetArguments, asked: Options) -> Result<Checked, Exit> {
     let mut registry = registry(&arguments.plugins, &arguments.files)?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
@@ -47,7 +48,7 @@ pub(crate) fn checked(arguments: &FleetArguments, assume_classes: bool) -> Resul
     open_libraries(&arguments.plugins, &arguments.files, &mut contribution, &sources, &mut registry);
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
-    let options = Options { settings, variables, assume_classes, ..Options::default() };
+    let options = Options { settings, variables, ..asked };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
     Ok(Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() })
 }
@@ -66,13 +67,13 @@ impl Checked {
     }
 
     /// All diagnostics as one JSON object.
-    pub(crate) fn json(&self) -> String {
-        format!("{:#}\n", json(&self.diagnostics, &self.sources))
+    pub(crate) fn json(&self) -> Value {
+        json(&self.diagnostics, &self.sources)
     }
 
     /// All diagnostics as a SARIF log.
-    pub(crate) fn sarif(&self) -> String {
-        format!("{:#}\n", sarif(&self.diagnostics, &self.sources, env!("CARGO_PKG_VERSION")))
+    pub(crate) fn sarif(&self) -> Value {
+        sarif(&self.diagnostics, &self.sources, env!("CARGO_PKG_VERSION"))
     }
 
     /// How many diagnostics are of this severity.

@@ -23,6 +23,7 @@ mod summary;
 mod svg;
 mod watch;
 mod why;
+mod wiring;
 
 use std::process::ExitCode;
 

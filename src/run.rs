@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::thread;
 
 use saoms_core::assembly::Assembly;
+use saoms_core::check::Options;
 use saoms_core::diagnostic::Severity;
 use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
@@ -54,11 +55,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 
 /// The fleet to run; without one, what is wrong has been shown. Texts and diagnostics do not outlive this: a run may last for days.
 fn assembly(arguments: &RunArguments) -> Option<Assembly> {
-    let outcome = checked(&arguments.fleet, false).ok()?;
+    let outcome = checked(&arguments.fleet, Options::default()).ok()?;
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &outcome.assembly) {
-        (Format::Json, None) => print(&outcome.json()),
-        (Format::Json, Some(_)) => eprint(&outcome.json()),
+        (Format::Json, None) => print(&format!("{:#}\n", outcome.json())),
+        (Format::Json, Some(_)) => eprint(&format!("{:#}\n", outcome.json())),
         (Format::Human, _) => {
             eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
         }

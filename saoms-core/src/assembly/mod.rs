@@ -4,6 +4,7 @@
 
 mod expanded;
 mod task;
+mod traffic;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,6 +13,7 @@ use saoms_api::{PropertyField, PropertyValue};
 
 pub use expanded::expanded;
 pub use task::{RestartPolicy, TaskProperties};
+pub use traffic::{End, Topic, Traffic};
 
 use crate::registry::{Class, LoopClass};
 

@@ -38,6 +38,7 @@ mod task;
 #[cfg(test)]
 mod tests;
 mod topics;
+mod traffic;
 mod unfold;
 mod unique;
 mod values;
@@ -51,7 +52,7 @@ use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
 use crate::diagnostic::Diagnostics;
 use crate::model::Contribution;
 use crate::registry::Registry;
-use crate::source::Sources;
+use crate::source::{Location, Sources};
 
 use arena::Arena;
 use classes::ClassIndex;
@@ -122,7 +123,23 @@ pub fn check(
         registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
     rules::check(&fleet, &classes, &resolved, &wiring, rules, report);
     report.finish();
-    if report.has_errors() { None } else { assemble(&fleet, &classes, resolved, &wiring) }
+    if report.has_errors() {
+        return None;
+    }
+    let places: Vec<traffic::Place> = match options.wiring {
+        true => fleet
+            .members
+            .iter()
+            .zip(&resolved)
+            .filter_map(|(member, one)| place(member, one.as_ref()?))
+            .collect(),
+        false => Vec::new(),
+    };
+    let assembly = assemble(&fleet, &classes, resolved, &wiring);
+    if let Some(assembly) = assembly.as_ref().filter(|_| options.wiring) {
+        traffic::check(assembly, &places, report);
+    }
+    assembly
 }
 
 /// What the properties of a component come to.
@@ -132,7 +149,15 @@ struct Resolved<'r> {
     /// Where the composite gives them.
     written: Vec<Written<'r>>,
     task: Option<TaskSettings>,
+    /// Where its topics got other names.
+    renamed: Vec<(String, Location)>,
     loops: Vec<loops::Resolved<'r>>,
+}
+
+/// Where a component of the assembly stands.
+fn place(member: &Member<'_>, resolved: &Resolved<'_>) -> Option<traffic::Place> {
+    let place = || traffic::Place { name: member.component.name.location, renamed: resolved.renamed.clone() };
+    (!matches!(member.kind, Kind::Composite(_))).then(place)
 }
 
 impl Resolved<'_> {
@@ -207,6 +232,10 @@ fn components<'f, 'a>(
         let is_periodic = class.class.declaration().is_periodic();
         let task = is_periodic.then(|| task::check(member.component, class, &checked, report));
         topics.add(member, index, class, task.as_ref(), report);
+        let renamed = task.as_ref().map(|task| {
+            task.renames.iter().map(|(_, new)| new.clone()).zip(task.renamed_at.iter().copied()).collect()
+        });
+        let renamed = renamed.unwrap_or_default();
         let task = task.and_then(|task| task.settings);
         let sound = checked.is_sound && is_periodic == task.is_some();
         all.push(loops.filter(|_| sound).map(|loops| {
@@ -214,7 +243,7 @@ fn components<'f, 'a>(
             let absent =
                 class.class.presets().iter().filter(|(name, _)| checked.get(&class.slots, name).is_none());
             values.extend(absent.cloned());
-            Resolved { values, written: checked.places(&class.slots), task, loops }
+            Resolved { values, written: checked.places(&class.slots), task, renamed, loops }
         }));
     }
     report.about_all();

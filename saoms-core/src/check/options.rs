@@ -13,6 +13,8 @@ pub struct Options {
     /// Whether what the registry does not know is taken as given: classes, and implementations of other kinds. There is no
     /// assembly then when a component has such a one.
     pub assume_classes: bool,
+    /// Whether the wiring of the fleet is judged as a whole, too: topics without another end, queues that overflow.
+    pub wiring: bool,
     /// Whether the code of plugins is left alone: what their constructors would say about values is not known then.
     pub without_plugin_code: bool,
 }

@@ -4,7 +4,7 @@
 //! names and wiring, `S3` classes and properties, `S4` tasks, topics and loops. `S5` is what rules of crates of components find
 //! (see [`FleetRule`](saoms_api::FleetRule)); each of them declares its own code.
 
-use saoms_api::Severity::{Error, Warning};
+use saoms_api::Severity::{Error, Note, Warning};
 
 pub use saoms_api::Code;
 
@@ -138,6 +138,11 @@ codes! {
     DEADLINE = "S4007" Warning "deadline": "A deadline is behind the next execution.";
     RESTART_UNUSED = "S4008" Warning "restart-unused": "A setting of restarts has no effect, since there are none.";
     TOPIC_MISMATCH = "S4009" Error "topic-mismatch": "Two components use one topic for different messages, or in different ways.";
+    TOPIC_UNREAD = "S4010" Note "topic-unread": "A topic is published that nobody reads. Told by `saoms check --wiring`.";
+    TOPIC_UNWRITTEN = "S4011" Warning "topic-unwritten": "A topic is read that nobody publishes. Told by `saoms check --wiring`.";
+    TOPIC_NEAR = "S4012" Warning "topic-near": "A topic has one end alone, and there is another one with nearly its name. Told by `saoms check --wiring`.";
+    QUEUE = "S4013" Warning "queue": "More messages can come between two executions of a reader than its queue takes. Told by `saoms check --wiring`.";
+    READER_FASTER = "S4014" Note "reader-faster": "A topic is read more often than anybody publishes it. Told by `saoms check --wiring`.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A loop is named that the component does not have.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "One loop of a component is given twice.";

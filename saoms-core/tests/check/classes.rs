@@ -24,6 +24,8 @@ pub(crate) fn registry() -> Registry {
         Registration::of::<Fragile>(),
         Registration::of::<Reader>(),
         Registration::of::<Conductor>(),
+        Registration::of::<Dispatcher>(),
+        Registration::of::<Picker>(),
     ];
     for one in all {
         registry.add(one).unwrap();
@@ -235,6 +237,20 @@ component!(Shouter, ());
 pub(crate) struct Tracker;
 
 component!(Tracker, ());
+
+/// Gives orders.
+#[derive(Class)]
+#[class(name = "example.Dispatcher", periodic, publishes(ORDERS))]
+pub(crate) struct Dispatcher;
+
+component!(Dispatcher, ());
+
+/// Takes orders.
+#[derive(Class)]
+#[class(name = "example.Picker", periodic, subscribes(ORDERS))]
+pub(crate) struct Picker;
+
+component!(Picker, ());
 
 /// Tells any number of robots where to go.
 #[derive(Class)]

@@ -22,3 +22,4 @@ mod support;
 mod tasks;
 mod topics;
 mod wires;
+mod wiring;

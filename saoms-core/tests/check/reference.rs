@@ -131,7 +131,8 @@ fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
     files.extend(read(format!("{id}.inner.composite")));
     assert!(!files.is_empty(), "there is no example of {id}");
     let settings = fs::read_to_string(folder().join(format!("{id}.set"))).unwrap_or_default();
-    checked(&files, asked_for, &settings.lines().collect::<Vec<_>>())
+    let wiring = WIRING.contains(&id);
+    checked_with(&files, asked_for, &settings.lines().collect::<Vec<_>>(), wiring)
 }
 
 /// Checks `ID.composite` in its folder, where there are component types, with unknown classes taken as given.
@@ -149,7 +150,19 @@ fn from_folder(id: &str) -> (Vec<Diagnostic>, Sources) {
     (diagnostics.into_sorted(), renamed)
 }
 
+/// The codes that the wiring report adds.
+const WIRING: &[&str] = &["S4010", "S4011", "S4012", "S4013", "S4014"];
+
 fn checked(files: &[(String, String)], asked_for: usize, settings: &[&str]) -> (Vec<Diagnostic>, Sources) {
+    checked_with(files, asked_for, settings, false)
+}
+
+fn checked_with(
+    files: &[(String, String)],
+    asked_for: usize,
+    settings: &[&str],
+    wiring: bool,
+) -> (Vec<Diagnostic>, Sources) {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let files: Vec<_> = files.iter().map(|(name, text)| sources.add(name.as_str(), text.as_str())).collect();
     let settings: Vec<_> = settings
@@ -162,7 +175,8 @@ fn checked(files: &[(String, String)], asked_for: usize, settings: &[&str]) -> (
     let mut fleet = Contribution::with(composites, others);
     let mut registry = registry();
     open_named(&mut fleet, &Search::default(), &sources, &mut registry);
-    check(&fleet, &registry, &Options::with_settings(settings), &sources, &mut diagnostics);
+    let options = Options { wiring, ..Options::with_settings(settings) };
+    check(&fleet, &registry, &options, &sources, &mut diagnostics);
     (diagnostics.into_sorted(), sources)
 }
 

@@ -1,0 +1,100 @@
+//! Who says what to whom: the topics of a fleet with their writers and readers.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use saoms_api::TopicKind;
+
+use super::{Assembly, ComponentSpec};
+use crate::registry::TopicDeclaration;
+
+/// The topics of a fleet by the names they have after renaming, sorted.
+#[derive(Clone, Debug)]
+pub struct Traffic {
+    /// The topics.
+    pub topics: Vec<Topic>,
+}
+
+/// A topic of a fleet.
+#[derive(Clone, Debug)]
+pub struct Topic {
+    /// Its name.
+    pub name: String,
+    /// State or event.
+    pub kind: TopicKind,
+    /// The name of the type of its messages.
+    pub message: String,
+    /// Who publishes it, in the order of the assembly.
+    pub writers: Vec<End>,
+    /// Who subscribes to it, in the order of the assembly.
+    pub readers: Vec<End>,
+}
+
+/// A component that uses a topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    /// Its index in the assembly.
+    pub component: usize,
+    /// How many of its parts declare the topic: itself and its loops, each of which can send one message in an execution, or more.
+    pub parts: u32,
+    /// From one execution to the next; `None` for a passive component.
+    pub period: Option<Duration>,
+}
+
+impl Traffic {
+    /// The topics of an assembly.
+    pub fn of(assembly: &Assembly) -> Self {
+        let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
+        for (component, spec) in assembly.components.iter().enumerate() {
+            let loops = || spec.loops.iter().map(|one| one.class.declaration());
+            let own = spec.class.declaration();
+            let written = own.publishes.iter().chain(loops().flat_map(|one| &one.publishes));
+            let read = own.subscribes.iter().chain(loops().flat_map(|one| &one.subscribes));
+            written.for_each(|topic| add(&mut topics, topic, component, spec, |topic| &mut topic.writers));
+            read.for_each(|topic| add(&mut topics, topic, component, spec, |topic| &mut topic.readers));
+        }
+        Self { topics: topics.into_values().collect() }
+    }
+}
+
+impl Topic {
+    /// How many messages come between two executions of a reader if each part of each writer sends one in each execution; `None` for a passive reader.
+    pub fn burst(&self, reader: &End) -> Option<u64> {
+        let period = reader.period?.as_nanos();
+        let messages = self.writers.iter().filter_map(|writer| {
+            let executions = period.div_ceil(writer.period?.as_nanos().max(1));
+            Some(u64::try_from(executions).unwrap_or(u64::MAX).saturating_mul(u64::from(writer.parts)))
+        });
+        Some(messages.fold(0, u64::saturating_add))
+    }
+
+    /// How many messages a second there are if each part of each writer sends one in each execution.
+    pub fn rate(&self) -> f64 {
+        let rates = self.writers.iter().filter_map(|writer| Some((writer.parts, writer.period?)));
+        rates.map(|(parts, period)| f64::from(parts) / period.as_secs_f64()).sum()
+    }
+}
+
+fn add(
+    topics: &mut BTreeMap<String, Topic>,
+    declared: &TopicDeclaration,
+    component: usize,
+    spec: &ComponentSpec,
+    ends: impl FnOnce(&mut Topic) -> &mut Vec<End>,
+) {
+    let renames = spec.task.as_ref().map_or(&[][..], |task| &task.topic_rename);
+    let renamed = renames.iter().find(|(old, _)| *old == declared.name);
+    let name = renamed.map_or(&declared.name, |(_, new)| new);
+    let topic = topics.entry(name.clone()).or_insert_with(|| Topic {
+        name: name.clone(),
+        kind: declared.kind,
+        message: declared.message.clone(),
+        writers: Vec::new(),
+        readers: Vec::new(),
+    });
+    let ends = ends(topic);
+    match ends.last_mut().filter(|last| last.component == component) {
+        Some(last) => last.parts += 1,
+        None => ends.push(End { component, parts: 1, period: spec.task.as_ref().map(|task| task.period) }),
+    }
+}

@@ -1,0 +1,175 @@
+//! What topics come to in the fleet as a whole: nobody at the other end, names that are nearly the same, queues that overflow.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use saoms_api::{TopicKind, format_duration};
+
+use super::report::Report;
+use crate::assembly::{Assembly, End, Loss, Topic, Traffic};
+use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
+use crate::source::Location;
+
+/// Where a component stands, and where its topics got their names.
+pub(super) struct Place {
+    pub(super) name: Location,
+    pub(super) renamed: Vec<(String, Location)>,
+}
+
+/// Looks at all topics of a fleet; `places` are those of its components.
+pub(super) fn check(assembly: &Assembly, places: &[Place], report: &mut Report<'_>) {
+    let traffic = Traffic::of(assembly);
+    let all = All { assembly, places };
+    let is_lone = |topic: &&Topic| topic.writers.is_empty() || topic.readers.is_empty();
+    let mut lone: HashMap<&str, &Topic> =
+        traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
+    for topic in &traffic.topics {
+        if lone.contains_key(topic.name.as_str())
+            && let Some(meant) = all.meant(topic, &traffic)
+        {
+            lone.remove(topic.name.as_str());
+            lone.remove(meant.name.as_str());
+            all.near(topic, meant, report);
+        }
+    }
+    for topic in &traffic.topics {
+        if lone.contains_key(topic.name.as_str()) {
+            all.lone(topic, report);
+        } else {
+            all.rates(topic, report);
+        }
+    }
+}
+
+struct All<'a> {
+    assembly: &'a Assembly,
+    places: &'a [Place],
+}
+
+impl All<'_> {
+    /// Where a component got the name of a topic.
+    fn at(&self, end: &End, topic: &Topic) -> Location {
+        let place = &self.places[end.component];
+        let renamed = place.renamed.iter().find(|(name, _)| *name == topic.name);
+        renamed.map_or(place.name, |(_, at)| *at)
+    }
+
+    /// `component X`, or `component X and 3 others`.
+    fn who(&self, ends: &[End]) -> String {
+        let first = ends.first().map_or("", |end| self.assembly.components[end.component].path.as_str());
+        match ends.len() {
+            0 | 1 => format!("component {}", quoted(first)),
+            2 => format!("component {} and another one", quoted(first)),
+            count => format!("component {} and {} others", quoted(first), count - 1),
+        }
+    }
+
+    /// The same with what they do: `component X reads`, or `component X and 3 others read`.
+    fn who_does(&self, ends: &[End], does: &str) -> String {
+        let does = match (ends.len(), does) {
+            (0 | 1, does) => does,
+            (_, "reads") => "read",
+            _ => "publish",
+        };
+        format!("{} {does}", self.who(ends))
+    }
+
+    /// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one lacks.
+    fn meant<'t>(&self, lone: &Topic, traffic: &'t Traffic) -> Option<&'t Topic> {
+        let fits = |other: &&Topic| {
+            let has_end =
+                if lone.writers.is_empty() { !other.writers.is_empty() } else { !other.readers.is_empty() };
+            has_end && other.name != lone.name && other.message == lone.message && other.kind == lone.kind
+        };
+        let candidates: Vec<&Topic> = traffic.topics.iter().filter(fits).collect();
+        let name = nearest(&lone.name, candidates.iter().map(|other| other.name.as_str()))?;
+        candidates.into_iter().find(|other| other.name == name)
+    }
+
+    fn near(&self, lone: &Topic, meant: &Topic, report: &mut Report<'_>) {
+        let (does, ends, others, do_not) = match lone.writers.is_empty() {
+            true => ("reads", &lone.readers, &meant.writers, "publishes"),
+            false => ("publishes", &lone.writers, &meant.readers, "reads"),
+        };
+        let (Some(end), Some(other)) = (ends.first(), others.first()) else { return };
+        let message = format!(
+            "{} topic {}, which nobody {do_not}: there is {}",
+            self.who_does(ends, does),
+            quoted(&lone.name),
+            quoted(&meant.name)
+        );
+        let (at, there) = (self.at(end, lone), self.at(other, meant));
+        let mut one = Diagnostic::new(&codes::TOPIC_NEAR, at, message);
+        one = one.label(there, format!("{do_not} {}", quoted(&meant.name)));
+        let is_renamed = at != self.places[end.component].name;
+        report.push(match is_renamed {
+            true => one.suggest(super::report::replacing(&lone.name, &meant.name), at, meant.name.clone()),
+            false => one.help("`topicRename` gives topics other names"),
+        });
+    }
+
+    /// Says that one end of a topic is nobody.
+    fn lone(&self, topic: &Topic, report: &mut Report<'_>) {
+        let (code, does, ends, missing): (&'static Code, _, _, _) = match topic.writers.is_empty() {
+            true => (&codes::TOPIC_UNWRITTEN, "reads", &topic.readers, "publishes"),
+            false => (&codes::TOPIC_UNREAD, "publishes", &topic.writers, "reads"),
+        };
+        let Some(end) = ends.first() else { return };
+        let message =
+            format!("{} topic {}, which nobody {missing}", self.who_does(ends, does), quoted(&topic.name));
+        let one = Diagnostic::new(code, self.at(end, topic), message);
+        let kind = topic.kind.name();
+        report.push(one.help(format!("it is {} {kind} topic of {}", article(kind), quoted(&topic.message))));
+    }
+
+    /// Compares how often a topic is written and read.
+    fn rates(&self, topic: &Topic, report: &mut Report<'_>) {
+        let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
+        // One for each pair of periods: a fleet of robots says the same.
+        let mut told: Vec<(&'static str, Option<Duration>)> = Vec::new();
+        for reader in &topic.readers {
+            let Some(task) = &self.assembly.components[reader.component].task else { continue };
+            let alike = |one: &&End| one.period == reader.period;
+            let readers: Vec<End> = topic.readers.iter().filter(alike).copied().collect();
+            let Some(burst) = topic.burst(reader) else { continue };
+            let overflows = topic.kind == TopicKind::Event && burst > task.queue as u64;
+            if overflows && task.loss == Loss::Fail && !told.contains(&("queue", reader.period)) {
+                told.push(("queue", reader.period));
+                let message = format!(
+                    "up to {burst} messages of topic {} come between two executions of {}, and {} find room",
+                    quoted(&topic.name),
+                    self.who(&readers),
+                    task.queue
+                );
+                let parts: u32 = topic.writers.iter().map(|writer| writer.parts).sum();
+                let writers = self.who_does(&topic.writers, "publishes");
+                let one = Diagnostic::new(&codes::QUEUE, self.at(reader, topic), message);
+                report.push(
+                    one.help(format!(
+                        "{writers} it, {parts} components and loops in all: that is one message of each in each execution"
+                    ))
+                    .help(format!("give the readers a `queue` of {burst} or more, or a shorter `period`")),
+                );
+            }
+            if let (Some(fastest), Some(period)) = (fastest, reader.period)
+                && period < fastest
+                && !told.contains(&("rate", reader.period))
+            {
+                told.push(("rate", reader.period));
+                let message = format!(
+                    "{} topic {} every {}, and nobody publishes it more often than every {}",
+                    self.who_does(&readers, "reads"),
+                    quoted(&topic.name),
+                    format_duration(period),
+                    format_duration(fastest)
+                );
+                let one = Diagnostic::new(&codes::READER_FASTER, self.at(reader, topic), message);
+                report.push(one.help("some of its executions find nothing new"));
+            }
+        }
+    }
+}
+
+fn article(word: &str) -> &'static str {
+    if word.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" }
+}
