@@ -60,6 +60,11 @@ Exit codes:
   2  the input is wrong: no such robot, a time after the end of the run, a file without journal or not whole; or the records that the whole
      answer needs were overwritten";
 
+const LSP_EXIT_CODES: &str = "\
+Exit codes:
+  0  the editor ended the session
+  1  the editor went away without ending it";
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Check composites and run the fleet that they describe together
@@ -85,6 +90,9 @@ pub(crate) enum Command {
     /// Write the language of composites, with all classes and properties, as XML schemas for editors
     #[command(after_help = SCHEMA_EXIT_CODES)]
     Schema(SchemaArguments),
+    /// Serve editors over standard input and output: diagnostics, completion, and more (Language Server Protocol)
+    #[command(after_help = LSP_EXIT_CODES)]
+    Lsp(LspArguments),
     /// List the component classes, or describe one: properties, topics, services, references
     Components(ComponentsArguments),
 }
@@ -109,7 +117,7 @@ pub(crate) struct FleetArguments {
 }
 
 /// Where classes come from that are not linked into this program.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct PluginArguments {
     /// Use the classes of this plugin, or of all plugins in this folder; may be repeated
     #[arg(long = "plugin", value_name = "PATH")]
@@ -145,6 +153,16 @@ pub(crate) struct CheckArguments {
     /// Report the wiring of the whole fleet: every topic with who publishes and reads it how often, and what is odd about it
     #[arg(long, conflicts_with = "assume_classes")]
     pub(crate) wiring: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LspArguments {
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
+
+    /// Take classes that this program does not know as given, as `saoms check --assume-classes` does
+    #[arg(long)]
+    pub(crate) assume_classes: bool,
 }
 
 #[derive(Debug, Args)]

@@ -1,26 +1,29 @@
 //! From composite files to an assembly, or to the diagnostics that say why there is none.
 
 use std::io::IsTerminal;
+use std::path::PathBuf;
 
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, Setting, Variable, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::load::{load_file, load_named, read, read_values};
 use saoms_core::model::{Composite, Contribution};
+use saoms_core::plugin::{Search, open_named};
+use saoms_core::registry::Registry;
 use saoms_core::source::Sources;
 use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::plugins::{open_libraries, registry};
+use crate::plugins::{registry, search};
 
 /// The outcome of loading and checking.
 pub(crate) struct Checked {
     /// What is to run; absent where there was an error.
     pub(crate) assembly: Option<Assembly>,
     contribution: Contribution,
-    sources: Sources,
-    diagnostics: Vec<Diagnostic>,
+    pub(crate) sources: Sources,
+    pub(crate) diagnostics: Vec<Diagnostic>,
 }
 
 /// Loads the files and checks them as one fleet, as it is asked.
@@ -28,29 +31,44 @@ pub(crate) struct Checked {
 /// # Errors
 /// A plugin cannot be used, which was told.
 pub(crate) fn checked(arguments: &FleetArguments, asked: Options) -> Result<Checked, Exit> {
-    let mut registry = registry(&arguments.plugins, &arguments.files)?;
+    let registry = registry(&arguments.plugins, &arguments.files)?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
     let settings = arguments.settings.iter();
     let settings: Vec<Setting> =
         settings.filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics)).collect();
+    let options = Options { settings, ..asked };
+    let search = search(&arguments.plugins, &arguments.files);
+    Ok(checked_with(&arguments.files, arguments.max_size, options, registry, &search, sources, diagnostics))
+}
+
+/// The same with these classes and those of the libraries that the composites name; what was read and found before is kept.
+pub(crate) fn checked_with(
+    files: &[PathBuf],
+    max_size: u64,
+    options: Options,
+    mut registry: Registry,
+    search: &Search,
+    mut sources: Sources,
+    mut diagnostics: Diagnostics,
+) -> Checked {
     let mut composites = Vec::new();
-    for path in &arguments.files {
-        let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
+    for path in files {
+        let file = read(path, max_size, &mut sources, &mut diagnostics);
         let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
             continue;
         };
-        read_values(&mut composite, arguments.max_size, &mut sources, &mut diagnostics);
+        read_values(&mut composite, max_size, &mut sources, &mut diagnostics);
         composites.push(composite);
     }
     let mut contribution = Contribution::of(composites);
-    load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
-    open_libraries(&arguments.plugins, &arguments.files, &mut contribution, &sources, &mut registry);
+    load_named(&mut contribution, max_size, &mut sources, &mut diagnostics);
+    open_named(&mut contribution, search, &sources, &mut registry);
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
-    let options = Options { settings, variables, ..asked };
+    let options = Options { variables, ..options };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
-    Ok(Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() })
+    Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() }
 }
 
 impl Checked {

@@ -8,12 +8,13 @@ use saoms_core::diagnostic::{Diagnostics, Severity, human};
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
 use saoms_core::load::{load_file, load_named, read};
 use saoms_core::model::Contribution;
+use saoms_core::plugin::open_named;
 use saoms_core::source::Sources;
 
 use crate::Exit;
 use crate::arguments::{GraphArguments, Picture};
 use crate::output::{counted, eprint, try_print};
-use crate::plugins::{open_libraries, registry};
+use crate::plugins::{registry, search};
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
@@ -52,7 +53,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         Err(exit) => return exit,
     };
     let files = std::slice::from_ref(&arguments.file);
-    open_libraries(&arguments.plugins, files, &mut contribution, &sources, &mut registry);
+    open_named(&mut contribution, &search(&arguments.plugins, files), &sources, &mut registry);
     let diagram = Diagram::of(&contribution, &registry);
     let text = match picture {
         Picture::Svg => svg(&diagram),

@@ -12,6 +12,7 @@ mod expand;
 mod fleet;
 mod fmt;
 mod graph;
+mod lsp;
 mod new;
 mod output;
 mod paths;
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
         Command::Graph(arguments) => graph::graph(&arguments),
         Command::Schema(arguments) => schema::schema(&arguments),
         Command::Why(arguments) => why::why(&arguments),
+        Command::Lsp(arguments) => lsp::lsp(&arguments),
         Command::New(arguments) => new::new(&arguments),
         Command::Components(arguments) => components::components(&arguments),
     };

@@ -3,10 +3,8 @@
 use std::env;
 use std::path::PathBuf;
 
-use saoms_core::model::Contribution;
-use saoms_core::plugin::{Search, open_named};
+use saoms_core::plugin::Search;
 use saoms_core::registry::{Registry, RegistryError};
-use saoms_core::source::Sources;
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
@@ -15,48 +13,32 @@ use crate::output::eprint;
 /// The variable with folders of plugins, separated by colons.
 const SEARCH_PATH: &str = "SAOMS_PLUGIN_PATH";
 
+/// Something that is wrong with a plugin.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    /// Whether somebody named the plugin, or it contradicts another one; others are only left out.
+    pub(crate) is_error: bool,
+    pub(crate) text: String,
+}
+
 /// The registry of a command over these composites. Plugins are looked for where the command line says, in the folders of
 /// `SAOMS_PLUGIN_PATH`, beside each composite, and in a folder `plugins` beside it or in the current folder.
 ///
 /// What is wrong is told here; then the exit code is that for wrong input.
 pub(crate) fn registry(arguments: &PluginArguments, files: &[PathBuf]) -> Result<Registry, Exit> {
-    let mut registry = Registry::linked().map_err(|error| {
+    let (registry, problems) = collect(&search(arguments, files)).map_err(|error| {
         // A fault of this build, not of the user: no composite could be checked.
         eprint(&format!("error: {error}\n"));
         Exit::Failed
     })?;
-    let found = search(arguments, files).run();
-    for error in &found.left_out {
-        eprint(&format!("warning: {error}\n"));
+    for Problem { is_error, text } in &problems {
+        eprint(&format!("{}: {text}\n", if *is_error { "error" } else { "warning" }));
     }
-    let mut failed = !found.errors.is_empty();
-    for error in &found.errors {
-        eprint(&format!("error: {error}\n"));
-    }
-    for plugin in &found.plugins {
-        if let Err(error) = plugin.register(&mut registry) {
-            eprint(&match error {
-                RegistryError::NameTaken { .. } => format!("error: {error}\n"),
-                _ => format!("error: plugin `{}`: {error}\n", plugin.path().display()),
-            });
-            failed = true;
-        }
-    }
-    if failed { Err(Exit::WrongInput) } else { Ok(registry) }
+    if problems.iter().any(|one| one.is_error) { Err(Exit::WrongInput) } else { Ok(registry) }
 }
 
-/// Adds the classes of the libraries that composites name themselves. What is wrong with these the checker says.
-pub(crate) fn open_libraries(
-    arguments: &PluginArguments,
-    files: &[PathBuf],
-    contribution: &mut Contribution,
-    sources: &Sources,
-    registry: &mut Registry,
-) {
-    open_named(contribution, &search(arguments, files), sources, registry);
-}
-
-fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
+/// Where plugins are looked for.
+pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     let path = env::var_os(SEARCH_PATH).unwrap_or_default();
     let mut folders: Vec<PathBuf> =
         env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
@@ -68,4 +50,26 @@ fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     }
     folders.push("plugins".into());
     Search { named: arguments.plugins.clone(), folders }
+}
+
+/// The classes linked in and those of the plugins that a search finds, with all that is wrong.
+///
+/// # Errors
+/// What is linked in does not fit together.
+pub(crate) fn collect(search: &Search) -> Result<(Registry, Vec<Problem>), RegistryError> {
+    let mut registry = Registry::linked()?;
+    let found = search.run();
+    let left_out = found.left_out.iter().map(|error| Problem { is_error: false, text: error.to_string() });
+    let mut problems: Vec<Problem> = left_out.collect();
+    problems.extend(found.errors.iter().map(|error| Problem { is_error: true, text: error.to_string() }));
+    for plugin in &found.plugins {
+        if let Err(error) = plugin.register(&mut registry) {
+            let text = match error {
+                RegistryError::NameTaken { .. } => error.to_string(),
+                _ => format!("plugin `{}`: {error}", plugin.path().display()),
+            };
+            problems.push(Problem { is_error: true, text });
+        }
+    }
+    Ok((registry, problems))
 }

@@ -170,6 +170,25 @@ impl Shelf {
     }
 }
 
+/// The files `*.composite` whose composites one in `folder` can name: those in it, and those of its contribution, as
+/// [`load_named`](super::load_named) looks for them. Texts that count in place of files are among them.
+pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
+    let mut shelf = Shelf::new(open.clone());
+    let mut all = shelf.listing(folder).composites;
+    let mut waiting = VecDeque::from([shelf.root(folder)]);
+    let mut seen = HashSet::new();
+    while let Some(next) = waiting.pop_front() {
+        if seen.insert(next.clone()) {
+            let listing = shelf.listing(&next);
+            if next != folder {
+                all.extend(listing.composites);
+            }
+            waiting.extend(listing.folders);
+        }
+    }
+    all
+}
+
 /// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.
 fn root(folder: &Path) -> PathBuf {
     let Ok(absolute) = std::path::absolute(folder) else { return folder.to_owned() };

@@ -1,0 +1,75 @@
+//! What the two sides of a session can do.
+
+use lsp_types::{
+    CodeActionKind, CodeActionOptions, CodeActionProviderCapability, CompletionOptions,
+    HoverProviderCapability, OneOf, PositionEncodingKind, RenameOptions, SaveOptions, ServerCapabilities,
+    TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions, TextDocumentSyncSaveOptions,
+    WorkDoneProgressOptions,
+};
+use serde_json::{Value, json};
+
+/// What the editor can do.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Client {
+    pub(super) knows_snippets: bool,
+    pub(super) watches_files: bool,
+}
+
+impl Client {
+    /// As the parameters of `initialize` say.
+    pub(super) fn of(params: &Value) -> Self {
+        let can = |place: &str| params.pointer(place).and_then(Value::as_bool).unwrap_or(false);
+        Self {
+            knows_snippets: can("/capabilities/textDocument/completion/completionItem/snippetSupport"),
+            watches_files: can("/capabilities/workspace/didChangeWatchedFiles/dynamicRegistration"),
+        }
+    }
+}
+
+/// The answer to `initialize`.
+pub(super) fn capabilities() -> Value {
+    let triggers = ["<", "/", "\"", "'", " ", "$", ":", ","];
+    let capabilities = ServerCapabilities {
+        position_encoding: Some(PositionEncodingKind::UTF16),
+        text_document_sync: Some(TextDocumentSyncCapability::Options(TextDocumentSyncOptions {
+            open_close: Some(true),
+            change: Some(TextDocumentSyncKind::INCREMENTAL),
+            save: Some(TextDocumentSyncSaveOptions::SaveOptions(SaveOptions::default())),
+            ..TextDocumentSyncOptions::default()
+        })),
+        completion_provider: Some(CompletionOptions {
+            trigger_characters: Some(triggers.map(str::to_owned).into()),
+            ..CompletionOptions::default()
+        }),
+        hover_provider: Some(HoverProviderCapability::Simple(true)),
+        definition_provider: Some(OneOf::Left(true)),
+        references_provider: Some(OneOf::Left(true)),
+        document_highlight_provider: Some(OneOf::Left(true)),
+        document_symbol_provider: Some(OneOf::Left(true)),
+        document_formatting_provider: Some(OneOf::Left(true)),
+        rename_provider: Some(OneOf::Right(RenameOptions {
+            prepare_provider: Some(true),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        })),
+        code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
+            code_action_kinds: Some(vec![CodeActionKind::QUICKFIX]),
+            ..CodeActionOptions::default()
+        })),
+        ..ServerCapabilities::default()
+    };
+    json!({
+        "capabilities": capabilities,
+        "serverInfo": { "name": "saoms", "version": env!("CARGO_PKG_VERSION") },
+    })
+}
+
+/// The files whose changes on disk are of interest: what is checked, and the libraries of plugins.
+pub(super) fn watchers() -> Value {
+    let globs = ["**/*.composite", "**/*.componentType", "**/sca-contribution.xml", "**/*.so"];
+    let watchers = globs.map(|glob| json!({ "globPattern": glob }));
+    json!({ "registrations": [{
+        "id": "files",
+        "method": "workspace/didChangeWatchedFiles",
+        "registerOptions": { "watchers": watchers },
+    }] })
+}

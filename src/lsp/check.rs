@@ -1,0 +1,138 @@
+//! Checks on a thread of their own, when nobody has typed for a moment.
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+use saoms_core::check::Options;
+use saoms_core::diagnostic::Diagnostics;
+use saoms_core::load::MAX_SIZE;
+use saoms_core::registry::Registry;
+use saoms_core::source::{OpenTexts, Sources, identity};
+
+use super::diagnostics::{Reported, reported};
+use super::registries::Registries;
+use super::scene::Scene;
+use super::workspace::Workspace;
+use crate::fleet::checked_with;
+
+/// How long nothing has to change before a check starts.
+const QUIET: Duration = Duration::from_millis(120);
+
+/// What is to be checked.
+#[derive(Debug)]
+pub(super) struct Job {
+    /// Rises with each change.
+    pub(super) generation: u64,
+    pub(super) open: OpenTexts,
+    /// The files that are open.
+    pub(super) paths: Vec<PathBuf>,
+}
+
+/// What came of it: all that is wrong, by file. Files without a fault are not among them.
+#[derive(Debug)]
+pub(super) struct Outcome {
+    pub(super) generation: u64,
+    pub(super) files: BTreeMap<PathBuf, Vec<Reported>>,
+}
+
+/// Checks what is asked for.
+#[derive(Debug)]
+pub(super) struct Checker {
+    pub(super) registries: Arc<Registries>,
+    pub(super) assume_classes: bool,
+    /// The newest generation: older jobs are given up.
+    pub(super) newest: Arc<AtomicU64>,
+    pub(super) workspace: Workspace,
+}
+
+impl Checker {
+    /// Takes jobs until nobody can send any; of several that wait only the newest.
+    pub(super) fn run(mut self, jobs: &Receiver<Job>, done: impl Fn(Outcome)) {
+        while let Ok(mut job) = jobs.recv() {
+            loop {
+                match jobs.recv_timeout(QUIET) {
+                    Ok(newer) => job = newer,
+                    Err(RecvTimeoutError::Timeout) => break,
+                    Err(RecvTimeoutError::Disconnected) => return,
+                }
+            }
+            if let Some(outcome) = self.check(job) {
+                done(outcome);
+            }
+        }
+    }
+
+    /// All that is wrong; `None` where something changed in the meantime.
+    pub(super) fn check(&mut self, job: Job) -> Option<Outcome> {
+        self.workspace.set_open(job.open.clone());
+        self.workspace.refresh();
+        let mut files: BTreeMap<PathBuf, Vec<Reported>> = BTreeMap::new();
+        let (mut checked, mut seen) = (HashSet::new(), HashSet::new());
+        for path in &job.paths {
+            for root in self.roots(path) {
+                if checked.insert(root.clone()) {
+                    self.one(&root, &job, &mut files, &mut seen)?;
+                }
+            }
+            // A root that is broken does not lead here.
+            if !seen.contains(path) && checked.insert(path.clone()) {
+                self.one(path, &job, &mut files, &mut seen)?;
+            }
+        }
+        (self.newest.load(Ordering::Relaxed) == job.generation)
+            .then_some(Outcome { generation: job.generation, files })
+    }
+
+    /// The composites that are checked for the sake of one: those that it is part of and nothing else names.
+    fn roots(&mut self, path: &Path) -> Vec<PathBuf> {
+        let files = self.workspace.around(path);
+        if files.first().is_none_or(|first| first.path != path) {
+            return vec![path.to_owned()];
+        }
+        let scene = Scene::new(files, self.registries.of(path, &[]));
+        scene.roots().into_iter().map(|root| scene.files[root].path.clone()).collect()
+    }
+
+    /// Checks one composite with all that it names. `None` where something changed in the meantime.
+    fn one(
+        &self,
+        root: &Path,
+        job: &Job,
+        files: &mut BTreeMap<PathBuf, Vec<Reported>>,
+        seen: &mut HashSet<PathBuf>,
+    ) -> Option<()> {
+        if self.newest.load(Ordering::Relaxed) != job.generation {
+            return None;
+        }
+        // Nothing of a plugin runs because somebody looks at a file.
+        let options =
+            Options { assume_classes: self.assume_classes, without_plugin_code: true, ..Options::default() };
+        let registry = Registry::clone(&self.registries.of(root, &[]));
+        let search = self.registries.search(root);
+        let sources = Sources::with_open(job.open.clone());
+        let found = checked_with(
+            &[root.to_owned()],
+            MAX_SIZE,
+            options,
+            registry,
+            &search,
+            sources,
+            Diagnostics::new(),
+        );
+        for (_, file) in found.sources.iter() {
+            seen.insert(identity(Path::new(file.path())));
+        }
+        for (path, one) in reported(&found.diagnostics, &found.sources) {
+            let known = files.entry(path).or_default();
+            // Composites that several others name have their faults once.
+            if !known.contains(&one) {
+                known.push(one);
+            }
+        }
+        Some(())
+    }
+}

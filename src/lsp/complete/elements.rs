@@ -1,0 +1,144 @@
+//! Elements and end tags.
+
+use std::ops::Range;
+
+use lsp_types::CompletionItemKind;
+use saoms_core::load::vocabulary::{COMPONENT, COMPOSITE, Kind, LOOP, OWN_ELEMENTS, children, other};
+use saoms_core::model::{SAOMS_NAMESPACE, Version};
+
+use super::item::in_snippet;
+use super::{Proposal, names};
+use crate::lsp::describe;
+use crate::lsp::scene::Scene;
+use crate::lsp::syntax::prefix;
+
+/// Those that a file has in most cases come first, in the order in which they are written.
+const USUAL: &[&str] = &[
+    "implementation.rust",
+    "implementation.java",
+    "implementation.composite",
+    "component",
+    "property",
+    "reference",
+    "service",
+    "wire",
+    "include",
+];
+
+/// The names behind a `<`.
+pub(super) fn in_tag(
+    scene: &Scene,
+    parent: Option<usize>,
+    element: usize,
+    name: &Range<usize>,
+) -> Vec<Proposal> {
+    let file = scene.file();
+    let one = &file.tree.elements[element];
+    // An element that has its attributes or its end gets another name and nothing else.
+    let is_new = !one.is_complete && one.attributes.is_empty();
+    let range = name.start - 1..name.end;
+    let found = proposals(scene, parent, &range);
+    if is_new {
+        return found;
+    }
+    let plain = found.into_iter().filter(|one| !one.label.contains(' '));
+    plain.map(|one| one.renaming(name)).collect()
+}
+
+/// Elements at a place without a `<`.
+pub(super) fn in_content(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
+    proposals(scene, parent, &(at..at))
+}
+
+/// The end tag of an element.
+pub(super) fn end(scene: &Scene, element: Option<usize>, name: &Range<usize>, at: usize) -> Vec<Proposal> {
+    let file = scene.file();
+    let Some(element) = element else { return Vec::new() };
+    let wanted = &file.text[file.tree.elements[element].name.clone()];
+    let close = if file.text[name.end..].trim_start().starts_with('>') { "" } else { ">" };
+    let range = name.start..name.end.max(at);
+    vec![Proposal::new(wanted, CompletionItemKind::CLASS, &range).insert(format!("{wanted}{close}"))]
+}
+
+fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<Proposal> {
+    let file = scene.file();
+    let (text, tree) = (&*file.text, &file.tree);
+    let Some(parent) = parent else {
+        let has_root = tree.elements.iter().any(|one| one.parent.is_none() && one.tag.start != range.start);
+        return if has_root { Vec::new() } else { vec![root(range)] };
+    };
+    let Some(kind) = file.kinds[parent] else { return Vec::new() };
+    let sca = prefix(&text[tree.elements[0].name.clone()]);
+    let has_implementation = tree.children(parent).any(|child| {
+        tree.local(text, child).starts_with("implementation.")
+            && tree.elements[child].tag.start != range.start
+    });
+    let fits = |name: &&str| !(has_implementation && name.starts_with("implementation."));
+    let mut all: Vec<Proposal> =
+        children(kind).filter(fits).map(|name| element(kind, name, &format!("{sca}{name}"), range)).collect();
+    if std::ptr::eq(kind, &COMPONENT) {
+        all.extend(names::missing_properties(scene, parent).into_iter().map(|(one, preset)| {
+            let name = format!("{sca}property {}", one.name);
+            let value = in_snippet(one.default.as_deref().unwrap_or_default());
+            let rank = if one.required { 0 } else { 6 };
+            Proposal::new(name, CompletionItemKind::PROPERTY, range)
+                .detail(describe::facts(one, preset))
+                .doc(describe::property(one, preset))
+                .rank(rank)
+                .snippet(format!("<{sca}property name=\"{}\">${{1:{value}}}</{sca}property>", one.name))
+        }));
+        if let Some(own) = tree.prefix_of(text, parent, SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
+            all.push(looping(&format!("{own}:"), range));
+        }
+    }
+    all
+}
+
+/// The elements that SAOMS adds and SCA's names do not have.
+fn looping(own: &str, range: &Range<usize>) -> Proposal {
+    debug_assert!(OWN_ELEMENTS.contains(&LOOP.name));
+    Proposal::new(format!("{own}{}", LOOP.name), CompletionItemKind::CLASS, range)
+        .doc(describe::element(&LOOP))
+        .snippet(format!("<{own}{} name=\"$1\"$2/>", LOOP.name))
+}
+
+fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Range<usize>) -> Proposal {
+    let kind = parent.child(name);
+    let doc = match kind {
+        Some(kind) => describe::element(kind),
+        None => other(name).unwrap_or_default().to_owned(),
+    };
+    let in_composite = std::ptr::eq(parent, &COMPOSITE);
+    let snippet = match name {
+        "component" => format!("<{written} name=\"$1\">\n  $0\n</{written}>"),
+        "implementation.java" | "implementation.rust" => format!("<{written} class=\"$1\"/>"),
+        "implementation.composite" | "include" => format!("<{written} name=\"$1\"/>"),
+        "property" if in_composite => format!("<{written} name=\"$1\">$2</{written}>"),
+        "property" => format!("<{written} name=\"$1\">$2</{written}>"),
+        "reference" if in_composite => format!("<{written} name=\"$1\" promote=\"$2\"/>"),
+        "reference" => format!("<{written} name=\"$1\" target=\"$2\"/>"),
+        "service" if in_composite => format!("<{written} name=\"$1\" promote=\"$2\"/>"),
+        "service" | "callback" => format!("<{written} name=\"$1\">$0</{written}>"),
+        "wire" => format!("<{written} source=\"$1\" target=\"$2\"/>"),
+        name if name.starts_with("interface.") => format!("<{written} interface=\"$1\"/>"),
+        name if name.starts_with("binding.") => format!("<{written}$0/>"),
+        "value" | "documentation" => format!("<{written}>$1</{written}>"),
+        _ => format!("<{written}$0/>"),
+    };
+    let rank = if USUAL.contains(&name) { 3 } else { 7 };
+    let first = kind.map_or(doc.as_str(), |kind| kind.doc);
+    let detail = first.split_inclusive('.').next().unwrap_or_default().trim_end_matches('.');
+    Proposal::new(written, CompletionItemKind::CLASS, range)
+        .detail(detail)
+        .doc(doc.clone())
+        .rank(rank)
+        .snippet(snippet)
+}
+
+/// The root of a new file.
+fn root(range: &Range<usize>) -> Proposal {
+    let namespace = Version::Oasis200912.namespace();
+    Proposal::new(COMPOSITE.name, CompletionItemKind::CLASS, range).doc(describe::element(&COMPOSITE)).snippet(format!(
+        "<composite xmlns=\"{namespace}\" name=\"$1\" targetNamespace=\"urn:${{2:fleet}}\">\n  $0\n</composite>"
+    ))
+}

@@ -1,0 +1,112 @@
+//! What can be written at a place.
+
+mod attributes;
+mod elements;
+mod ends;
+mod item;
+pub(super) mod names;
+#[cfg(test)]
+mod tests;
+pub(super) mod topics;
+mod values;
+
+use std::ops::Range;
+
+use saoms_core::load::vocabulary::{COMPONENT_PROPERTY, Holds, own_attributes};
+use saoms_core::model::Multiplicity;
+
+use lsp_types::CompletionItemKind;
+
+use super::scene::Scene;
+use super::syntax::{Cursor, local};
+pub(super) use item::Proposal;
+
+/// What can be written at a byte of the file.
+pub(super) fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
+    let file = scene.file();
+    match file.tree.cursor(&file.text, at) {
+        Cursor::ElementName { parent, element, name } => elements::in_tag(scene, parent, element, &name),
+        Cursor::EndTag { element, name } => elements::end(scene, element, &name, at),
+        Cursor::AttributeName { element, name } => attributes::complete(scene, element, &name),
+        Cursor::AttributeValue { element, attribute, value } => {
+            // What is behind the cursor stays where the value has no end yet.
+            let is_closed = file.tree.elements[element].attributes[attribute].is_closed;
+            let value = value.start..if is_closed { value.end } else { at };
+            value_of(scene, element, attribute, value, at)
+        }
+        Cursor::Text { parent } => in_text(scene, parent, at),
+        Cursor::Opaque => Vec::new(),
+    }
+}
+
+/// The values of an attribute.
+fn value_of(
+    scene: &Scene,
+    element: usize,
+    attribute: usize,
+    value: Range<usize>,
+    at: usize,
+) -> Vec<Proposal> {
+    let file = scene.file();
+    let Some(kind) = file.kinds[element] else { return Vec::new() };
+    let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
+    if name == "xmlns" || name.starts_with("xmlns:") {
+        return attributes::namespaces(&value);
+    }
+    let of_sca = kind.attributes.iter().find(|known| known.name == name);
+    let own = || own_attributes(kind).find(|known| name.contains(':') && known.name == local(name));
+    let Some(known) = of_sca.or_else(own) else { return Vec::new() };
+    match known.holds {
+        Holds::Boolean => names::words(&["true", "false"], &value),
+        Holds::Multiplicity => names::words(&Multiplicity::ALL.map(Multiplicity::name), &value),
+        Holds::PropertyName => names::properties(scene, element, &value),
+        Holds::ServiceName => names::services(scene, element, &value),
+        Holds::ReferenceName => names::references(scene, element, &value),
+        Holds::Class => names::classes(scene, &value),
+        Holds::Interface => names::interfaces(scene, element, &value),
+        Holds::LoopName => names::loops(scene, element, name, &value),
+        Holds::LoopClass => names::loop_classes(scene, element, &value),
+        Holds::Composite => names::composites(scene, element, &value),
+        Holds::End | Holds::Ends => ends::complete(scene, element, name, value, at),
+        Holds::Source => names::sources(scene, &value),
+        Holds::Value if std::ptr::eq(kind, &COMPONENT_PROPERTY) => {
+            values::complete(scene, element, value, at)
+        }
+        // The expressions are over properties of the composite.
+        Holds::Number | Holds::Condition => names::parameters(scene, &names::word_at(&file.text, value, at)),
+        Holds::Value | Holds::Name | Holds::Uri | Holds::Names | Holds::Variable | Holds::Text => Vec::new(),
+    }
+}
+
+/// What can stand in the content of an element.
+fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
+    let file = scene.file();
+    let Some(element) = parent else { return elements::in_content(scene, None, at) };
+    let one = &file.tree.elements[element];
+    let property = match (file.kinds[element], one.parent) {
+        (Some(kind), _) if std::ptr::eq(kind, &COMPONENT_PROPERTY) => Some(element),
+        // A `<value>` of a property.
+        (None, Some(outer)) if file.tree.local(&file.text, element) == "value" => {
+            file.kinds[outer].filter(|kind| std::ptr::eq(*kind, &COMPONENT_PROPERTY)).map(|_| outer)
+        }
+        _ => None,
+    };
+    let Some(property) = property else { return elements::in_content(scene, parent, at) };
+    if file.tree.children(element).next().is_some() {
+        return elements::in_content(scene, parent, at);
+    }
+    let end = one.end_tag.as_ref().map_or(at, |tag| tag.start).max(at);
+    let inside = super::syntax::trimmed(&file.text, one.tag.end..end);
+    // An empty text is where the cursor is; one that is there already is replaced.
+    let range = match (inside.is_empty(), &one.end_tag) {
+        (true, _) => at..at,
+        (false, Some(_)) => inside.start.min(at)..inside.end.max(at),
+        (false, None) => inside.start.min(at)..at,
+    };
+    values::complete(scene, property, range, at)
+}
+
+/// A proposal of a value.
+fn value(label: impl Into<String>, range: &Range<usize>) -> Proposal {
+    Proposal::new(label, CompletionItemKind::VALUE, range)
+}

@@ -1,0 +1,83 @@
+//! Values of properties.
+
+use std::ops::Range;
+
+use saoms_api::declaration::PropertyKind;
+use saoms_core::registry::PropertyDeclaration;
+
+use super::{Proposal, names, topics, value};
+use crate::lsp::describe;
+use crate::lsp::scene::Scene;
+
+/// The units of durations, as often as they are meant.
+const UNITS: &[(&str, &str)] = &[
+    ("ms", "milliseconds"),
+    ("s", "seconds"),
+    ("us", "microseconds"),
+    ("min", "minutes"),
+    ("h", "hours"),
+    ("ns", "nanoseconds"),
+];
+
+/// The values that a property of a component, or of a loop, can have.
+pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Proposal> {
+    let file = scene.file();
+    let Some(parent) = file.tree.elements[property].parent else { return Vec::new() };
+    let Some(name) = file.tree.value(&file.text, property, "name") else { return Vec::new() };
+    let name = &file.text[name];
+    if name == "topicRename" {
+        return topics::complete(scene, property, range, at);
+    }
+    let declared = names::declared(scene, parent);
+    let Some((one, preset)) = declared.into_iter().find(|(one, _)| one.name == name) else {
+        return Vec::new();
+    };
+    let doc = describe::property(one, preset);
+    let mut all = of(one, &file.text[range.start..at], &range);
+    if name == "ID"
+        && let Some(component) = scene.component_around(property)
+    {
+        all.push(value(&component.name.text, &range).detail("the name of the component"));
+    }
+    let expected = one.expected();
+    all.into_iter()
+        .map(|item| if item.detail.is_empty() { item.detail(&expected) } else { item }.doc(&doc))
+        .collect()
+}
+
+/// What can be proposed from the declaration, behind what is typed.
+fn of(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> Vec<Proposal> {
+    let is_default = |text: &str| one.default.as_deref() == Some(text);
+    let mut all: Vec<Proposal> = match one.kind {
+        PropertyKind::Boolean => ["true", "false"].map(|word| value(word, range)).into(),
+        PropertyKind::Duration => {
+            let number = typed.trim_end_matches(|c: char| c.is_ascii_alphabetic()).trim();
+            let units = UNITS.iter().zip(1..);
+            match number.parse::<f64>() {
+                Ok(_) => units
+                    .map(|((unit, what), rank)| {
+                        value(format!("{number}{unit}"), range).detail(*what).rank(rank)
+                    })
+                    .filter(|item| one.check(&item.label).is_ok())
+                    .collect(),
+                Err(_) => Vec::new(),
+            }
+        }
+        _ => one.allowed.iter().map(|word| value(word, range)).collect(),
+    };
+    // The ends of the range, where they are values.
+    let ends = [(&one.min, "the least"), (&one.max, "the greatest")];
+    for (end, what) in ends {
+        if let Some(end) = end.as_ref().filter(|end| !all.iter().any(|item| item.label == **end)) {
+            all.push(value(end, range).detail(format!("{what}: {}", one.expected())).rank(7));
+        }
+    }
+    if let Some(default) = one.default.as_deref().filter(|default| !default.is_empty())
+        && !all.iter().any(|item| item.label == default)
+    {
+        all.push(value(default, range));
+    }
+    all.into_iter()
+        .map(|item| if is_default(&item.label) { item.detail("default").rank(0) } else { item })
+        .collect()
+}

@@ -1,0 +1,110 @@
+//! Diagnostics of the checker as editors show them, and their suggestions as edits.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use lsp_types::{
+    DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, TextEdit, Uri,
+};
+use saoms_core::diagnostic::{Diagnostic, Severity, codes};
+use saoms_core::source::{FileId, Location as Place, Sources, identity};
+
+use super::position::Lines;
+use super::uri;
+
+/// A diagnostic with the ways to mend it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Reported {
+    pub(super) shown: lsp_types::Diagnostic,
+    /// What the code means, for hovering.
+    pub(super) meaning: String,
+    pub(super) fixes: Vec<Fix>,
+}
+
+/// A way to mend it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Fix {
+    pub(super) title: String,
+    /// Edits by file.
+    pub(super) edits: BTreeMap<PathBuf, Vec<TextEdit>>,
+}
+
+/// The diagnostics with the files that they are of.
+pub(super) fn reported<'d>(
+    all: &'d [Diagnostic],
+    sources: &'d Sources,
+) -> impl Iterator<Item = (PathBuf, Reported)> + use<'d> {
+    let mut places = Places { sources, lines: HashMap::new() };
+    all.iter().map(move |one| {
+        let related: Vec<DiagnosticRelatedInformation> = one
+            .labels
+            .iter()
+            .filter_map(|label| {
+                let location =
+                    Location { uri: places.uri(label.location.file)?, range: places.range(label.location) };
+                Some(DiagnosticRelatedInformation { location, message: label.text.clone() })
+            })
+            .collect();
+        let lines = one.help.iter().map(|help| format!("\n{help}"));
+        let unused = [&codes::UNUSED_PROPERTY, &codes::RENAME_UNUSED, &codes::RESTART_UNUSED];
+        let is_unused = unused.iter().any(|code| code.id == one.code.id);
+        let shown = lsp_types::Diagnostic {
+            range: places.range(one.location),
+            severity: Some(match one.severity {
+                Severity::Error => DiagnosticSeverity::ERROR,
+                Severity::Warning => DiagnosticSeverity::WARNING,
+                Severity::Note => DiagnosticSeverity::INFORMATION,
+            }),
+            code: Some(NumberOrString::String(one.code.id.to_owned())),
+            source: Some("saoms".to_owned()),
+            message: format!("{}{}", one.message, lines.collect::<String>()),
+            related_information: (!related.is_empty()).then_some(related),
+            tags: is_unused.then(|| vec![DiagnosticTag::UNNECESSARY]),
+            ..lsp_types::Diagnostic::default()
+        };
+        let rule = one.rule.map_or_else(String::new, |rule| format!(" SCA Assembly: {rule}."));
+        let meaning = format!("**{} {}**: {}{rule}", one.code.id, one.code.name, one.code.meaning);
+        let fixes = one.suggestions.iter().map(|suggestion| Fix {
+            title: capitalized(&suggestion.description),
+            edits: suggestion.edits.iter().fold(BTreeMap::new(), |mut edits, edit| {
+                let path = places.path(edit.location.file);
+                let range = places.range(edit.location);
+                edits
+                    .entry(path)
+                    .or_insert_with(Vec::new)
+                    .push(TextEdit::new(range, edit.replacement.clone()));
+                edits
+            }),
+        });
+        let fixes = fixes.collect();
+        (places.path(one.location.file), Reported { shown, meaning, fixes })
+    })
+}
+
+/// Translates the places of a check.
+struct Places<'s> {
+    sources: &'s Sources,
+    lines: HashMap<FileId, Lines>,
+}
+
+impl Places<'_> {
+    fn path(&self, file: FileId) -> PathBuf {
+        identity(Path::new(self.sources.get(file).path()))
+    }
+
+    fn uri(&self, file: FileId) -> Option<Uri> {
+        Uri::from_str(&uri::uri(&self.path(file))).ok()
+    }
+
+    fn range(&mut self, at: Place) -> lsp_types::Range {
+        let text = self.sources.get(at.file).text();
+        let lines = self.lines.entry(at.file).or_insert_with(|| Lines::new(text));
+        lines.range(text, at.span.start as usize..at.span.end.max(at.span.start) as usize)
+    }
+}
+
+fn capitalized(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}

@@ -1,0 +1,31 @@
+//! One composite as editors see it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use saoms_core::load::vocabulary::Kind;
+
+use super::outline::Outline;
+use super::position::Lines;
+use super::syntax::{Tree, scan};
+
+/// The text of a composite and what is known of it.
+#[derive(Debug)]
+pub(super) struct File {
+    pub(super) path: PathBuf,
+    pub(super) text: Arc<str>,
+    pub(super) lines: Lines,
+    pub(super) tree: Tree,
+    /// What is known of each element.
+    pub(super) kinds: Vec<Option<&'static Kind>>,
+    pub(super) outline: Outline,
+}
+
+impl File {
+    pub(super) fn new(path: PathBuf, text: Arc<str>) -> Self {
+        let tree = scan(&text);
+        let kinds = tree.kinds(&text);
+        let outline = Outline::of(&text, &tree, &kinds);
+        Self { path, lines: Lines::new(&text), tree, kinds, outline, text }
+    }
+}

@@ -1,0 +1,188 @@
+//! What is known about the thing under the cursor.
+
+use std::ops::Range;
+
+use saoms_core::load::vocabulary::{Holds, other, own_attributes};
+
+use super::complete::names::{declared, loop_class};
+use super::complete::topics;
+use super::describe;
+use super::outline::{Component, Implementation, Side};
+use super::scene::Scene;
+use super::symbol::{Symbol, at};
+use super::syntax::{Cursor, local, trimmed};
+
+/// What there is to say at a byte, in Markdown, and the text that it is about.
+pub(super) fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)> {
+    let file = scene.file();
+    if let Some(found) = at(scene, byte)
+        && let Some(text) = named(scene, &found.symbol, found.at.start)
+    {
+        return Some((text, found.at.start..found.at.end));
+    }
+    match file.tree.cursor(&file.text, byte) {
+        Cursor::ElementName { element, name, .. } | Cursor::EndTag { element: Some(element), name } => {
+            let text = match file.kinds[element] {
+                Some(kind) => describe::element(kind),
+                None => other(file.tree.local(&file.text, element))?.to_owned(),
+            };
+            Some((text, name))
+        }
+        Cursor::AttributeName { element, name } => {
+            let (kind, written) = (file.kinds[element]?, &file.text[name.clone()]);
+            let of_sca = kind.attributes.iter().find(|known| known.name == written);
+            let own =
+                || own_attributes(kind).find(|known| written.contains(':') && known.name == local(written));
+            Some((describe::attribute(of_sca.or_else(own)?), name))
+        }
+        Cursor::AttributeValue { element, attribute, value } => {
+            value_of(scene, element, attribute, value, byte)
+        }
+        Cursor::Text { parent: Some(element) } => {
+            let inside = file.tree.text(&file.text, element)?;
+            let is_value = file.tree.local(&file.text, element) == "value";
+            let property = if is_value { file.tree.elements[element].parent? } else { element };
+            let touches = inside.start <= byte && byte <= inside.end;
+            touches.then(|| value_of_property(scene, property, inside, byte)).flatten()
+        }
+        _ => None,
+    }
+}
+
+/// What a name stands for.
+fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
+    match symbol {
+        Symbol::Component { file, name } => {
+            let (of, one) = scene.component(*file, name)?;
+            Some(component(scene, of, one))
+        }
+        Symbol::Parameter { file, name } => {
+            let outline = &scene.files[*file].outline;
+            let one = outline.properties.iter().find(|one| one.text == *name);
+            let value = one.and_then(|one| scene.value_of(*file, one.element));
+            let value = value.map_or_else(String::new, |value| format!(": `{value}`"));
+            Some(format!("**{name}**, a property of the composite `{}`{value}", composite_name(scene, *file)))
+        }
+        Symbol::Promoted { file, side, name } => {
+            let what = if *side == Side::Service { "service" } else { "reference" };
+            Some(format!("**{name}**, a {what} of the composite `{}`", composite_name(scene, *file)))
+        }
+        Symbol::Part { file, component, side, name } => {
+            let class = scene.class(scene.component(*file, component)?.1)?.declaration();
+            Some(match side {
+                Side::Service => {
+                    let one = class.offers().find(|one| one.name == *name)?;
+                    format!(
+                        "**{name}**, a service of `{}` with the interface `{}`",
+                        class.name, one.interface.name
+                    )
+                }
+                Side::Reference => {
+                    let one = class.references.iter().find(|one| one.name == *name)?;
+                    let multiplicity = match (one.optional, one.many) {
+                        (true, true) => "0..n",
+                        (true, false) => "0..1",
+                        (false, true) => "1..n",
+                        (false, false) => "1..1",
+                    };
+                    let interface = &one.interface.name;
+                    format!(
+                        "**{name}**, a reference of `{}`, `{multiplicity}`, for the interface `{interface}`",
+                        class.name
+                    )
+                }
+            })
+        }
+        Symbol::Composite { file } => {
+            let one = &scene.files[*file];
+            let count = one.outline.components.len();
+            let namespace = &one.outline.namespace;
+            let name = composite_name(scene, *file);
+            let path = one.path.display();
+            Some(format!("**{name}**, a composite of `{namespace}`\n\n{count} components, in `{path}`"))
+        }
+        Symbol::Loop { .. } => {
+            let component = scene.component_around(scene.file().tree.innermost(start + 1)?)?;
+            let one =
+                component.loops.iter().find(|one| one.name.at.start <= start && start <= one.name.at.end)?;
+            let class = loop_class(scene, component, one)?;
+            Some(describe::looping(scene.registry.get_loop(&class)?))
+        }
+        Symbol::Class { name } => match (scene.registry.get(name), scene.registry.get_loop(name)) {
+            (Some(class), _) => Some(describe::class(class)),
+            (None, one) => Some(describe::looping(one?)),
+        },
+    }
+}
+
+fn composite_name(scene: &Scene, file: usize) -> &str {
+    scene.files[file].outline.name.as_ref().map_or("", |name| &name.text)
+}
+
+fn component(scene: &Scene, file: usize, one: &Component) -> String {
+    let name = &one.name.text;
+    let shown = scene.files[file].path.file_name().unwrap_or_default().to_string_lossy();
+    let of = if file == 0 { String::new() } else { format!(", in `{shown}`") };
+    match &one.implementation {
+        Some(Implementation::Composite(inner)) => {
+            format!("**{name}**, a component that the composite `{}` implements{of}", inner.text)
+        }
+        Some(Implementation::Class(class)) => {
+            let about = scene.class(one).map_or("", |class| class.declaration().doc.as_str());
+            format!("**{name}**, a component of the class `{}`{of}\n\n{about}", class.text)
+        }
+        None => format!("**{name}**, a component without an implementation{of}"),
+    }
+}
+
+fn value_of(
+    scene: &Scene,
+    element: usize,
+    attribute: usize,
+    value: Range<usize>,
+    byte: usize,
+) -> Option<(String, Range<usize>)> {
+    let file = scene.file();
+    let kind = file.kinds[element]?;
+    let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
+    let known = kind.attributes.iter().find(|known| known.name == name)?;
+    match known.holds {
+        Holds::PropertyName => {
+            let parent = file.tree.elements[element].parent?;
+            let at = trimmed(&file.text, value);
+            Some((property(scene, parent, &file.text[at.clone()])?, at))
+        }
+        Holds::Value => value_of_property(scene, element, value, byte),
+        Holds::Interface | Holds::Boolean | Holds::Multiplicity => Some((describe::attribute(known), value)),
+        _ => None,
+    }
+}
+
+fn property(scene: &Scene, parent: usize, name: &str) -> Option<String> {
+    let (one, preset) = declared(scene, parent).into_iter().find(|(one, _)| one.name == name)?;
+    Some(describe::property(one, preset))
+}
+
+/// The value of a property: what it has to be, or of `topicRename` the topic.
+fn value_of_property(
+    scene: &Scene,
+    element: usize,
+    value: Range<usize>,
+    byte: usize,
+) -> Option<(String, Range<usize>)> {
+    let file = scene.file();
+    let name = &file.text[file.tree.value(&file.text, element, "name")?];
+    if name == "topicRename"
+        && let Some(component) = scene.component_around(element)
+    {
+        let is_part = |c: char| c != ',' && c != ':' && !c.is_whitespace();
+        let before = file.text[value.start..byte].trim_end_matches(is_part).len();
+        let behind = &file.text[byte..value.end];
+        let at = value.start + before..byte + behind.len() - behind.trim_start_matches(is_part).len();
+        let topics = topics::of_component(scene, component);
+        if let Some(topic) = topics.get(&file.text[at.clone()]) {
+            return Some((describe::topic(topic), at));
+        }
+    }
+    Some((property(scene, file.tree.elements[element].parent?, name)?, value))
+}

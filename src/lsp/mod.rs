@@ -1,0 +1,71 @@
+//! `saoms lsp`: answers editors, by the Language Server Protocol 3.17 on standard input and output.
+//!
+//! One thread reads, one answers, one checks. Answers come from a reading of the text that understands what is half typed (`syntax`, `outline`);
+//! diagnostics come from the loader and the checker, as `saoms check` has them.
+
+mod capabilities;
+mod check;
+mod complete;
+mod describe;
+mod diagnostics;
+mod documents;
+mod file;
+mod fixes;
+mod hover;
+mod navigate;
+mod outline;
+mod position;
+mod registries;
+mod rename;
+mod requests;
+mod rpc;
+mod scene;
+mod server;
+mod symbol;
+mod symbols;
+mod syntax;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod uri;
+mod workspace;
+
+use std::io::{self, BufReader};
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+use std::sync::mpsc;
+use std::thread;
+
+use check::Checker;
+use registries::Registries;
+use server::{Event, Server};
+use workspace::Workspace;
+
+use crate::Exit;
+use crate::arguments::LspArguments;
+
+pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
+    let (events, came) = mpsc::channel();
+    let (jobs, asked) = mpsc::channel();
+    let registries = Arc::new(Registries::new(arguments.plugins.clone()));
+    let newest = Arc::new(AtomicU64::new(0));
+    let checker = Checker {
+        registries: Arc::clone(&registries),
+        assume_classes: arguments.assume_classes,
+        newest: Arc::clone(&newest),
+        workspace: Workspace::default(),
+    };
+    let done = events.clone();
+    thread::spawn(move || checker.run(&asked, |outcome| drop(done.send(Event::Checked(outcome)))));
+    thread::spawn(move || {
+        let mut input = BufReader::new(io::stdin().lock());
+        while let Ok(Some(incoming)) = rpc::read(&mut input) {
+            if events.send(Event::Incoming(incoming)).is_err() {
+                return;
+            }
+        }
+        let _ = events.send(Event::Closed);
+    });
+    Server::new(io::stdout().lock(), registries, jobs, newest).run(&came)
+}

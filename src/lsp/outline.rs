@@ -1,0 +1,220 @@
+//! What a composite names and what it refers to, as far as that is written already.
+
+use std::ops::Range;
+
+use saoms_core::load::vocabulary::{COMPONENT, COMPOSITE, INCLUDE, Kind, LOOP, WIRE};
+
+use super::syntax::{Tree, words};
+
+/// The parts of a composite.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Outline {
+    /// The name of the composite.
+    pub(super) name: Option<Named>,
+    /// Its target namespace; empty for none.
+    pub(super) namespace: String,
+    pub(super) components: Vec<Component>,
+    /// The composites that it includes.
+    pub(super) includes: Vec<Named>,
+    pub(super) properties: Vec<Named>,
+    pub(super) services: Vec<Named>,
+    pub(super) references: Vec<Named>,
+    /// Every place that refers to a component.
+    pub(super) ends: Vec<End>,
+    /// Every `$name`, without the `$`.
+    pub(super) sources: Vec<Named>,
+    /// The libraries that classes are said to be in.
+    pub(super) libraries: Vec<String>,
+}
+
+/// A name and where it is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Named {
+    /// The element that it stands in.
+    pub(super) element: usize,
+    pub(super) text: String,
+    pub(super) at: Range<usize>,
+}
+
+/// A component.
+#[derive(Clone, Debug)]
+pub(super) struct Component {
+    pub(super) name: Named,
+    pub(super) implementation: Option<Implementation>,
+    pub(super) properties: Vec<Named>,
+    pub(super) services: Vec<Named>,
+    pub(super) references: Vec<Named>,
+    pub(super) loops: Vec<Loop>,
+}
+
+/// What implements a component.
+#[derive(Clone, Debug)]
+pub(super) enum Implementation {
+    /// A class of the registry.
+    Class(Named),
+    /// A composite, by its QName.
+    Composite(Named),
+}
+
+/// A loop that a component says something about.
+#[derive(Clone, Debug)]
+pub(super) struct Loop {
+    pub(super) name: Named,
+    pub(super) class: Option<Named>,
+    /// The loops that it stands before or after.
+    pub(super) others: Vec<Named>,
+}
+
+/// A reference to a component: `component` or `component/part`.
+#[derive(Clone, Debug)]
+pub(super) struct End {
+    pub(super) side: Side,
+    pub(super) component: Named,
+    pub(super) part: Option<Named>,
+}
+
+/// What the part of an [`End`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Service,
+    Reference,
+}
+
+impl Outline {
+    pub(super) fn of(text: &str, tree: &Tree, kinds: &[Option<&'static Kind>]) -> Self {
+        let mut outline = Self::default();
+        // Where the component at hand starts, so that its parts find it.
+        for (element, kind) in kinds.iter().enumerate() {
+            let Some(kind) = kind else { continue };
+            let parent = tree.elements[element].parent.and_then(|parent| kinds[parent]);
+            outline.add(Reader { text, tree, element }, kind, parent);
+        }
+        outline
+    }
+
+    fn add(&mut self, of: Reader<'_>, kind: &'static Kind, parent: Option<&'static Kind>) {
+        let is = |known: &Kind| std::ptr::eq(kind, known);
+        if is(&COMPOSITE) {
+            self.name = of.named("name");
+            self.namespace = of.named("targetNamespace").map(|one| one.text).unwrap_or_default();
+        } else if is(&COMPONENT) {
+            self.components.push(Component {
+                name: of.named("name").unwrap_or_else(|| of.nameless()),
+                implementation: None,
+                properties: Vec::new(),
+                services: Vec::new(),
+                references: Vec::new(),
+                loops: Vec::new(),
+            });
+        } else if is(&INCLUDE) {
+            self.includes.extend(of.named("name"));
+        } else if is(&WIRE) {
+            self.ends.extend(of.named("source").map(|one| end(one, Side::Reference)));
+            self.ends.extend(of.named("target").map(|one| end(one, Side::Service)));
+        } else if parent.is_some_and(|parent| std::ptr::eq(parent, &COMPOSITE)) {
+            self.part(&of, kind);
+        } else {
+            self.inside(&of, kind, parent);
+        }
+    }
+
+    /// A property, a service or a reference of the composite.
+    fn part(&mut self, of: &Reader<'_>, kind: &'static Kind) {
+        let named = of.named("name");
+        match kind.name {
+            "property" => self.properties.extend(named),
+            "service" => {
+                self.services.extend(named);
+                self.ends.extend(of.named("promote").map(|one| end(one, Side::Service)));
+            }
+            "reference" => {
+                self.references.extend(named);
+                self.ends.extend(of.list("promote").map(|one| end(one, Side::Reference)));
+                self.ends.extend(of.list("target").map(|one| end(one, Side::Service)));
+            }
+            _ => {}
+        }
+    }
+
+    /// What stands in a component, a loop, a service or a reference.
+    fn inside(&mut self, of: &Reader<'_>, kind: &'static Kind, parent: Option<&'static Kind>) {
+        if kind.name == "reference" {
+            self.ends.extend(of.list("target").map(|one| end(one, Side::Service)));
+        }
+        // The URI of a reference's binding is a target, too.
+        if kind.name == "binding.sca" && parent.is_some_and(|parent| parent.name == "reference") {
+            self.ends.extend(of.named("uri").map(|one| end(one, Side::Service)));
+        }
+        if kind.name == "property"
+            && let Some(source) = of.named("source")
+            && let Some(rest) = source.text.strip_prefix('$')
+        {
+            let name = rest.split('/').next().unwrap_or(rest);
+            let at = source.at.start + 1..source.at.start + 1 + name.len();
+            self.sources.push(Named { element: source.element, text: name.to_owned(), at });
+        }
+        self.libraries.extend(of.named("library").map(|one| one.text));
+        let in_component = parent.is_some_and(|parent| std::ptr::eq(parent, &COMPONENT));
+        let Some(component) = self.components.last_mut().filter(|_| in_component) else { return };
+        let named = of.named("name");
+        match kind.name {
+            "property" => component.properties.extend(named),
+            "service" => component.services.extend(named),
+            "reference" => component.references.extend(named),
+            "implementation.composite" => {
+                component.implementation = named.map(Implementation::Composite);
+            }
+            "implementation.java" | "implementation.rust" => {
+                component.implementation = of.named("class").map(Implementation::Class);
+            }
+            name if name == LOOP.name => {
+                let name = named.unwrap_or_else(|| of.nameless());
+                let others = ["before", "after"].into_iter().filter_map(|place| of.named(place)).collect();
+                component.loops.push(Loop { name, class: of.named("class"), others });
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Reads the attributes of one element.
+#[derive(Clone, Copy)]
+struct Reader<'t> {
+    text: &'t str,
+    tree: &'t Tree,
+    element: usize,
+}
+
+impl<'t> Reader<'t> {
+    fn named(&self, attribute: &str) -> Option<Named> {
+        let at = self.tree.value(self.text, self.element, attribute)?;
+        (!at.is_empty()).then(|| self.at(at))
+    }
+
+    fn list(&self, attribute: &str) -> impl Iterator<Item = Named> + use<'t> {
+        let (text, one) = (self.text, *self);
+        let range = self.tree.value(text, self.element, attribute).unwrap_or(0..0);
+        words(text, range).map(move |at| one.at(at))
+    }
+
+    fn at(&self, at: Range<usize>) -> Named {
+        Named { element: self.element, text: self.text[at.clone()].to_owned(), at }
+    }
+
+    fn nameless(&self) -> Named {
+        let at = self.tree.elements[self.element].name.clone();
+        Named { element: self.element, text: String::new(), at }
+    }
+}
+
+/// The parts of `component/part/binding`.
+fn end(whole: Named, side: Side) -> End {
+    let mut start = whole.at.start;
+    let mut parts = whole.text.split('/').map(|part| {
+        let at = start..start + part.len();
+        start = at.end + 1;
+        Named { element: whole.element, text: part.to_owned(), at }
+    });
+    let component = parts.next().unwrap_or_else(|| whole.clone());
+    End { side, component, part: parts.next() }
+}

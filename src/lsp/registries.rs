@@ -1,0 +1,93 @@
+//! The classes that composites of a folder can name, plugins included, as `saoms check` finds them.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::SystemTime;
+
+use saoms_core::plugin::{Plugin, Search};
+use saoms_core::registry::Registry;
+
+use crate::arguments::PluginArguments;
+use crate::plugins::{Problem, collect, search};
+
+/// The registries by file and by the libraries that it names. Both threads of the server ask for them.
+#[derive(Debug)]
+pub(super) struct Registries {
+    arguments: PluginArguments,
+    known: Mutex<Known>,
+}
+
+#[derive(Debug, Default)]
+struct Known {
+    by_file: HashMap<(PathBuf, Vec<PathBuf>), (Libraries, Arc<Registry>)>,
+    told: HashSet<String>,
+    problems: Vec<Problem>,
+}
+
+/// The libraries that were there, each with what shows a change.
+type Libraries = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
+
+impl Registries {
+    pub(super) fn new(arguments: PluginArguments) -> Self {
+        Self { arguments, known: Mutex::default() }
+    }
+
+    /// Where plugins for a composite are looked for.
+    pub(super) fn search(&self, file: &Path) -> Search {
+        search(&self.arguments, &[file.to_owned()])
+    }
+
+    /// The classes for a composite, those of libraries that it names itself included. Plugins that were built anew since the last time are
+    /// read anew.
+    pub(super) fn of(&self, file: &Path, named: &[String]) -> Arc<Registry> {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let search = self.search(file);
+        let named: Vec<PathBuf> = named.iter().filter_map(|name| search.find(folder, name).ok()).collect();
+        let mut libraries = Libraries::new();
+        named.iter().for_each(|path| note(path, &mut libraries));
+        for path in search.named.iter().chain(&search.folders) {
+            note(path, &mut libraries);
+            let inside = fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
+            inside.filter(|path| path.extension().is_some_and(|ending| ending == "so")).for_each(|path| {
+                note(&path, &mut libraries);
+            });
+        }
+        let key = (file.to_owned(), named);
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((before, registry)) = known.by_file.get(&key)
+            && *before == libraries
+        {
+            return Arc::clone(registry);
+        }
+        let (mut registry, problems) = collect(&search).unwrap_or_else(|error| {
+            (Registry::new(), vec![Problem { is_error: true, text: error.to_string() }])
+        });
+        for problem in problems {
+            if known.told.insert(problem.text.clone()) {
+                known.problems.push(problem);
+            }
+        }
+        for path in &key.1 {
+            // What is wrong with it, and whether it is known already, the checker says.
+            let _ = Plugin::open(path).map(|plugin| plugin.register(&mut registry));
+        }
+        let registry = Arc::new(registry);
+        known.by_file.insert(key, (libraries, Arc::clone(&registry)));
+        registry
+    }
+
+    /// What is wrong with plugins and was not asked for before.
+    pub(super) fn new_problems(&self) -> Vec<Problem> {
+        std::mem::take(&mut self.known.lock().unwrap_or_else(PoisonError::into_inner).problems)
+    }
+}
+
+fn note(path: &Path, libraries: &mut Libraries) {
+    if let Ok(about) = fs::metadata(path)
+        && about.is_file()
+    {
+        libraries.insert(path.to_owned(), (about.modified().ok(), about.len()));
+    }
+}

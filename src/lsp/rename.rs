@@ -1,0 +1,115 @@
+//! Another name for a component, or for another part of a composite, everywhere.
+
+use super::scene::Scene;
+use super::symbol::{Occurrence, Place, Symbol, at, is_replica, places};
+
+/// The name at a byte that can be changed; why not, where there is none.
+pub(super) fn prepare(scene: &Scene, byte: usize) -> Result<Place, String> {
+    let found = at(scene, byte).ok_or("there is no name here")?;
+    if let Some(why) = refusal(&found.symbol) {
+        return Err(why);
+    }
+    Ok(own(scene, &found))
+}
+
+/// The edits that give what is at a byte another name.
+pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Place, String)>, String> {
+    let found = at(scene, byte).ok_or("there is no name here")?;
+    if let Some(why) = refusal(&found.symbol) {
+        return Err(why);
+    }
+    if name.is_empty() || name.contains(|c: char| c.is_whitespace() || "/<>&\"'".contains(c)) {
+        return Err(format!(
+            "`{name}` cannot be a name: it has to be there, without blanks, `/`, quotes, `<`, `>` and `&`"
+        ));
+    }
+    let all = places(scene, &found.symbol);
+    let old = all.iter().find(|one| one.is_definition).map(|one| text(scene, &own(scene, one)).to_owned());
+    let Some(old) = old else {
+        return Err("what is named here is not defined in any file near this one".to_owned());
+    };
+    if old != name {
+        taken(scene, &found.symbol, name)?;
+    }
+    all.iter()
+        .map(|one| {
+            let place = own(scene, one);
+            let written = text(scene, &place);
+            if written == old {
+                return Ok((place, name.to_owned()));
+            }
+            // One of several replicas keeps its index.
+            let new = replica(&old, written, name);
+            let new = new.ok_or_else(|| {
+                format!(
+                    "`{written}` is one of the replicas `{old}`: the new name has to hold the same expression"
+                )
+            })?;
+            Ok((place, new))
+        })
+        .collect()
+}
+
+/// Why something cannot be given another name.
+fn refusal(symbol: &Symbol) -> Option<String> {
+    match symbol {
+        Symbol::Class { name } => Some(format!("the class `{name}` has its name from its author")),
+        Symbol::Part { name, .. } => Some(format!("`{name}` has its name from the class of the component")),
+        Symbol::Loop { name, .. } => Some(format!("the loop `{name}` may have its name from the class")),
+        _ => None,
+    }
+}
+
+/// The part of a name that is its own: without the prefix of a namespace.
+fn own(scene: &Scene, one: &Occurrence) -> Place {
+    let prefix = match one.symbol {
+        Symbol::Composite { .. } => text(scene, &one.at).rfind(':').map_or(0, |at| at + 1),
+        _ => 0,
+    };
+    Place { start: one.at.start + prefix, ..one.at.clone() }
+}
+
+fn text<'s>(scene: &'s Scene, place: &Place) -> &'s str {
+    &scene.files[place.file].text[place.start..place.end]
+}
+
+fn taken(scene: &Scene, symbol: &Symbol, name: &str) -> Result<(), String> {
+    let named = |file: &usize| &scene.files[*file].outline;
+    let is_taken = match symbol {
+        Symbol::Component { file, .. } => {
+            let is_meant = |known: &str| known == name || is_replica(known, name);
+            let mut all = scene.unit_of(*file).iter().flat_map(|file| &named(file).components);
+            all.any(|known| is_meant(&known.name.text))
+        }
+        Symbol::Parameter { file, .. } => scene
+            .unit_of(*file)
+            .iter()
+            .flat_map(|file| &named(file).properties)
+            .any(|known| known.text == name),
+        Symbol::Promoted { file, .. } => {
+            let all = |file| named(file).services.iter().chain(&named(file).references);
+            scene.unit_of(*file).iter().flat_map(all).any(|known| known.text == name)
+        }
+        Symbol::Composite { file } => {
+            let namespace = &named(file).namespace;
+            let mut others = scene.files.iter().map(|other| &other.outline);
+            others.any(|other| {
+                other.namespace == *namespace && other.name.as_ref().is_some_and(|known| known.text == name)
+            })
+        }
+        _ => false,
+    };
+    if is_taken { Err(format!("`{name}` is taken")) } else { Ok(()) }
+}
+
+/// The name of a replica under another pattern.
+fn replica(pattern: &str, written: &str, new: &str) -> Option<String> {
+    let split = |pattern: &str| -> Option<(usize, usize)> {
+        let start = pattern.find("${")?;
+        Some((start, start + pattern[start..].find('}')? + 1))
+    };
+    let (start, end) = split(pattern)?;
+    let index = written.get(start..written.len().checked_sub(pattern.len() - end)?)?;
+    let (from, to) = split(new)?;
+    Some(format!("{}{index}{}", &new[..from], &new[to..]))
+}

@@ -1,0 +1,183 @@
+//! The questions that an editor can ask, in the terms of the protocol.
+
+use std::collections::HashMap;
+use std::io::Write;
+use std::str::FromStr;
+
+use lsp_server::ErrorCode;
+use lsp_types::request::{self as ask, Request};
+use lsp_types::{
+    CompletionList, CompletionParams, CompletionResponse, DocumentFormattingParams, DocumentHighlight,
+    DocumentHighlightParams, DocumentSymbolParams, DocumentSymbolResponse, GotoDefinitionParams,
+    GotoDefinitionResponse, Hover, HoverContents, HoverParams, Location, MarkupContent, MarkupKind,
+    PrepareRenameResponse, ReferenceParams, RenameParams, TextDocumentPositionParams, TextEdit, Uri,
+    WorkspaceEdit,
+};
+use saoms_core::format::{WIDTH, format};
+use saoms_core::source::Sources;
+use saoms_core::xml;
+use serde_json::Value;
+
+use super::complete::complete;
+use super::hover::hover;
+use super::navigate::{Goal, definition, references};
+use super::rename::{prepare, rename};
+use super::scene::Scene;
+use super::server::{Refusal, Server};
+use super::symbol::Place;
+use super::symbols::symbols;
+use super::uri;
+
+impl<W: Write> Server<W> {
+    /// The answer to a question.
+    pub(super) fn answer(&mut self, method: &str, params: Value) -> Result<Value, Refusal> {
+        match method {
+            ask::Completion::METHOD => answered::<ask::Completion>(params, |params| self.completion(params)),
+            ask::HoverRequest::METHOD => answered::<ask::HoverRequest>(params, |params| self.hover(&params)),
+            ask::GotoDefinition::METHOD => {
+                answered::<ask::GotoDefinition>(params, |params| self.definition(&params))
+            }
+            ask::References::METHOD => answered::<ask::References>(params, |params| self.references(&params)),
+            ask::DocumentHighlightRequest::METHOD => {
+                answered::<ask::DocumentHighlightRequest>(params, |params| self.highlights(&params))
+            }
+            ask::PrepareRenameRequest::METHOD => {
+                answered::<ask::PrepareRenameRequest>(params, |params| self.prepare_rename(&params))
+            }
+            ask::Rename::METHOD => answered::<ask::Rename>(params, |params| self.rename(&params)),
+            ask::DocumentSymbolRequest::METHOD => {
+                answered::<ask::DocumentSymbolRequest>(params, |params| self.symbols(&params))
+            }
+            ask::CodeActionRequest::METHOD => {
+                answered::<ask::CodeActionRequest>(params, |params| Ok(Some(self.fixes(&params))))
+            }
+            ask::Formatting::METHOD => answered::<ask::Formatting>(params, |params| self.formatting(&params)),
+            _ => Err(Refusal(ErrorCode::MethodNotFound, format!("`{method}` is not known"))),
+        }
+    }
+
+    /// The scene of a document and the byte of a place in it.
+    fn place(&mut self, at: &TextDocumentPositionParams) -> Result<(Scene, usize), Refusal> {
+        let scene = self.scene(&at.text_document.uri)?;
+        let file = scene.file();
+        let byte = file.lines.offset(&file.text, at.position);
+        Ok((scene, byte))
+    }
+
+    fn completion(&mut self, params: CompletionParams) -> Result<Option<CompletionResponse>, Refusal> {
+        let (scene, byte) = self.place(&params.text_document_position)?;
+        let knows_snippets = self.client.knows_snippets;
+        let items = complete(&scene, byte).into_iter().map(|one| one.into_item(scene.file(), knows_snippets));
+        // What can be proposed, as the units behind a number, depends on what is typed.
+        let list = CompletionList { is_incomplete: true, items: items.collect() };
+        Ok(Some(CompletionResponse::List(list)))
+    }
+
+    fn hover(&mut self, params: &HoverParams) -> Result<Option<Hover>, Refusal> {
+        let at = &params.text_document_position_params;
+        let (scene, byte) = self.place(at)?;
+        let known = hover(&scene, byte);
+        let mut parts: Vec<String> = self.reported_at(&scene.file().path, at.position).collect();
+        let range =
+            known.as_ref().map(|(_, range)| scene.file().lines.range(&scene.file().text, range.clone()));
+        parts.extend(known.map(|(text, _)| text));
+        let contents = MarkupContent { kind: MarkupKind::Markdown, value: parts.join("\n\n---\n\n") };
+        Ok((!parts.is_empty()).then_some(Hover { contents: HoverContents::Markup(contents), range }))
+    }
+
+    fn definition(
+        &mut self,
+        params: &GotoDefinitionParams,
+    ) -> Result<Option<GotoDefinitionResponse>, Refusal> {
+        let (scene, byte) = self.place(&params.text_document_position_params)?;
+        let all = definition(&scene, byte).into_iter().filter_map(|goal| match goal {
+            Goal::Place(place) => self.location(&scene, &place),
+            Goal::File(path) => {
+                let uri = Uri::from_str(&uri::uri(&path)).ok()?;
+                Some(Location { uri, range: lsp_types::Range::default() })
+            }
+        });
+        Ok(Some(GotoDefinitionResponse::Array(all.collect())))
+    }
+
+    fn references(&mut self, params: &ReferenceParams) -> Result<Option<Vec<Location>>, Refusal> {
+        let (scene, byte) = self.place(&params.text_document_position)?;
+        let found = references(&scene, byte, params.context.include_declaration);
+        Ok(Some(found.iter().filter_map(|place| self.location(&scene, place)).collect()))
+    }
+
+    fn highlights(
+        &mut self,
+        params: &DocumentHighlightParams,
+    ) -> Result<Option<Vec<DocumentHighlight>>, Refusal> {
+        let (scene, byte) = self.place(&params.text_document_position_params)?;
+        let here = references(&scene, byte, true).into_iter().filter(|place| place.file == 0);
+        Ok(Some(here.map(|place| DocumentHighlight { range: range(&scene, &place), kind: None }).collect()))
+    }
+
+    fn prepare_rename(
+        &mut self,
+        params: &TextDocumentPositionParams,
+    ) -> Result<Option<PrepareRenameResponse>, Refusal> {
+        let (scene, byte) = self.place(params)?;
+        let place = prepare(&scene, byte).map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
+        Ok(Some(PrepareRenameResponse::Range(range(&scene, &place))))
+    }
+
+    #[expect(clippy::mutable_key_type, reason = "the protocol's edits are by URIs, which never change")]
+    fn rename(&mut self, params: &RenameParams) -> Result<Option<WorkspaceEdit>, Refusal> {
+        let (scene, byte) = self.place(&params.text_document_position)?;
+        let edits = rename(&scene, byte, &params.new_name);
+        let edits = edits.map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
+        let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
+        for (place, new) in edits {
+            if let Some(location) = self.location(&scene, &place) {
+                changes.entry(location.uri).or_default().push(TextEdit::new(location.range, new));
+            }
+        }
+        Ok(Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }))
+    }
+
+    fn symbols(&mut self, params: &DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>, Refusal> {
+        let scene = self.scene(&params.text_document.uri)?;
+        Ok(Some(DocumentSymbolResponse::Nested(symbols(scene.file()))))
+    }
+
+    /// The layout of `saoms fmt`; a text that is not well-formed stays as it is.
+    fn formatting(&mut self, params: &DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>, Refusal> {
+        let scene = self.scene(&params.text_document.uri)?;
+        let file = scene.file();
+        let mut sources = Sources::new();
+        let id = sources.add(file.path.display().to_string(), file.text.clone());
+        let parsed = xml::parse(id, sources.get(id).text());
+        let Some(document) = parsed.document.filter(|_| parsed.fault.is_none()) else { return Ok(None) };
+        let formatted = format(&document, WIDTH);
+        if formatted == *file.text {
+            return Ok(Some(Vec::new()));
+        }
+        let whole = file.lines.range(&file.text, 0..file.text.len());
+        Ok(Some(vec![TextEdit::new(whole, formatted)]))
+    }
+
+    fn location(&self, scene: &Scene, place: &Place) -> Option<Location> {
+        let path = &scene.files[place.file].path;
+        let open = self.documents.iter().find(|(_, one)| one.path == *path);
+        let uri = open.map_or_else(|| uri::uri(path), |(uri, _)| uri.to_owned());
+        Some(Location { uri: Uri::from_str(&uri).ok()?, range: range(scene, place) })
+    }
+}
+
+fn range(scene: &Scene, place: &Place) -> lsp_types::Range {
+    let file = &scene.files[place.file];
+    file.lines.range(&file.text, place.start..place.end)
+}
+
+/// Reads the parameters of a question, asks it, and writes its answer.
+fn answered<R: Request>(
+    params: Value,
+    ask: impl FnOnce(R::Params) -> Result<R::Result, Refusal>,
+) -> Result<Value, Refusal> {
+    let params = serde_json::from_value(params)
+        .map_err(|error| Refusal(ErrorCode::InvalidParams, format!("the parameters are wrong: {error}")))?;
+    serde_json::to_value(ask(params)?).map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
+}

@@ -1,0 +1,189 @@
+//! A file together with all that it has to do with: what every question of an editor is answered from.
+
+use std::collections::{BTreeSet, HashMap};
+use std::sync::{Arc, OnceLock};
+
+use saoms_core::model::Version;
+use saoms_core::registry::{Class, Registry};
+
+use super::file::File;
+use super::outline::{Component, Implementation, Named};
+use super::syntax::local;
+
+/// A file and those around it. Files are named by their places; that of the file itself is 0.
+#[derive(Debug)]
+pub(super) struct Scene {
+    pub(super) files: Vec<Arc<File>>,
+    pub(super) registry: Arc<Registry>,
+    /// By the local names of their composites.
+    by_name: HashMap<String, Vec<usize>>,
+    /// What each file includes.
+    includes: Vec<Vec<usize>>,
+    /// By the places of files, as far as somebody asked.
+    units: Vec<OnceLock<Unit>>,
+}
+
+/// The files whose components, wires and properties form one composite.
+#[derive(Debug)]
+struct Unit {
+    files: Vec<usize>,
+    /// Each component by its name: its file, and its place in it.
+    components: HashMap<String, (usize, usize)>,
+}
+
+impl Scene {
+    /// These files, of which the first is asked about.
+    pub(super) fn new(files: Vec<Arc<File>>, registry: Arc<Registry>) -> Self {
+        let mut by_name: HashMap<String, Vec<usize>> = HashMap::new();
+        for (place, file) in files.iter().enumerate() {
+            if let Some(name) = &file.outline.name {
+                by_name.entry(name.text.clone()).or_default().push(place);
+            }
+        }
+        let units = files.iter().map(|_| OnceLock::new()).collect();
+        let mut scene = Self { files, registry, by_name, includes: Vec::new(), units };
+        scene.includes = (0..scene.files.len()).map(|file| scene.included(file)).collect();
+        scene
+    }
+
+    /// The file that is asked about.
+    pub(super) fn file(&self) -> &File {
+        &self.files[0]
+    }
+
+    fn unit(&self, file: usize) -> &Unit {
+        self.units[file].get_or_init(|| {
+            let includers = |place: usize| -> Vec<usize> {
+                (0..self.includes.len()).filter(|other| self.includes[*other].contains(&place)).collect()
+            };
+            let outer = reached(vec![file], includers);
+            let files = reached(outer, |place| self.includes[place].clone());
+            let mut components = HashMap::new();
+            for &file in &files {
+                for (place, component) in self.files[file].outline.components.iter().enumerate() {
+                    components.entry(component.name.text.clone()).or_insert((file, place));
+                }
+            }
+            Unit { files, components }
+        })
+    }
+
+    /// The files that form one composite with this one: it itself, those that include it, and what all these include.
+    pub(super) fn unit_of(&self, file: usize) -> &[usize] {
+        &self.unit(file).files
+    }
+
+    /// This file and what it includes, in turn.
+    pub(super) fn with_included(&self, file: usize) -> Vec<usize> {
+        reached(vec![file], |place| self.includes[place].clone())
+    }
+
+    /// The files that are checked for the sake of the first: those from which it is reached by includes and implementations, and that nothing
+    /// reaches itself.
+    pub(super) fn roots(&self) -> Vec<usize> {
+        let names: Vec<Vec<usize>> = (0..self.files.len())
+            .map(|place| {
+                let outline = &self.files[place].outline;
+                let implementations = outline.components.iter().filter_map(|one| match &one.implementation {
+                    Some(Implementation::Composite(name)) => self.composite(place, name),
+                    _ => None,
+                });
+                self.includes[place].iter().copied().chain(implementations).collect()
+            })
+            .collect();
+        let users = |place: usize| -> Vec<usize> {
+            (0..names.len()).filter(|other| *other != place && names[*other].contains(&place)).collect()
+        };
+        let roots: Vec<usize> =
+            reached(vec![0], users).into_iter().filter(|one| users(*one).is_empty()).collect();
+        // Composites that go around in circles have none.
+        if roots.is_empty() { vec![0] } else { roots }
+    }
+
+    fn included(&self, file: usize) -> Vec<usize> {
+        self.files[file].outline.includes.iter().filter_map(|name| self.composite(file, name)).collect()
+    }
+
+    /// The file of the composite that a QName in this file means.
+    pub(super) fn composite(&self, file: usize, name: &Named) -> Option<usize> {
+        let (from, found) = (&self.files[file], self.by_name.get(local(&name.text))?);
+        let of = |namespace: &str| {
+            found.iter().copied().find(|&other| self.files[other].outline.namespace == namespace)
+        };
+        let bound = |prefix| from.tree.resolve(&from.text, name.element, prefix);
+        match name.text.split_once(':') {
+            Some((prefix, _)) => match bound(prefix) {
+                Some(namespace) => of(namespace),
+                None => found.first().copied(),
+            },
+            // As the model resolves names without a prefix.
+            None => {
+                let default = bound("").filter(|namespace| Version::from_namespace(namespace).is_none());
+                let all = [default, Some(from.outline.namespace.as_str()), Some("")];
+                all.into_iter().flatten().find_map(of)
+            }
+        }
+    }
+
+    /// The components of the composite that the file is part of, each with its file.
+    pub(super) fn components(&self) -> impl Iterator<Item = (usize, &Component)> {
+        let of = |file: &usize| (*file, &self.files[*file].outline.components);
+        self.unit_of(0).iter().map(of).flat_map(|(file, all)| all.iter().map(move |one| (file, one)))
+    }
+
+    /// The component of this name in the composite that a file is part of.
+    pub(super) fn component(&self, file: usize, name: &str) -> Option<(usize, &Component)> {
+        let &(file, place) = self.unit(file).components.get(name)?;
+        Some((file, &self.files[file].outline.components[place]))
+    }
+
+    /// The component of the file that an element is, or is in.
+    pub(super) fn component_around(&self, element: usize) -> Option<&Component> {
+        let file = self.file();
+        let mut here = Some(element);
+        while let Some(one) = here {
+            if let Some(found) = file.outline.components.iter().find(|known| known.name.element == one) {
+                return Some(found);
+            }
+            here = file.tree.elements[one].parent;
+        }
+        None
+    }
+
+    /// The simple value of a property of a file: its attribute `value`, or the text inside.
+    pub(super) fn value_of(&self, file: usize, property: usize) -> Option<&str> {
+        let file = &self.files[file];
+        let value = file.tree.value(&file.text, property, "value");
+        Some(&file.text[value.or_else(|| file.tree.text(&file.text, property))?])
+    }
+
+    /// The class of a component.
+    pub(super) fn class(&self, component: &Component) -> Option<&Class> {
+        match component.implementation.as_ref()? {
+            Implementation::Class(name) => self.registry.get(&name.text).map(AsRef::as_ref),
+            Implementation::Composite(_) => None,
+        }
+    }
+
+    /// The files of the composite that implements a component of a file.
+    pub(super) fn inside(&self, file: usize, component: &Component) -> Vec<usize> {
+        match &component.implementation {
+            Some(Implementation::Composite(name)) => {
+                self.composite(file, name).map_or_else(Vec::new, |found| self.with_included(found))
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// What is reached from these, themselves first.
+fn reached(start: Vec<usize>, next: impl Fn(usize) -> Vec<usize>) -> Vec<usize> {
+    let mut seen: BTreeSet<usize> = start.iter().copied().collect();
+    let mut all = start;
+    let mut at = 0;
+    while let Some(&one) = all.get(at) {
+        at += 1;
+        all.extend(next(one).into_iter().filter(|further| seen.insert(*further)));
+    }
+    all
+}

@@ -1,0 +1,307 @@
+//! The session: who is asked what, in which order.
+
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender};
+
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
+use lsp_types::notification::{
+    self as notice, DidChangeTextDocument, DidChangeWatchedFiles, DidCloseTextDocument, DidOpenTextDocument,
+    DidSaveTextDocument, Notification as _, PublishDiagnostics,
+};
+use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use super::capabilities::{Client, capabilities, watchers};
+use super::check::{Job, Outcome};
+use super::diagnostics::Reported;
+use super::documents::Documents;
+use super::registries::Registries;
+use super::rpc::{self, Incoming};
+use super::scene::Scene;
+use super::uri;
+use super::workspace::Workspace;
+use crate::Exit;
+
+/// What can happen to a session.
+#[derive(Debug)]
+pub(super) enum Event {
+    /// Something came in.
+    Incoming(Incoming),
+    /// The input ended.
+    Closed,
+    /// A check came to its end.
+    Checked(Outcome),
+}
+
+/// Where a session is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    New,
+    Running,
+    ShutDown,
+}
+
+/// A fault of a request: a code of the protocol and what to say.
+#[derive(Debug)]
+pub(super) struct Refusal(pub(super) ErrorCode, pub(super) String);
+
+/// A session.
+pub(super) struct Server<W> {
+    output: W,
+    state: State,
+    pub(super) client: Client,
+    pub(super) documents: Documents,
+    pub(super) workspace: Workspace,
+    pub(super) registries: Arc<Registries>,
+    jobs: Sender<Job>,
+    newest: Arc<AtomicU64>,
+    /// What is wrong, by file, as it was shown last: with the URI and the version that it was shown for.
+    pub(super) shown: BTreeMap<PathBuf, Shown>,
+}
+
+/// What was shown of a file.
+#[derive(Debug)]
+pub(super) struct Shown {
+    uri: String,
+    version: Option<i32>,
+    pub(super) all: Vec<Reported>,
+}
+
+impl Shown {
+    /// Whether it was found in this version of the text.
+    pub(super) fn is_of(&self, version: i32) -> bool {
+        self.version == Some(version)
+    }
+}
+
+impl<W: Write> Server<W> {
+    pub(super) fn new(
+        output: W,
+        registries: Arc<Registries>,
+        jobs: Sender<Job>,
+        newest: Arc<AtomicU64>,
+    ) -> Self {
+        Self {
+            output,
+            state: State::New,
+            client: Client::default(),
+            documents: Documents::default(),
+            workspace: Workspace::default(),
+            registries,
+            jobs,
+            newest,
+            shown: BTreeMap::new(),
+        }
+    }
+
+    /// Goes on until the editor ends the session, or goes away.
+    pub(super) fn run(mut self, events: &Receiver<Event>) -> Exit {
+        let mut waiting: VecDeque<Event> = VecDeque::new();
+        loop {
+            let event = match waiting.pop_front() {
+                Some(event) => event,
+                None => match events.recv() {
+                    Ok(event) => event,
+                    Err(_) => return Exit::Failed,
+                },
+            };
+            // What came in the meantime may say that an answer is not wanted any more.
+            waiting.extend(events.try_iter());
+            let went = match event {
+                Event::Closed => return Exit::Failed,
+                Event::Checked(outcome) => self.publish(outcome),
+                Event::Incoming(Incoming::Malformed(answer)) => rpc::write(&mut self.output, &answer),
+                Event::Incoming(Incoming::Message(Message::Request(request))) => {
+                    let is_cancelled = waiting.iter().any(|later| cancels(later, &request.id));
+                    self.request(request, is_cancelled)
+                }
+                Event::Incoming(Incoming::Message(Message::Notification(told))) => {
+                    if told.method == notice::Exit::METHOD {
+                        let done = self.state == State::ShutDown;
+                        return if done { Exit::Done } else { Exit::Failed };
+                    }
+                    self.notified(told)
+                }
+                // Answers of the editor to what it was told to watch.
+                Event::Incoming(Incoming::Message(Message::Response(_))) => Ok(()),
+            };
+            // An editor that cannot be written to is gone.
+            if went.is_err() {
+                return Exit::Failed;
+            }
+        }
+    }
+
+    fn request(&mut self, request: Request, is_cancelled: bool) -> io::Result<()> {
+        let refuse = |code, text: &str| Err(Refusal(code, text.to_owned()));
+        let answer = match (self.state, request.method.as_str()) {
+            _ if is_cancelled => refuse(ErrorCode::RequestCanceled, "the request was cancelled"),
+            (State::New, "initialize") => {
+                self.client = Client::of(&request.params);
+                self.state = State::Running;
+                Ok(capabilities())
+            }
+            (State::New, _) => refuse(ErrorCode::ServerNotInitialized, "`initialize` has to come first"),
+            (State::ShutDown, _) => refuse(ErrorCode::InvalidRequest, "the session is shut down"),
+            (State::Running, "initialize") => {
+                refuse(ErrorCode::InvalidRequest, "the session is initialized already")
+            }
+            (State::Running, "shutdown") => {
+                self.state = State::ShutDown;
+                Ok(Value::Null)
+            }
+            (State::Running, _) => self.answer(&request.method, request.params),
+        };
+        let id = serde_json::to_value(request.id).unwrap_or_default();
+        let message = match answer {
+            Ok(result) => json!({ "jsonrpc": "2.0", "id": id, "result": result }),
+            Err(Refusal(code, text)) => {
+                json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code as i32, "message": text } })
+            }
+        };
+        rpc::write(&mut self.output, &message)?;
+        self.tell_problems()
+    }
+
+    fn notified(&mut self, told: Notification) -> io::Result<()> {
+        if self.state != State::Running {
+            return Ok(());
+        }
+        match told.method.as_str() {
+            notice::Initialized::METHOD if self.client.watches_files => {
+                let asked = json!({ "jsonrpc": "2.0", "id": "watch", "method": "client/registerCapability", "params": watchers() });
+                rpc::write(&mut self.output, &asked)?;
+            }
+            DidOpenTextDocument::METHOD => {
+                if let Some(one) = read::<notice::DidOpenTextDocument>(told) {
+                    let one = one.text_document;
+                    self.documents.open(one.uri.as_str().to_owned(), one.version, one.text);
+                    self.changed();
+                }
+            }
+            DidChangeTextDocument::METHOD => {
+                if let Some(one) = read::<notice::DidChangeTextDocument>(told) {
+                    let about = one.text_document;
+                    self.documents.change(about.uri.as_str(), about.version, one.content_changes);
+                    self.changed();
+                }
+            }
+            DidCloseTextDocument::METHOD => {
+                if let Some(one) = read::<notice::DidCloseTextDocument>(told) {
+                    self.documents.close(one.text_document.uri.as_str());
+                    self.changed();
+                }
+            }
+            DidSaveTextDocument::METHOD | DidChangeWatchedFiles::METHOD => {
+                self.workspace.refresh();
+                self.changed();
+            }
+            // Others need not be understood.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Asks for a check of all that is open.
+    fn changed(&mut self) {
+        let open = self.documents.texts();
+        self.workspace.set_open(open.clone());
+        let generation = self.newest.fetch_add(1, Ordering::Relaxed) + 1;
+        let mut paths: Vec<PathBuf> = self.documents.iter().map(|(_, one)| one.path.clone()).collect();
+        paths.sort_unstable();
+        // Where the thread is gone, the session is about to end.
+        let _ = self.jobs.send(Job { generation, open, paths });
+    }
+
+    /// Shows what a check found, and takes back what is not there any more.
+    fn publish(&mut self, outcome: Outcome) -> io::Result<()> {
+        if outcome.generation != self.newest.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let open: HashMap<PathBuf, (String, i32)> = self
+            .documents
+            .iter()
+            .map(|(uri, one)| (one.path.clone(), (uri.to_owned(), one.version)))
+            .collect();
+        let mut files = outcome.files;
+        // Files that were shown, or are open, and have no fault now.
+        for path in self.shown.keys().chain(open.keys()) {
+            files.entry(path.clone()).or_default();
+        }
+        for (path, all) in files {
+            let (uri, version) = match open.get(&path) {
+                Some((uri, version)) => (uri.clone(), Some(*version)),
+                None => (uri::uri(&path), None),
+            };
+            let before = self.shown.remove(&path);
+            if let Some(before) = before.as_ref().filter(|before| before.uri != uri) {
+                self.show(&before.uri, None, &[])?;
+            }
+            let is_same =
+                before.is_some_and(|one| one.uri == uri && one.version == version && one.all == all);
+            if !is_same {
+                self.show(&uri, version, &all)?;
+            }
+            if version.is_some() || !all.is_empty() {
+                self.shown.insert(path, Shown { uri, version, all });
+            }
+        }
+        self.tell_problems()
+    }
+
+    fn show(&mut self, uri: &str, version: Option<i32>, all: &[Reported]) -> io::Result<()> {
+        let Ok(uri) = Uri::from_str(uri) else { return Ok(()) };
+        let diagnostics = all.iter().map(|one| one.shown.clone()).collect();
+        self.notify(PublishDiagnostics::METHOD, PublishDiagnosticsParams { uri, diagnostics, version })
+    }
+
+    /// Says what is wrong with plugins, once.
+    fn tell_problems(&mut self) -> io::Result<()> {
+        for problem in self.registries.new_problems() {
+            let typ = if problem.is_error { MessageType::ERROR } else { MessageType::WARNING };
+            let message = format!("saoms: {}", problem.text);
+            self.notify(notice::ShowMessage::METHOD, ShowMessageParams { typ, message })?;
+        }
+        Ok(())
+    }
+
+    fn notify(&mut self, method: &str, params: impl Serialize) -> io::Result<()> {
+        let params = serde_json::to_value(params).unwrap_or_default();
+        rpc::write(&mut self.output, &json!({ "jsonrpc": "2.0", "method": method, "params": params }))
+    }
+
+    /// The scene of a document that is open.
+    pub(super) fn scene(&mut self, uri: &Uri) -> Result<Scene, Refusal> {
+        let path = match self.documents.get(uri.as_str()) {
+            Some(document) => document.path.clone(),
+            None => {
+                let text = format!("`{}` is not open", uri.as_str());
+                return Err(Refusal(ErrorCode::InvalidParams, text));
+            }
+        };
+        let files = self.workspace.around(&path);
+        let libraries = files.first().map(|file| file.outline.libraries.clone()).unwrap_or_default();
+        Ok(Scene::new(files, self.registries.of(&path, &libraries)))
+    }
+}
+
+fn read<N: notice::Notification>(told: Notification) -> Option<N::Params>
+where
+    N::Params: DeserializeOwned,
+{
+    // Nobody waits for an answer to a notification, so nobody can be told that it is malformed.
+    serde_json::from_value(told.params).ok()
+}
+
+fn cancels(later: &Event, id: &RequestId) -> bool {
+    let Event::Incoming(Incoming::Message(Message::Notification(told))) = later else { return false };
+    let wanted = serde_json::to_value(id).unwrap_or_default();
+    told.method == notice::Cancel::METHOD && told.params.get("id") == Some(&wanted)
+}

@@ -1,0 +1,4 @@
+//! Names and what they stand for, text in and text out.
+
+mod hover;
+mod names;

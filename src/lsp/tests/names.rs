@@ -1,0 +1,196 @@
+use crate::lsp::navigate::{Goal, definition, references};
+use crate::lsp::rename::{prepare, rename};
+use crate::lsp::scene::Scene;
+use crate::lsp::symbol::Place;
+use crate::lsp::symbols::symbols;
+use crate::lsp::testing::{composite, scene, scene_of};
+
+/// A file as `name:line:column text`, the column from 1 in bytes.
+fn shown(scene: &Scene, place: &Place) -> String {
+    let file = &scene.files[place.file];
+    let before = &file.text[..place.start];
+    let line = before.matches('\n').count() + 1;
+    let column = place.start - before.rfind('\n').map_or(0, |at| at + 1) + 1;
+    let name = file.path.file_name().unwrap().to_str().unwrap();
+    format!("{name}:{line}:{column} {}", &file.text[place.start..place.end])
+}
+
+/// Where the name at the cursor is defined.
+fn defined(marked: &str, others: &[(&str, &str)]) -> Vec<String> {
+    let (scene, at) = scene(marked, others);
+    let all = definition(&scene, at).into_iter().map(|goal| match goal {
+        Goal::Place(place) => shown(&scene, &place),
+        Goal::File(path) => path.display().to_string(),
+    });
+    all.collect()
+}
+
+/// All files after the name at the cursor was changed, or why it cannot be.
+fn renamed(marked: &str, others: &[(&str, &str)], name: &str) -> Result<Vec<String>, String> {
+    let (scene, at) = scene(marked, others);
+    prepare(&scene, at)?;
+    let mut edits = rename(&scene, at, name)?;
+    edits.sort_by(|one, other| other.0.cmp(&one.0));
+    let mut texts: Vec<String> = scene.files.iter().map(|file| file.text.to_string()).collect();
+    for (place, new) in edits {
+        texts[place.file].replace_range(place.start..place.end, &new);
+    }
+    Ok(texts)
+}
+
+const INNER: &str = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="inner" targetNamespace="urn:f">
+  <property name="size">3</property>
+  <service name="lamp" promote="L/TaskInterface"/>
+  <component name="L"><implementation.java class="saoms.Robot"/><property name="number" source="$size"/></component>
+</composite>"#;
+
+#[test]
+fn definitions_are_found_across_files_and_wires() {
+    let others = [("inner.composite", INNER)];
+    let goes = |inside: &str, expected: &[&str]| {
+        assert_eq!(defined(&composite(inside), &others), expected, "{inside}");
+    };
+    let two = r#"<component name="Ä"/><component name="B"><reference name="r" target="Ä"/></component>"#;
+    goes(&two.replace("target=\"Ä", "target=\"Ä|"), &["fleet.composite:2:18 Ä"]);
+    goes(r#"<component name="A"/><wire source="A|/r" target="B"/>"#, &["fleet.composite:2:18 A"]);
+    // A part that only the class knows is where its component is, or where that says something about it.
+    goes(r#"<component name="A"/><wire source="A/r|" target="B"/>"#, &["fleet.composite:2:18 A"]);
+    goes(
+        r#"<component name="A"><reference name="r"/></component><wire source="A/r|" target="B"/>"#,
+        &["fleet.composite:2:38 r"],
+    );
+    goes(r#"<include name="inn|er"/>"#, &["inner.composite:1:75 inner"]);
+    goes(r#"<include name="inner"/><wire source="x" target="L|"/>"#, &["inner.composite:4:20 L"]);
+    let uses = r#"<component name="I"><implementation.composite name="inner"/>"#;
+    goes(&uses.replace("inner", "inner|"), &["inner.composite:1:75 inner"]);
+    goes(&format!("{uses}<property name=\"|size\">4</property></component>"), &["inner.composite:2:19 size"]);
+    goes(
+        &format!("{uses}</component><wire source=\"x\" target=\"I/lamp|\"/>"),
+        &["inner.composite:3:18 lamp"],
+    );
+    goes(&format!("{uses}<service name=\"lamp|\"/></component>"), &["inner.composite:3:18 lamp"]);
+    goes(
+        r#"<property name="p"/><component name="A"><property name="q" source="$|p/part"/>"#,
+        &["fleet.composite:2:17 p"],
+    );
+    goes(r#"<component name="A"/><service name="s" promote="A|"/>"#, &["fleet.composite:2:18 A"]);
+    goes(r#"<component name="A"/><wire source="nowhere|" target="B"/>"#, &[]);
+    goes(
+        r#"<component name="A"><reference name="r"><binding.sca uri="A|/s"/></reference></component>"#,
+        &["fleet.composite:2:18 A"],
+    );
+    goes(
+        r#"<component name="R${index:03}" s:count="3"/><wire source="R002|/r" target="B"/>"#,
+        &["fleet.composite:2:18 R${index:03}"],
+    );
+    goes(
+        r#"<component name="A"><s:loop name="new" class="x.Y"/><s:loop name="b" after="new|"/></component>"#,
+        &["fleet.composite:2:35 new"],
+    );
+    let up = INNER.replace("L/TaskInterface", "L|/TaskInterface");
+    assert_eq!(defined(&up, &[]), ["fleet.composite:4:20 L"]);
+}
+
+#[test]
+fn references_are_all_that_mean_the_same() {
+    let outer = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="outer" targetNamespace="urn:f"><include name="inner"/><wire source="x" target="L"/></composite>"#;
+    // This one has an `L` of its own.
+    let other = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="other" targetNamespace="urn:f"><component name="L"/><wire source="x" target="L"/></composite>"#;
+    let found = |marked: &str, with_definition| {
+        let (scene, at) = scene(marked, &[("outer.composite", outer), ("other.composite", other)]);
+        let all = references(&scene, at, with_definition);
+        all.iter().map(|place| shown(&scene, place)).collect::<Vec<_>>()
+    };
+    let marked = INNER.replace("name=\"L\"", "name=\"L|\"");
+    assert_eq!(
+        found(&marked, true),
+        ["fleet.composite:4:20 L", "fleet.composite:3:33 L", "outer.composite:1:154 L"]
+    );
+    assert_eq!(found(&marked, false).len(), 2);
+    let marked = INNER.replace("name=\"inner\"", "name=\"inner|\"");
+    assert_eq!(found(&marked, false), ["outer.composite:1:121 inner"]);
+    let marked = INNER.replace("\"saoms.Robot\"", "\"saoms.Robot|\"");
+    assert_eq!(found(&marked, false).len(), 1);
+}
+
+#[test]
+fn a_component_is_renamed_wherever_it_is_meant() {
+    let text = r#"<component name="Alt"><implementation.java class="x.Alt"/></component>
+<component name="Altes"><reference name="r" target="Ander Alt/s"/><reference name="q"><binding.sca uri="Alt"/></reference></component>
+<service name="s" promote="Alt/s"/><reference name="r" promote="Altes/r Alt/r"/>
+<wire source="Alt/r" target="Alt"/> <!-- Alt -->"#;
+    let marked = composite(&text.replacen("promote=\"Alt", "promote=\"Al|t", 1));
+    let other = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="outer" targetNamespace="urn:f"><include name="fleet"/><wire source="Alt" target="Altes"/></composite>"#;
+    let all = renamed(&marked, &[("outer.composite", other)], "Neu-ä").unwrap();
+    let expected = r#"<component name="Neu-ä"><implementation.java class="x.Alt"/></component>
+<component name="Altes"><reference name="r" target="Ander Neu-ä/s"/><reference name="q"><binding.sca uri="Neu-ä"/></reference></component>
+<service name="s" promote="Neu-ä/s"/><reference name="r" promote="Altes/r Neu-ä/r"/>
+<wire source="Neu-ä/r" target="Neu-ä"/> <!-- Alt -->"#;
+    assert_eq!(all, [composite(expected), other.replace("\"Alt\"", "\"Neu-ä\"")]);
+}
+
+#[test]
+fn other_names_of_a_composite_are_renamed_too() {
+    let parameter = composite(
+        r#"<property name="p|"/><component name="A"><property name="p" source="$p/x"/></component>"#,
+    );
+    let expected = composite(
+        r#"<property name="q"/><component name="A"><property name="p" source="$q/x"/></component>"#,
+    );
+    assert_eq!(renamed(&parameter, &[], "q").unwrap(), [expected]);
+    let uses = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:f="urn:f" name="u" targetNamespace="urn:u"><include name="f:fleet"/></composite>"#;
+    let all =
+        renamed(&composite("").replace("name=\"fleet", "name=\"fl|eet"), &[("u.composite", uses)], "port")
+            .unwrap();
+    assert_eq!(all[1], uses.replace("f:fleet", "f:port"));
+    let replicas = composite(
+        r#"<component name="R${index:03}|" s:count="2"/><wire source="R001/r" target="R${index:03}"/>"#,
+    );
+    assert_eq!(
+        renamed(&replicas, &[], "Cart${index:03}").unwrap(),
+        [composite(
+            r#"<component name="Cart${index:03}" s:count="2"/><wire source="Cart001/r" target="Cart${index:03}"/>"#
+        )]
+    );
+    assert!(renamed(&replicas, &[], "Cart").unwrap_err().contains("`R001` is one of the replicas"));
+}
+
+#[test]
+fn what_cannot_be_renamed_says_why() {
+    let text = composite(r#"<component name="A|"/><component name="B"/>"#);
+    let refused = |marked: &str, name: &str| renamed(marked, &[], name).unwrap_err();
+    assert_eq!(refused(&text, "B"), "`B` is taken");
+    assert!(refused(&text, "").contains("cannot be a name"));
+    assert!(refused(&text, "a/b").contains("cannot be a name"));
+    assert!(refused(&text, "a<b").contains("cannot be a name"));
+    let class = composite(r#"<component name="A"><implementation.java class="x.|Y"/></component>"#);
+    assert_eq!(refused(&class, "z"), "the class `x.Y` has its name from its author");
+    assert_eq!(refused(&composite("<|component/>"), "z"), "there is no name here");
+    let lost = composite(r#"<wire source="A|" target="B"/>"#);
+    assert!(refused(&lost, "z").contains("not defined"));
+    assert_eq!(renamed(&text, &[], "A").unwrap(), [text.replace('|', "")], "the same name is no fault");
+}
+
+#[test]
+fn the_outline_has_every_part() {
+    let scene = scene_of(INNER, &[]);
+    let mut lines = Vec::new();
+    let mut left: Vec<(usize, lsp_types::DocumentSymbol)> =
+        symbols(scene.file()).into_iter().map(|one| (0, one)).collect();
+    while let Some((depth, one)) = left.pop() {
+        lines.push(format!("{}{} {}", "  ".repeat(depth), one.name, one.detail.unwrap_or_default()));
+        left.extend(one.children.into_iter().flatten().rev().map(|inner| (depth + 1, inner)));
+    }
+    let expected =
+        ["inner urn:f", "  size property", "  lamp service", "  L saoms.Robot", "    number $size"];
+    assert_eq!(lines, expected);
+    // Also while it is being typed.
+    assert_eq!(
+        symbols(scene_of("<composite name='a'><component name='", &[]).file())[0]
+            .children
+            .as_ref()
+            .unwrap()
+            .len(),
+        1
+    );
+}

@@ -1,0 +1,233 @@
+//! The language server as an editor meets it: a real process, spoken to over its standard input and output.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{self, Receiver};
+use std::thread;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+/// How long an answer can take before the test is given up: a server that hangs must not hold up the others.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+struct Editor {
+    server: Child,
+    input: Option<ChildStdin>,
+    messages: Receiver<Value>,
+    folder: PathBuf,
+    next: i64,
+}
+
+fn read(output: &mut BufReader<ChildStdout>) -> Option<Value> {
+    let mut length = 0;
+    loop {
+        let mut line = String::new();
+        if output.read_line(&mut line).ok()? == 0 {
+            return None;
+        }
+        if let Some(value) = line.strip_prefix("Content-Length: ") {
+            length = value.trim().parse().unwrap();
+        } else if line.trim().is_empty() {
+            break;
+        }
+    }
+    let mut bytes = vec![0; length];
+    output.read_exact(&mut bytes).ok()?;
+    Some(serde_json::from_slice(&bytes).unwrap())
+}
+
+impl Editor {
+    /// A server in a folder with these files, not yet initialized.
+    fn new(test: &str, files: &[(&str, &str)]) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lsp").join(test);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        for (name, text) in files {
+            fs::write(folder.join(name), text).unwrap();
+        }
+        let mut server = Command::new(env!("CARGO_BIN_EXE_saoms"))
+            .arg("lsp")
+            .current_dir(&folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut output = BufReader::new(server.stdout.take().unwrap());
+        let (sender, messages) = mpsc::channel();
+        thread::spawn(move || {
+            while let Some(message) = read(&mut output) {
+                if sender.send(message).is_err() {
+                    return;
+                }
+            }
+        });
+        let input = server.stdin.take();
+        Self { server, input, messages, folder, next: 0 }
+    }
+
+    fn started(test: &str, files: &[(&str, &str)]) -> Self {
+        let mut editor = Self::new(test, files);
+        let answer = editor.ask("initialize", json!({ "capabilities": {} }));
+        assert_eq!(answer["result"]["serverInfo"]["name"], "saoms");
+        editor.tell("initialized", json!({}));
+        editor
+    }
+
+    fn uri(&self, name: &str) -> String {
+        format!("file://{}/{name}", fs::canonicalize(&self.folder).unwrap().display())
+    }
+
+    fn raw(&mut self, text: &str) {
+        let input = self.input.as_mut().unwrap();
+        write!(input, "Content-Length: {}\r\n\r\n{text}", text.len()).unwrap();
+        input.flush().unwrap();
+    }
+
+    fn tell(&mut self, method: &str, params: Value) {
+        self.raw(&json!({ "jsonrpc": "2.0", "method": method, "params": params }).to_string());
+    }
+
+    fn receive(&self) -> Value {
+        self.messages.recv_timeout(PATIENCE).unwrap()
+    }
+
+    /// Asks, and gives the answer; what comes before it is left out.
+    fn ask(&mut self, method: &str, params: Value) -> Value {
+        self.next += 1;
+        let id = self.next;
+        self.raw(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }).to_string());
+        loop {
+            let message = self.receive();
+            if message["id"] == id {
+                return message;
+            }
+        }
+    }
+
+    fn open(&mut self, name: &str, text: &str) {
+        let uri = self.uri(name);
+        let document = json!({ "uri": uri, "languageId": "saoms", "version": 1, "text": text });
+        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
+    }
+
+    fn change(&mut self, name: &str, version: i32, changes: Value) {
+        let document = json!({ "uri": self.uri(name), "version": version });
+        self.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+    }
+
+    /// Waits until the diagnostics that are shown for a file, by their codes and places, are as they should be.
+    fn wait_for(&self, name: &str, is_expected: impl Fn(&[String]) -> bool) {
+        let uri = self.uri(name);
+        loop {
+            let message = self.receive();
+            if message["method"] == "textDocument/publishDiagnostics" && message["params"]["uri"] == *uri {
+                let all = message["params"]["diagnostics"].as_array().unwrap();
+                if is_expected(&all.iter().map(shown).collect::<Vec<String>>()) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Ends the session; the exit code.
+    fn end(mut self) -> i32 {
+        assert_eq!(self.ask("shutdown", Value::Null)["result"], Value::Null);
+        self.tell("exit", Value::Null);
+        self.server.wait().unwrap().code().unwrap()
+    }
+}
+
+impl Drop for Editor {
+    fn drop(&mut self) {
+        // Where a test failed, nobody ended the session.
+        drop(self.input.take());
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+fn shown(diagnostic: &Value) -> String {
+    let start = &diagnostic["range"]["start"];
+    format!("{} {}:{}", diagnostic["code"].as_str().unwrap(), start["line"], start["character"])
+}
+
+const OUTER: &str = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"outer\" targetNamespace=\"urn:f\">
+  <include name=\"inner\"/>
+</composite>
+";
+const INNER: &str = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"inner\" targetNamespace=\"urn:f\">
+  <component name=\"GPS\"><implementation.java class=\"resources.robotEnvironment.GPS\"/></component><!-- 🤖ü --><component name=\"Gps\"/>
+</composite>
+";
+
+#[test]
+fn diagnostics_follow_what_is_typed_in_every_file() {
+    let mut editor =
+        Editor::started("diagnostics", &[("outer.composite", OUTER), ("inner.composite", INNER)]);
+    editor.open("outer.composite", OUTER);
+    // Columns are in UTF-16 units: the robot is two, the umlaut one.
+    let column = INNER.lines().nth(1).unwrap().split("<component name=\"Gps\"").next().unwrap();
+    let column = column.encode_utf16().count() + 1;
+    editor.wait_for("inner.composite", |all| all == [format!("S1010 1:{column}")]);
+    // What is not saved counts, and what is mended is taken back.
+    editor.open("inner.composite", INNER);
+    let end = json!({ "line": 1, "character": column + 22 });
+    let start = json!({ "line": 1, "character": column - 1 });
+    editor.change("inner.composite", 2, json!([{ "range": { "start": start, "end": end }, "text": "" }]));
+    editor.wait_for("inner.composite", <[String]>::is_empty);
+    // Text that is no XML is told, too, and what can be written there.
+    editor.change("outer.composite", 2, json!([{ "text": "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"o\"><inc" }]));
+    editor.wait_for("outer.composite", |all| all.iter().any(|one| one.starts_with("S01")));
+    let position = json!({ "line": 0, "character": 83 });
+    let asked = json!({ "textDocument": { "uri": editor.uri("outer.composite") }, "position": position });
+    let answer = editor.ask("textDocument/completion", asked);
+    let labels: Vec<&str> = answer["result"]["items"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|item| item["label"].as_str().unwrap())
+        .collect();
+    assert!(labels.contains(&"include"), "{labels:?}");
+    let uri = editor.uri("outer.composite");
+    editor.tell("textDocument/didClose", json!({ "textDocument": { "uri": uri } }));
+    // What is closed is as it is on disk.
+    editor.wait_for("outer.composite", <[String]>::is_empty);
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn what_is_malformed_or_unknown_is_answered() {
+    let mut editor = Editor::new("malformed", &[]);
+    assert_eq!(editor.ask("textDocument/hover", json!({}))["error"]["code"], -32002, "not initialized");
+    editor.raw("{nonsense");
+    let answer = editor.receive();
+    assert_eq!((&answer["error"]["code"], &answer["id"]), (&json!(-32700), &Value::Null));
+    editor.ask("initialize", json!({ "capabilities": 3 }));
+    assert_eq!(editor.ask("initialize", json!({}))["error"]["code"], -32600, "a second time");
+    assert_eq!(editor.ask("textDocument/nonsense", json!({}))["error"]["code"], -32601);
+    assert_eq!(editor.ask("textDocument/completion", json!({ "position": 3 }))["error"]["code"], -32602);
+    editor.tell("textDocument/didOpen", json!([1]));
+    editor.tell("$/nonsense", json!(null));
+    let nowhere =
+        json!({ "textDocument": { "uri": "untitled:1" }, "position": { "line": 0, "character": 0 } });
+    assert_eq!(editor.ask("textDocument/completion", nowhere)["error"]["code"], -32602);
+    assert_eq!(editor.ask("shutdown", Value::Null)["result"], Value::Null);
+    assert_eq!(editor.ask("textDocument/hover", json!({}))["error"]["code"], -32600, "shut down");
+    editor.tell("exit", Value::Null);
+    assert_eq!(editor.server.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_session_that_is_not_shut_down_fails() {
+    let mut editor = Editor::started("exit", &[]);
+    editor.tell("exit", Value::Null);
+    assert_eq!(editor.server.wait().unwrap().code(), Some(1));
+    let mut editor = Editor::started("gone", &[]);
+    drop(editor.input.take());
+    assert_eq!(editor.server.wait().unwrap().code(), Some(1));
+}
