@@ -424,6 +424,11 @@ typedef struct SaomsComponentTable {
                          struct SaomsSink error);
     // Frees the component.
     void (*destroy)(void *component);
+    // Puts what a component of a new build goes on with, when that takes its place in a running fleet; nothing where it begins anew. `FAILED`: it
+    // cannot be replaced now. May be null: there is nothing to go on with.
+    SaomsStatus (*save)(void *component, struct SaomsSink saved, struct SaomsSink error);
+    // Goes on with what a component of an earlier build put, after `initialize`. May be null: it cannot.
+    SaomsStatus (*restore)(void *component, struct SaomsBytes saved, struct SaomsSink error);
 } SaomsComponentTable;
 
 // A class: how to make components of it, and their functions.

@@ -1,4 +1,4 @@
-use crate::{CallError, Context, Failure, Invocation, LoopRegistration, Properties};
+use crate::{CallError, Context, Failure, Invocation, LoopRegistration, Properties, Saved};
 
 /// What an author writes: a component of a fleet.
 ///
@@ -90,6 +90,52 @@ pub trait Component: Send + Sized + 'static {
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let _ = context;
         Ok(())
+    }
+
+    /// What a successor goes on with, when the library was built anew while the fleet runs (`saoms run --reload`): between two executions,
+    /// this is called of the one that runs, then [`initialize`](Component::initialize) and [`restore`](Component::restore) of the new one, which
+    /// takes its place. [`shutdown`](Component::shutdown) is not called. By default nothing is saved, and the new one begins anew.
+    ///
+    /// ```
+    /// # use saoms_api::{Component, Context, Failure, Message, Saved};
+    /// #[derive(Clone, Debug, Message)]
+    /// struct State {
+    ///     blocks: u64,
+    /// }
+    ///
+    /// # struct Odometer { blocks: u64, drives: bool }
+    /// # impl Component for Odometer {
+    /// # type Properties = ();
+    /// # fn new((): ()) -> Result<Self, Failure> { Err("only an example".into()) }
+    /// fn save(&mut self) -> Result<Saved, Failure> {
+    ///     if self.drives {
+    ///         return Err("it drives".into());
+    ///     }
+    ///     Ok(Saved::of(&State { blocks: self.blocks }))
+    /// }
+    ///
+    /// fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+    ///     if let Some(State { blocks }) = saved.read()? {
+    ///         self.blocks = blocks;
+    ///     }
+    ///     Ok(())
+    /// }
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// It cannot be replaced now: it stays, and is asked again a second later.
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::default())
+    }
+
+    /// Goes on where an earlier build was. Not called where that saved nothing.
+    ///
+    /// # Errors
+    /// It cannot go on with that: the earlier one stays.
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        let _ = saved;
+        Err("the earlier build saved its state, and this one does not implement `restore`".into())
     }
 }
 
@@ -217,6 +263,16 @@ pub trait DynComponent: Send {
     /// # Errors
     /// As there.
     fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError>;
+    /// See [`Component::save`].
+    ///
+    /// # Errors
+    /// As there.
+    fn save(&mut self) -> Result<Saved, Failure>;
+    /// See [`Component::restore`].
+    ///
+    /// # Errors
+    /// As there.
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure>;
 }
 
 impl<C: Class> DynComponent for C {
@@ -234,5 +290,12 @@ impl<C: Class> DynComponent for C {
 
     fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError> {
         Class::serve(self, invocation, context)
+    }
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Component::save(self)
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        Component::restore(self, saved)
     }
 }

@@ -1,7 +1,7 @@
 use std::ffi::c_void;
 
 use crate::contain::contained;
-use crate::{Context, DynComponent, Failure, Header, Invocation, SharedMessage};
+use crate::{Context, DynComponent, Failure, Header, Invocation, Saved, SharedMessage};
 
 use super::data::MessageView;
 use super::guard::{guarded, guarded_call};
@@ -39,6 +39,11 @@ pub struct ComponentTable {
     ) -> Status,
     /// Frees the component.
     pub destroy: unsafe extern "C" fn(component: *mut c_void),
+    /// Puts what a component of a new build goes on with, when that takes its place in a running fleet; nothing where it begins anew. `FAILED`: it
+    /// cannot be replaced now. May be null: there is nothing to go on with.
+    pub save: Option<unsafe extern "C" fn(component: *mut c_void, saved: Sink, error: Sink) -> Status>,
+    /// Goes on with what a component of an earlier build put, after `initialize`. May be null: it cannot.
+    pub restore: Option<unsafe extern "C" fn(component: *mut c_void, saved: Bytes, error: Sink) -> Status>,
 }
 
 /// A component of this side as the other one holds it, behind a pointer.
@@ -122,6 +127,8 @@ impl<C: DynComponent> Instance<C> {
         shutdown: Self::shutdown,
         serve: Self::serve,
         destroy: Self::destroy,
+        save: Some(Self::save),
+        restore: Some(Self::restore),
     };
 
     /// # Safety
@@ -182,6 +189,25 @@ impl<C: DynComponent> Instance<C> {
                 Self::call(this, handle, false, |component, context| {
                     component.serve(&mut invocation, context)
                 })
+            })
+        }
+    }
+
+    unsafe extern "C" fn save(this: *mut c_void, saved: Sink, error: Sink) -> Status {
+        // SAFETY: the host calls with what the table's contract says; `this` comes from `into_pointer` and is used by this call alone.
+        unsafe {
+            guarded(error, || {
+                saved.put((*this.cast::<Self>()).component.save()?.bytes());
+                Ok(())
+            })
+        }
+    }
+
+    unsafe extern "C" fn restore(this: *mut c_void, saved: Bytes, error: Sink) -> Status {
+        // SAFETY: as in `save`.
+        unsafe {
+            guarded(error, || {
+                (*this.cast::<Self>()).component.restore(&Saved::from_bytes(saved.get()?.to_vec()))
             })
         }
     }

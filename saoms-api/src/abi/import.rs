@@ -1,11 +1,11 @@
 use std::ffi::c_void;
 use std::ptr;
 
-use crate::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue};
+use crate::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue, Saved};
 
 use super::class::Construct;
 use super::data::PropertyViews;
-use super::lease::{Lent, call_with_findings};
+use super::lease::{Lent, call, call_for_bytes, call_with_findings};
 use super::{Bytes, ClassTable, ComponentTable, HostHandle, Sink, Status};
 
 /// A class of the other side.
@@ -105,6 +105,23 @@ impl DynComponent for ImportedComponent {
             unsafe { serve(instance, handle, service, operation, Bytes::lend(&arguments), reply, error) }
         })?;
         invocation.call.reply(reply)
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        let Some(save) = self.table.save else { return Ok(Saved::default()) };
+        let (instance, mut bytes) = (self.instance, Vec::new());
+        // SAFETY: the functions keep the rules, the instance is theirs, and the sinks are lent to this call.
+        call_for_bytes(&mut bytes, |saved, error| unsafe { save(instance, saved, error) })?;
+        Ok(Saved::from_bytes(bytes))
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        let Some(restore) = self.table.restore else {
+            return Err("the earlier build saved its state, and this one has no function `restore`".into());
+        };
+        let instance = self.instance;
+        // SAFETY: as in `save`.
+        call(|error| unsafe { restore(instance, Bytes::lend(saved.bytes()), error) })
     }
 }
 
