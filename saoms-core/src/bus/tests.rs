@@ -212,3 +212,16 @@ fn two_messages_of_one_name_show_what_differs() {
     let refused = bus.publisher("T", &OTHER.declaration(), &who()).unwrap_err().to_string();
     assert!(refused.contains("value") && refused.contains("other"), "{refused}");
 }
+
+#[test]
+fn schemas_that_say_the_same_agree_however_they_are_written() {
+    let mut bus = Bus::default();
+    bus.publisher("T", &EVENT.declaration(), &who()).unwrap();
+    let by_hand = r#"{ "fields": [ { "type": "uint32", "name": "value" } ], "name": "Plain" }"#;
+    let declared = saoms_api::TopicDeclaration { schema: by_hand, ..EVENT.declaration() };
+    assert!(bus.subscribe("T", &declared, &who(), 1).is_ok());
+    let other = by_hand.replace("uint32", "int32");
+    assert!(
+        bus.subscribe("T", &saoms_api::TopicDeclaration { schema: &other, ..declared }, &who(), 1).is_err()
+    );
+}

@@ -70,7 +70,7 @@ impl Topic {
 
     /// Counts another user, if it means the same messages.
     pub(super) fn join(&mut self, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> Result<(), Mismatch> {
-        let same = self.kind() == declared.kind && self.schema == declared.schema;
+        let same = self.kind() == declared.kind && agree(&self.schema, declared.schema);
         if !same && self.users > 0 {
             return Err(self.mismatch(declared));
         }
@@ -89,7 +89,7 @@ impl Topic {
 
     fn mismatch(&self, declared: &TopicDeclaration<'_>) -> Mismatch {
         let describe = |message: &str, kind: TopicKind, schema: &str| {
-            if self.message == declared.message && self.schema != declared.schema {
+            if self.message == declared.message && !agree(&self.schema, declared.schema) {
                 format!(
                     "{} messages `{message}` with the fields {}",
                     kind.name(),
@@ -157,4 +157,10 @@ fn store(kind: TopicKind) -> Store {
         TopicKind::State => Store::State(StateTable::default()),
         TopicKind::Event => Store::Event(EventLog::default()),
     }
+}
+
+/// Whether two schemas are the same. Texts that were written by hand may order and space the members in another way.
+fn agree(one: &str, other: &str) -> bool {
+    let value = |text| serde_json::from_str::<serde_json::Value>(text).ok();
+    one == other || value(one).is_some_and(|one| Some(one) == value(other))
 }
