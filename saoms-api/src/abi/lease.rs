@@ -102,6 +102,7 @@ impl Lease {
             ));
         }
         if self.in_use.replace(true) {
+            self.strays.fetch_add(1, Ordering::Relaxed);
             return Err(Failure::new("a context was used by what it called itself"));
         }
         Ok(())
@@ -266,7 +267,7 @@ impl Lent {
             return result;
         }
         let stray = format!(
-            "what is lent for the time of a call was used {strays} times from another thread or when no call went on, which was refused"
+            "what is lent for the time of a call was used {strays} times from another thread, when no call went on, or by what it called, which was refused"
         );
         Err(Failure::new(match result {
             Ok(()) => stray,

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use object::elf::{self, FileHeader64, Machine};
-use object::read::elf::{FileHeader as _, SectionHeader as _};
+use object::read::elf::{FileHeader as _, ProgramHeader as _, SectionHeader as _};
 use object::{Endianness, FileKind};
 use saoms_api::abi::SECTION;
 
@@ -20,9 +20,12 @@ const LARGEST: u64 = 4 << 30;
 pub(super) fn read_section(path: &Path) -> Result<String, PluginError> {
     let path_of = || path.to_owned();
     let unreadable = |message: String| PluginError::Unreadable { path: path_of(), message };
-    let size = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?.len();
-    if size > LARGEST {
-        return Err(unreadable(format!("it has {size} bytes")));
+    let about = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
+    if !about.is_file() {
+        return Err(unreadable("it is neither a file nor a folder".to_owned()));
+    }
+    if about.len() > LARGEST {
+        return Err(unreadable(format!("it has {} bytes", about.len())));
     }
     let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
     let broken = |error: object::Error| PluginError::Broken { path: path_of(), message: error.to_string() };
@@ -41,6 +44,15 @@ pub(super) fn read_section(path: &Path) -> Result<String, PluginError> {
     }
     if header.e_type(endian) != elf::ET_DYN {
         return Err(PluginError::NoLibrary { path: path_of() });
+    }
+    // A segment beyond the end of the file would end the program when it is touched.
+    let size = bytes.len() as u64;
+    for segment in header.program_headers(endian, &*bytes).map_err(broken)? {
+        let end = segment.p_offset(endian).checked_add(segment.p_filesz(endian));
+        if end.is_none_or(|end| end > size) {
+            let message = "a part of it lies behind its end".to_owned();
+            return Err(PluginError::Broken { path: path_of(), message });
+        }
     }
     let sections = header.sections(endian, &*bytes).map_err(broken)?;
     let Some((_, section)) = sections.section_by_name(endian, SECTION.as_bytes()) else {

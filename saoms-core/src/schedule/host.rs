@@ -57,8 +57,9 @@ impl ComponentHost<'_> {
         let of_class = use_as.declared(spec.class.declaration());
         let of_loops = spec.loops.iter().flat_map(|one| use_as.declared_of_loop(one.class.declaration()));
         if !of_class.iter().chain(of_loops).any(|declared| declared.name == topic) {
+            let attribute = use_as.attribute();
             return Err(Failure::new(format!(
-                "topic `{topic}`: neither class `{}` nor a loop of component `{}` declares that it {verb}s it: write `{verb}s(...)` in its `#[class(...)]` or `#[looping(...)]`",
+                "topic `{topic}`: neither class `{}` nor a loop of component `{}` declares that it {attribute} it: write `{attribute}(...)` in its `#[class(...)]` or `#[looping(...)]`",
                 spec.class.name(),
                 self.part.name
             )));
@@ -101,6 +102,14 @@ impl Use {
         match self {
             Use::Publish => "publish",
             Use::Subscribe => "subscribe",
+        }
+    }
+
+    /// The attribute that declares it, which is its third person, too.
+    const fn attribute(self) -> &'static str {
+        match self {
+            Use::Publish => "publishes",
+            Use::Subscribe => "subscribes",
         }
     }
 

@@ -245,6 +245,15 @@ fn the_end_waits_for_executions_and_lets_everybody_shut_down() {
 }
 
 #[test]
+fn who_does_not_end_in_time_is_left_behind_when_the_time_of_the_run_is_over() {
+    let settings = Settings { grace: Duration::from_millis(100), ..real(100) };
+    let (report, _) =
+        run("A actor period=10 each=[sleep 20000]\nB actor period=10 last=[log last]", settings);
+    assert_eq!(report.outcome.status, Status::Failed);
+    assert!(report.outcome.reasons.iter().any(|why| why.contains('A')), "{:?}", report.outcome.reasons);
+}
+
+#[test]
 fn who_does_not_end_in_time_is_named_and_left_behind() {
     let settings = Settings { grace: Duration::from_millis(150), ..Settings::default() };
     let (fleet, diary) = start(

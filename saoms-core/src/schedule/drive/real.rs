@@ -78,6 +78,10 @@ fn sleep(shared: &Shared, mut engine: std::sync::MutexGuard<'_, Engine>, until: 
         // That came after the last look, and before the ticket.
         return shared.release(engine);
     }
+    if engine.phase == Phase::Stopping {
+        // From now on somebody has to see to it that all end in time; the limit of the run has told nobody.
+        shared.end.wake();
+    }
     engine.roles.asleep_until = until;
     let until = if until == NEVER { NEVER } else { shared.clock.on_machine(until) };
     shared.pulse.awake_at(until);
