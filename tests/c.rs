@@ -1,4 +1,4 @@
-//! The robot in C: built by the system's compiler against the header, and a robot among others.
+//! Components in C, built by the system's compiler against the header: the robot of the examples, and the component of `docs/c.md`.
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, outside test functions")]
 
@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
+use saoms_api::{Class, Component, Context, Failure, interface};
 use saoms_components::grid::Block;
 use saoms_components::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION, Position, ROBOT_LIST};
 use saoms_testkit::{Bench, comply_as};
@@ -17,24 +18,29 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The built library, in a folder that goes with this process.
+/// The built robot, in a folder that goes with this process.
 static LIBRARY: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let library = folder.path().join("libpatrol.so");
+    build(&["robot.c", "traffic.c"].map(|file| root().join("plugins/robot-in-c").join(file)), &library);
+    (folder, library)
+});
+
+/// Builds a library as the guide says, with all warnings as errors.
+fn build(sources: &[PathBuf], library: &Path) {
     let mut command = Command::new("cc");
     command
         // JSON is longer than the texts that C99 promises to take.
         .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wno-overlength-strings"])
         .args(["-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I", "saoms-api/include", "-o"])
-        .arg(&library)
-        .args(["robot.c", "traffic.c"].map(|file| format!("plugins/robot-in-c/{file}")))
+        .arg(library)
+        .args(sources)
         .current_dir(root());
     match command.output() {
         Ok(output) => assert!(output.status.success(), "{command:?}: {}", text(&output)),
         Err(error) => panic!("{command:?}: {error}; this test needs the C compiler of the system, `cc`"),
     }
-    (folder, library)
-});
+}
 
 fn library() -> &'static Path {
     &LIBRARY.1
@@ -171,4 +177,61 @@ fn it_says_what_a_robot_says() {
     patrol.execute().unwrap();
     assert_eq!(wants(&patrol), Some((block, Block::new(2, 0))), "turns around");
     assert_eq!(patrol.journal(), ["symptom: robot 5 is in its way", "decision: turns around"]);
+}
+
+/// Counts, in C.
+#[interface(name = "counter.Count")]
+trait Count {
+    fn count(&mut self, context: &mut Context<'_>) -> Result<u64, Failure>;
+}
+
+/// Asks the counter in each period.
+#[derive(Class)]
+#[class(name = "test.Asks", periodic, reference("counter": Count))]
+struct Asks {
+    counter: CountReference,
+}
+
+impl Component for Asks {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Asks { counter: CountReference::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.counter = context.reference("counter")?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let count = self.counter.count(context)?;
+        context.info(format_args!("hears of {count}"));
+        Ok(())
+    }
+}
+
+#[test]
+fn the_component_of_the_guide_does_what_the_guide_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, library) = (folder.path().join("counter.c"), folder.path().join("libcounter.so"));
+    let guide = fs::read_to_string(root().join("docs/c.md")).unwrap();
+    let (_, code) = guide.split_once("```c\n").unwrap();
+    fs::write(&source, code.split_once("```\n").unwrap().0).unwrap();
+    build(&[source], &library);
+    let make = |step| Bench::of_library(&library, "counter.Counter", &[("step", step)]);
+    comply_as(|| make("5"));
+    let refused = make("13").err().unwrap();
+    assert_eq!(refused.findings()[0].place().property_name(), Some("step"));
+    let mut counter = make("5").unwrap();
+    counter.start().unwrap();
+    counter.execute().unwrap();
+    assert_eq!(counter.sent_json("COUNT"), [serde_json::json!({"number": 5})]);
+    counter.deliver_json("COUNT", &serde_json::json!({"number": 5})).unwrap();
+    counter.execute().unwrap();
+    assert_eq!(counter.log(), ["hears 5"]);
+    let mut asks = Bench::of::<Asks>(&[]).unwrap().wire("counter", counter, "count");
+    asks.start().unwrap();
+    asks.execute().unwrap();
+    assert_eq!(asks.log(), ["hears of 10"]);
 }

@@ -213,8 +213,14 @@ static SaomsStatus patrol_serve(void *component, const SaomsHostHandle *host, Sa
 
 static void patrol_destroy(void *component) { free(component); }
 
+/* Members by their names: what a later header has more stays null. */
 static const SaomsComponentTable component_table = {
-    sizeof(SaomsComponentTable), patrol_initialize, patrol_execute, patrol_shutdown, patrol_serve, patrol_destroy,
+    .size = sizeof(SaomsComponentTable),
+    .initialize = patrol_initialize,
+    .execute = patrol_execute,
+    .shutdown = patrol_shutdown,
+    .serve = patrol_serve,
+    .destroy = patrol_destroy,
 };
 
 static SaomsTopicView topic(const char *name, const char *message, const char *schema, uint32_t kind) {
@@ -320,7 +326,11 @@ SAOMS_METADATA static const char metadata[] =
     TOPIC("POSTOPIC", "state", "Position") POSITION "}," TOPIC("ELMSTOPIC", "event", "EventLuggage") EVENT_LUGGAGE
     "}], \"services\": [], \"references\": [{\"name\": \"world\", \"interface\":" HARDWARE ", \"optional\": true}]}]}";
 
-static const SaomsClassTable class_table = {sizeof(SaomsClassTable), patrol_construct, &component_table};
+static const SaomsClassTable class_table = {
+    .size = sizeof(SaomsClassTable),
+    .construct = patrol_construct,
+    .component = &component_table,
+};
 
 static const SaomsClassTable *const classes[] = {&class_table};
 

@@ -32,13 +32,13 @@ fn generated() -> String {
 fn the_header_is_that_of_the_sources() {
     let path = root().join("include/saoms.h");
     let generated = generated();
-    if env::var_os("UPDATE_HEADER").is_some() {
+    if env::var_os("UPDATE_EXPECT").is_some() {
         fs::write(&path, &generated).unwrap();
     }
     let found = fs::read_to_string(&path).unwrap_or_default();
     assert!(
         found == generated,
-        "{} is not what `src/abi` says any more; `UPDATE_HEADER=1 cargo test -p saoms-api --test header` writes it anew",
+        "{} is not what `src/abi` says any more; `UPDATE_EXPECT=1 cargo test -p saoms-api --test header` writes it anew",
         path.display()
     );
 }
