@@ -13,11 +13,14 @@ use saoms_core::load::MAX_SIZE;
 use saoms_core::registry::Registry;
 use saoms_core::source::{OpenTexts, Sources, identity};
 
+use saoms_api::contain::contained;
+
 use super::diagnostics::{Reported, reported};
 use super::registries::Registries;
 use super::scene::Scene;
 use super::workspace::Workspace;
 use crate::fleet::checked_with;
+use crate::output::eprint;
 
 /// How long nothing has to change before a check starts.
 const QUIET: Duration = Duration::from_millis(120);
@@ -60,8 +63,11 @@ impl Checker {
                     Err(RecvTimeoutError::Disconnected) => return,
                 }
             }
-            if let Some(outcome) = self.check(job) {
-                done(outcome);
+            // A fault of ours costs one check, and not all that follow.
+            match contained(|| self.check(job)) {
+                Ok(Some(outcome)) => done(outcome),
+                Ok(None) => {}
+                Err(failure) => eprint(&format!("saoms: the check {failure}\n")),
             }
         }
     }

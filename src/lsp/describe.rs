@@ -27,6 +27,12 @@ pub(super) fn class(class: &Class) -> String {
     list(&mut text, "Subscribes to", declaration.subscribes.iter().map(|one| one.name.as_str()));
     list(&mut text, "Services", declaration.offers().map(|one| one.name.as_str()));
     list(&mut text, "References", declaration.references.iter().map(|one| one.name.as_str()));
+    for (value, names) in declaration.loops.all() {
+        let property = declaration.loops.property.as_deref().unwrap_or_default();
+        let title =
+            value.map_or_else(|| "Loops".to_owned(), |value| format!("Loops where {property} is `{value}`"));
+        list(&mut text, &title, names.iter().map(String::as_str));
+    }
     text
 }
 

@@ -14,6 +14,7 @@ use lsp_types::notification::{
     DidSaveTextDocument, Notification as _, PublishDiagnostics,
 };
 use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri};
+use saoms_api::contain::contained;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -157,7 +158,9 @@ impl<W: Write> Server<W> {
                 self.state = State::ShutDown;
                 Ok(Value::Null)
             }
-            (State::Running, _) => self.answer(&request.method, request.params),
+            // A fault of ours costs one answer, and not the session.
+            (State::Running, _) => contained(|| self.answer(&request.method, request.params))
+                .unwrap_or_else(|failure| Err(Refusal(ErrorCode::InternalError, failure.to_string()))),
         };
         let id = serde_json::to_value(request.id).unwrap_or_default();
         let message = match answer {

@@ -22,7 +22,7 @@ pub(in crate::lsp) struct Proposal {
     insert: Insert,
     /// Those with a smaller number come first.
     rank: u8,
-    pub(super) range: Range<usize>,
+    pub(in crate::lsp) range: Range<usize>,
 }
 
 /// What is put into the text.

@@ -1,0 +1,112 @@
+//! Whatever the text: every question has an answer.
+
+use proptest::prelude::*;
+
+use crate::lsp::complete::complete;
+use crate::lsp::file::File;
+use crate::lsp::hover::hover;
+use crate::lsp::navigate::{definition, references};
+use crate::lsp::rename::rename;
+use crate::lsp::symbols::symbols;
+use crate::lsp::testing::scene_of;
+
+const WHOLE: &str = r#"<?xml version="1.0"?>
+<!-- ü -->
+<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:s="urn:saoms:1" xmlns:f="urn:f" name="fleet" targetNamespace="urn:f">
+  <include name="f:inner"/>
+  <property name="period" type="s:x">100<![CDATA[ ]]></property>
+  <component name="R🤖${index:03}" s:count="2 * n" s:if='a &gt; b'>
+    <implementation.rust class="saoms.Robot" library="x"/>
+    <property name="period" source="$period/a/b"/>
+    <property name="topicRename" value="COLLISIONTOPIC,ä::B,c"/>
+    <property name="scenario"><value>at 1s</value><value/></property>
+    <reference name="world" target=" R🤖001/TaskInterface/b  W "><binding.sca uri="W/x"/></reference>
+    <s:loop name="BatteryMS" class="saoms.BatteryMS" after="RobotMS"><property name="p">1</property></s:loop>
+  </component>
+  <component name="W"><implementation.composite name="f:fleet"/><service name="s"/></component>
+  <service name="s" promote="W/s"/>
+  <wire source="R🤖001/world" target="W"/>
+</composite>
+"#;
+
+/// Asks everything at a byte.
+fn ask_all(text: &str, at: usize) {
+    let scene = scene_of(text, &[("inner.composite", WHOLE)]);
+    let file = scene.file();
+    for one in complete(&scene, at) {
+        // The range of what is replaced is in the text, and around the cursor.
+        assert!(one.range.start <= at && at <= one.range.end, "{:?} at {at}", one.range);
+        assert!(text.get(one.range.clone()).is_some());
+        let _ = one.into_item(file, true);
+    }
+    if let Some((_, range)) = hover(&scene, at) {
+        assert!(text.get(range).is_some());
+    }
+    definition(&scene, at);
+    references(&scene, at, true);
+    for (place, _) in rename(&scene, at, "new").unwrap_or_default() {
+        assert!(scene.files[place.file].text.get(place.start..place.end).is_some());
+    }
+    scene.roots();
+}
+
+#[test]
+fn everything_can_be_asked_at_the_end_of_every_beginning() {
+    for (at, _) in WHOLE.char_indices() {
+        ask_all(&WHOLE[..at], at);
+        symbols(&File::new("/f".into(), WHOLE[..at].into()));
+    }
+}
+
+#[test]
+fn everything_can_be_asked_at_every_place() {
+    for (at, _) in WHOLE.char_indices() {
+        ask_all(WHOLE, at);
+    }
+}
+
+/// A text with some of its parts replaced by others.
+fn disturbed() -> impl Strategy<Value = String> {
+    let pieces = [
+        "",
+        "<",
+        ">",
+        "\"",
+        "'",
+        "/",
+        "=",
+        " ",
+        "&",
+        "${",
+        "}",
+        "::",
+        ",",
+        "<!--",
+        "]]>",
+        "ä",
+        "🤖",
+        "</component>",
+        "<component ",
+    ];
+    let edit = (any::<prop::sample::Index>(), 0usize..12, prop::sample::select(pieces.to_vec()));
+    prop::collection::vec(edit, 1..6).prop_map(|edits| {
+        let mut text = WHOLE.to_owned();
+        for (at, length, piece) in edits {
+            let start = text.floor_char_boundary(at.index(text.len() + 1));
+            let end = text.floor_char_boundary((start + length).min(text.len())).max(start);
+            text.replace_range(start..end, piece);
+        }
+        text
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn everything_can_be_asked_in_disturbed_texts(text in disturbed(), at in any::<prop::sample::Index>()) {
+        let at = text.floor_char_boundary(at.index(text.len() + 1));
+        ask_all(&text, at);
+        symbols(&File::new("/f".into(), text.into()));
+    }
+}
