@@ -231,3 +231,68 @@ fn a_session_that_is_not_shut_down_fails() {
     drop(editor.input.take());
     assert_eq!(editor.server.wait().unwrap().code(), Some(1));
 }
+
+/// A composite of 1.1 with this inside.
+fn composite(inside: &str) -> String {
+    format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"fleet\" targetNamespace=\"urn:f\">\n{inside}\n</composite>\n"
+    )
+}
+
+#[test]
+fn plugins_complete_and_explain_as_what_is_linked_in() {
+    let text = composite(
+        "<component name=\"G\">\n<implementation.rust class=\"hello.Greeter\"/>\n<property name=\"ID\">G</property>\n<property name=\"period\">1s</property>\n<property name=\"nam\">x</property>\n</component>",
+    );
+    let mut editor = Editor::new("plugin", &[("fleet.composite", &text)]);
+    let library = std::env::current_exe().unwrap().with_file_name("libsaoms_hello.so");
+    fs::create_dir(editor.folder.join("plugins")).unwrap();
+    std::os::unix::fs::symlink(library, editor.folder.join("plugins/libhello.so")).unwrap();
+    editor.ask("initialize", json!({ "capabilities": {} }));
+    editor.tell("initialized", json!({}));
+    editor.open("fleet.composite", &text);
+    editor.wait_for("fleet.composite", |all| all == ["S3004 5:16"]);
+    let at = |line: u32, character: u32| json!({ "textDocument": { "uri": editor.uri("fleet.composite") }, "position": { "line": line, "character": character } });
+    let (class, name) = (at(2, 35), at(5, 18));
+    let hover = editor.ask("textDocument/hover", class);
+    let said = hover["result"]["contents"]["value"].as_str().unwrap();
+    assert!(said.contains("Greets somebody") && said.contains("libhello.so"), "{said}");
+    let proposed = editor.ask("textDocument/completion", name);
+    let items = proposed["result"]["items"].as_array().unwrap();
+    let own = items.iter().find(|item| item["label"] == "name").unwrap();
+    assert_eq!(own["detail"], "a text, default `world`");
+    assert!(own["documentation"]["value"].as_str().unwrap().contains("Whom to greet."));
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn what_is_wrong_is_mended_and_names_are_changed_in_all_files() {
+    let text = composite(
+        "  <component name=\"Rob\"><implementation.java class=\"saoms.Robto\"/></component>\n  <wire source=\"Rob/world\" target=\"Wrld\"/>",
+    );
+    let outer = composite("  <include name=\"fleet\"/>").replace("name=\"fleet\" t", "name=\"outer\" t");
+    let mut editor = Editor::started("mend", &[("fleet.composite", &text), ("outer.composite", &outer)]);
+    editor.open("fleet.composite", &text);
+    editor.wait_for("fleet.composite", |all| all.iter().any(|one| one == "S3001 1:52"));
+    let document = json!({ "uri": editor.uri("fleet.composite") });
+    let range = json!({ "start": { "line": 1, "character": 54 }, "end": { "line": 1, "character": 54 } });
+    let asked = json!({ "textDocument": document, "range": range, "context": { "diagnostics": [] } });
+    let fixes = editor.ask("textDocument/codeAction", asked);
+    let fix = &fixes["result"][0];
+    assert_eq!(fix["title"], "Replace `saoms.Robto` with `saoms.Robot`");
+    assert_eq!(fix["edit"]["changes"][editor.uri("fleet.composite")][0]["newText"], "saoms.Robot");
+    let position = json!({ "line": 2, "character": 17 });
+    let renamed = json!({ "textDocument": document, "position": position, "newName": "Robot" });
+    let answer = editor.ask("textDocument/rename", renamed);
+    assert_eq!(answer["result"]["changes"][editor.uri("fleet.composite")].as_array().unwrap().len(), 2);
+    let refused = json!({ "textDocument": document, "position": position, "newName": "a/b" });
+    assert_eq!(editor.ask("textDocument/rename", refused)["error"]["code"], -32803);
+    // The layout is that of `saoms fmt`.
+    editor.change("fleet.composite", 2, json!([{ "text": text.replace("  <wire", "<wire") }]));
+    let options = json!({ "tabSize": 8, "insertSpaces": false });
+    let formatted =
+        editor.ask("textDocument/formatting", json!({ "textDocument": document, "options": options }));
+    let laid_out = formatted["result"][0]["newText"].as_str().unwrap();
+    assert!(laid_out.contains("\n  <wire source"), "{laid_out}");
+    assert_eq!(editor.end(), 0);
+}

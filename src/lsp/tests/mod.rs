@@ -3,3 +3,4 @@
 mod broken;
 mod hover;
 mod names;
+mod session;
