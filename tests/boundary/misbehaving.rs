@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+use saoms_api::{PropertyValue, Saved};
+use saoms_core::plugin::Plugin;
+use saoms_core::registry::Registry;
+
 use crate::build::library;
 use crate::run::{Run, component, fleet, property, second};
 
@@ -91,6 +95,21 @@ fn a_panic_in_a_service_fails_the_provider_and_its_caller_hears_of_it() {
     assert_eq!(run.code, Some(1), "{}", run.text);
     assert!(run.reasons().contains("no more of serve"), "{}\n{}", run.reasons(), run.text);
     assert!(run.reasons().contains("Caller") && run.reasons().contains("Bad"), "{}", run.reasons());
+}
+
+#[test]
+fn a_panic_in_what_a_reload_calls_is_a_failure() {
+    let mut registry = Registry::new();
+    Plugin::open(&library("bad")).unwrap().register(&mut registry).unwrap();
+    let made = |at: &str| {
+        let values = [("at", at), ("does", "panic")];
+        let values = values.map(|(name, value)| (name.to_owned(), PropertyValue::from(value)));
+        registry.get("bad.Actor").unwrap().construct(&values).unwrap()
+    };
+    let failure = made("save").save().map(drop).unwrap_err();
+    assert!(failure.message().ends_with("no more of save"), "{failure}");
+    let failure = made("restore").restore(&Saved::default()).unwrap_err();
+    assert!(failure.message().ends_with("no more of restore"), "{failure}");
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
-use saoms_api::{Class, Component, Context, Failure, Message, Publisher, ReportValue, Subscription, Topic, record};
+use saoms_api::{
+    Class, Component, Context, Failure, Message, Publisher, ReportValue, Subscription, Topic, record,
+};
 
 /// Each piece of memory begins with a word that tells whose it is.
 struct Marked;

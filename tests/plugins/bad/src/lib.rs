@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use saoms_api::{
     Class, Component, Context, Effector, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
-    Properties, Publisher, Record, Subscription, Topic, interface, record,
+    Properties, Publisher, Record, Saved, Subscription, Topic, interface, record,
 };
 
 /// A message.
@@ -110,6 +110,16 @@ impl Component for Actor {
         self.properties.act("shutdown");
         Ok(())
     }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        self.properties.act("save");
+        Ok(Saved::default())
+    }
+
+    fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
+        self.properties.act("restore");
+        Ok(())
+    }
 }
 
 impl Callee for Actor {
@@ -211,7 +221,12 @@ impl Loop for Switch {
         Ok(Some(record!("switches it on")))
     }
 
-    fn execute(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+    fn execute(
+        &mut self,
+        _: Record,
+        knowledge: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<(), Failure> {
         self.properties.act("execute");
         let brighter = self.brightness.get(knowledge)? + 1;
         self.brightness.set(knowledge, brighter)

@@ -117,7 +117,10 @@ impl Component for Reader {
         }
         for area in context.receive(&self.area) {
             context.count("area.width", i64::from(area.width));
-            context.count("area.blocked", i64::from(area.blocked.iter().map(|row| row.count_ones()).sum::<u32>()));
+            context.count(
+                "area.blocked",
+                i64::from(area.blocked.iter().map(|row| row.count_ones()).sum::<u32>()),
+            );
         }
         Ok(())
     }

@@ -263,8 +263,16 @@ unsafe extern "C" fn destroy(this: *mut c_void) {
     drop(unsafe { Box::from_raw(this.cast::<State>()) });
 }
 
-static COMPONENT: ComponentTable =
-    ComponentTable { size: size_of::<ComponentTable>(), initialize, execute, shutdown, serve, destroy };
+static COMPONENT: ComponentTable = ComponentTable {
+    size: size_of::<ComponentTable>(),
+    initialize,
+    execute,
+    shutdown,
+    serve,
+    destroy,
+    save: None,
+    restore: None,
+};
 static CLASS: ClassTable =
     ClassTable { size: size_of::<ClassTable>(), construct, component: &raw const COMPONENT };
 static CLASSES: &[&ClassTable] = &[&CLASS];
