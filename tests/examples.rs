@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
 
 use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::Duration;
@@ -130,4 +131,21 @@ fn what_the_examples_offer_is_listed_without_running_them() {
         let listed = saoms(&["components", name, "--plugin", library(package).to_str().unwrap()]);
         assert!(listed.status.success() && text(&listed).contains(expected), "{}", text(&listed));
     }
+}
+
+#[test]
+fn rules_over_fleets_take_a_loaded_robot_with_a_camera_for_a_robot() {
+    let folder = tempfile::tempdir().unwrap();
+    let composite = folder.path().join("fleet.composite");
+    let fleet = fs::read_to_string(root().join("plugins/camera/fleet.composite")).unwrap();
+    fs::write(&composite, fleet.replace("name=\"ID\" value=\"Robot2\"", "name=\"ID\" value=\"Other1\""))
+        .unwrap();
+    let library = library("saoms_camera");
+    let checked = saoms(&["check", composite.to_str().unwrap(), "--plugin", library.to_str().unwrap()]);
+    assert_eq!(checked.status.code(), Some(2));
+    assert!(
+        text(&checked).contains("robots `Robot1` and `Robot2` both have the number 1"),
+        "{}",
+        text(&checked)
+    );
 }

@@ -22,7 +22,11 @@
 #define SAOMS_METADATA __attribute__((used, section(".saoms.plugin")))
 
 // The function that the metadata name as the entry: `SAOMS_EXPORT const SaomsPluginTable *my_entry(uint32_t version)`.
+#ifdef __cplusplus
+#define SAOMS_EXPORT extern "C" __attribute__((visibility("default")))
+#else
 #define SAOMS_EXPORT __attribute__((visibility("default")))
+#endif
 
 struct SaomsHostHandle;
 

@@ -18,8 +18,15 @@ pub struct CameraRobotProperties {
 }
 
 /// A robot that brings luggage as any other, and publishes what its camera sees.
+///
+/// The manual's `Robot999` is one with its number, its charger and its battery set.
 #[derive(Debug, Class)]
-#[class(name = "camera.Robot", periodic, publishes(CAMERA))]
+#[class(
+    name = "camera.Robot",
+    periodic,
+    publishes(CAMERA),
+    also("robot.Robot999", number = 999, chargeX = 0, chargeY = 1, discharge = 2.0)
+)]
 pub struct CameraRobot {
     #[extends]
     robot: Robot,
