@@ -59,11 +59,11 @@ fn robots_stay_where_one_shift_follows_another() {
 fn only_as_many_are_sent_away_as_were_awaked() {
     assert_eq!(
         master("", "at 3s landing 6", &["1", "2", "3 asleep=true"]),
-        "3.500 s awakes robot 3\n3.500 s finds no robot asleep in place of 2 that are needed\n28.500 s sends under charge robot 3"
+        "3.500 s awakes robot 3\n3.500 s finds 2 robots too few asleep\n28.500 s sends under charge robot 3"
     );
     // Where nobody sleeps, nobody is called, least of all a robot 0.
     let run = run("", "at 3s landing 4", &["1", "2"]);
-    assert_eq!(run.log("MRMS"), ["3.500 s finds no robot asleep in place of 2 that are needed"]);
+    assert_eq!(run.log("MRMS"), ["3.500 s finds 2 robots too few asleep"]);
 }
 
 #[test]

@@ -1,8 +1,11 @@
 //! The map of a fleet, as rules look at it.
 
+use std::ops::Range;
+use std::time::Duration;
+
 use saoms_api::{Finding, FleetView, Place};
 
-use crate::environment::{Environment, Happening, Scenario, Spot, Written};
+use crate::environment::{Drawn, Environment, Happening, Scenario, Spot, Written};
 use crate::grid::{Block, Map};
 use crate::world::{World, WorldProperties};
 
@@ -60,13 +63,24 @@ pub(super) struct Luggage {
     pub(super) index: usize,
     /// Which of its texts.
     text: usize,
+    /// The time from one piece to the next, where they never end.
+    pub(super) endless: Option<Drawn<Duration>>,
     pub(super) from: Written<Spot>,
     pub(super) to: Written<Spot>,
 }
 
 impl Luggage {
     pub(super) fn place(&self, spot: &Written<Spot>) -> Place {
-        Place::property("scenario").part(self.text, spot.bytes.clone()).in_component(self.index)
+        self.part(spot.bytes.clone())
+    }
+
+    /// Where both ends are written.
+    pub(super) fn whole(&self) -> Place {
+        self.part(self.from.bytes.start..self.to.bytes.end)
+    }
+
+    fn part(&self, bytes: Range<usize>) -> Place {
+        Place::property("scenario").part(self.text, bytes).in_component(self.index)
     }
 }
 
@@ -77,7 +91,8 @@ pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<Luggage> {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
         for line in scenario.lines() {
             if let Happening::Luggage { from, to } = &line.happening {
-                all.push(Luggage { index, text: line.text, from: from.clone(), to: to.clone() });
+                let endless = (line.times.is_none() && line.until.is_none()).then_some(line.every);
+                all.push(Luggage { index, text: line.text, endless, from: from.clone(), to: to.clone() });
             }
         }
     }

@@ -9,7 +9,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5009",
         name: "unused-world",
-        meaning: "Blocks of a world are blocked, and the robots of the fleet do not know: none of them is wired to it.",
+        meaning: "A fleet has a world, and none of its robots is wired to it: they move, collect and deposit without it.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -25,9 +25,12 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let is_unused = |index: usize| {
         fleet.components().iter().all(|one| one.wires.iter().all(|(_, target)| *target != index))
     };
-    let unused = areas(fleet).into_iter().filter(|area| !area.map.is_open() && is_unused(area.index));
+    let unused = areas(fleet).into_iter().filter(|area| is_unused(area.index));
     let findings = unused.map(|area| {
-        let message = "no robot is wired to this world, so robots move through its blocked blocks";
+        let message = match area.map.is_open() {
+            true => "no robot is wired to this world, so it sees neither robots nor what they deliver",
+            false => "no robot is wired to this world, so robots move through its blocked blocks",
+        };
         let path = fleet.components()[area.index].path;
         let help = format!("give each robot in it a `<reference name=\"world\" target=\"{path}\"/>`");
         Finding::new(Place::component(area.index), message).help(help)

@@ -23,7 +23,7 @@ pub struct WorldProperties {
     pub(crate) move_time: Duration,
     /// How long a robot collects or deposits luggage.
     #[property(default = "0ms", range = "0ms"..="1h")]
-    pub(super) handling_time: Duration,
+    pub(crate) handling_time: Duration,
 }
 
 /// What to do with several blocks in one text.

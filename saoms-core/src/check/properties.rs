@@ -214,6 +214,7 @@ fn report_unknown(property: &Property, slots: &Slots<'_>, report: &mut Report<'_
     let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
     report.push(match is_task {
         true => one.help(format!("{of} is passive: it is never executed and has no task properties")),
+        false if slots.names().next().is_none() => one.help(format!("{of} has no properties at all")),
         false => one,
     });
 }

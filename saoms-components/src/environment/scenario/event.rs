@@ -15,7 +15,16 @@ pub(super) fn read(words: &mut Words<'_>) -> Result<Happening, TextFault> {
         "luggage" => {
             let from = spot(words)?;
             words.one_of(&["to"], "`to` and the block to bring it to")?;
-            Happening::Luggage { from, to: spot(words)? }
+            let to = spot(words)?;
+            if let (Some(start), Some(end)) = (from.value.block(), to.value.block())
+                && start == end
+            {
+                let message = format!("found {end}, where the luggage is already: expected another block");
+                return Err(words
+                    .fault(words.text(&to.bytes), message)
+                    .help("luggage has to be brought from one block to another one"));
+            }
+            Happening::Luggage { from, to }
         }
         "landing" => Happening::Landing(drawn(words, pieces)?),
         "takeoff" => Happening::Takeoff(drawn(words, pieces)?),

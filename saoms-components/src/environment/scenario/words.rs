@@ -76,6 +76,11 @@ impl<'a> Words<'a> {
         bytes(self.text, word)
     }
 
+    /// What is written there.
+    pub(super) fn text(&self, bytes: &Range<usize>) -> &'a str {
+        &self.text[bytes.clone()]
+    }
+
     /// From one word to behind another.
     pub(super) fn span(&self, first: &str, last: &str) -> &'a str {
         &self.text[self.bytes(first).start..self.bytes(last).end]

@@ -59,14 +59,20 @@ impl Recordable for Workload {
     fn record(&self) -> Record {
         let Workload { pieces, needed, released } = *self;
         match (needed, released) {
-            (0, _) => record!("the shift of {released} robots is over", released),
-            (_, 0) => {
-                record!("{pieces} pieces of luggage are expected: needs {needed} robots", pieces, needed)
+            (0, _) => {
+                record!("the shift of {released} {robots} is over", released, robots = robots(released))
             }
-            _ => record!(
-                "{pieces} pieces of luggage are expected: needs {needed} robots, while the shift of {released} is over",
+            (_, 0) => record!(
+                "expects luggage, {pieces} more: needs {needed} {robots}",
                 pieces,
                 needed,
+                robots = robots(needed)
+            ),
+            _ => record!(
+                "expects luggage, {pieces} more: needs {needed} {robots}, while the shift of {released} is over",
+                pieces,
+                needed,
+                robots = robots(needed),
                 released
             ),
         }
@@ -76,9 +82,11 @@ impl Recordable for Workload {
 impl Recordable for AwakeAsleepDecision {
     fn record(&self) -> Record {
         match *self {
-            AwakeAsleepDecision::Awake { robots, .. } => record!("awakes {robots} robots", robots),
-            AwakeAsleepDecision::Asleep { robots, .. } => {
-                record!("sends {robots} robots under charge", robots)
+            AwakeAsleepDecision::Awake { robots: count, .. } => {
+                record!("awakes {count} {robots}", count, robots = robots(count))
+            }
+            AwakeAsleepDecision::Asleep { robots: count, .. } => {
+                record!("sends {count} {robots} under charge", count, robots = robots(count))
             }
         }
     }
@@ -161,13 +169,13 @@ impl AwakeAsleepMS {
     /// Calls as many robots as there are, up to this number; how many those are.
     fn call(
         &self,
-        robots: u32,
+        count: u32,
         awake: bool,
         knowledge: &mut MasterRobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<u32, Failure> {
         let mut called = Vec::new();
-        while called.len() < robots as usize {
+        while called.len() < count as usize {
             let next = if awake { knowledge.next_to_awake() } else { knowledge.next_to_charge() };
             let Some(robot) = next else { break };
             knowledge.note_call(robot, awake);
@@ -182,16 +190,20 @@ impl AwakeAsleepMS {
         if !called.is_empty() {
             context.info(format_args!("{what} {}", Robots(&called)));
         }
-        let missing = (robots as usize).saturating_sub(called.len());
+        let missing = (count as usize).saturating_sub(called.len());
         if missing > 0 && awake {
-            context.info(format_args!("finds no robot asleep in place of {missing} that are needed"));
-            context.effect(record!(
-                "finds {missing} robots too few",
-                missing = u32::try_from(missing).unwrap_or(u32::MAX)
-            ));
+            let missing = u32::try_from(missing).unwrap_or(u32::MAX);
+            let robots = robots(missing);
+            context.info(format_args!("finds {missing} {robots} too few asleep"));
+            context.effect(record!("finds {missing} {robots} too few asleep", missing, robots));
         }
         Ok(u32::try_from(called.len()).unwrap_or(u32::MAX))
     }
+}
+
+/// The noun after so many.
+const fn robots(count: u32) -> &'static str {
+    if count == 1 { "robot" } else { "robots" }
 }
 
 /// Robots as a sentence lists them.

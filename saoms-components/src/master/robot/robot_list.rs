@@ -62,8 +62,9 @@ impl Loop for RobotListMS {
         }
         context.report("robots.active", i64::from(robots));
         Ok(Some(record!(
-            "knows of {robots} robots, of which {asleep} sleep",
-            robots,
+            "knows of {count} {robots}, asleep: {asleep}",
+            count = robots,
+            robots = if robots == 1 { "robot" } else { "robots" },
             asleep = knowledge.asleep
         )))
     }

@@ -54,7 +54,11 @@ impl Loop for RobotListMS {
         let robots = knowledge.lists.active.len();
         let changed = std::mem::replace(&mut self.known, robots) != robots;
         Ok(changed.then(|| {
-            record!("knows of {robots} other robots", robots = u32::try_from(robots).unwrap_or(u32::MAX))
+            record!(
+                "knows of {count} other {robots}",
+                count = u32::try_from(robots).unwrap_or(u32::MAX),
+                robots = if robots == 1 { "robot" } else { "robots" }
+            )
         }))
     }
 

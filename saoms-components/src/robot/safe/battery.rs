@@ -16,6 +16,8 @@ use crate::robot::{RobotKnowledge, Trouble};
 )]
 pub struct BatteryMS {
     charging: bool,
+    /// Whether the robot is in charge, as the others learn once the loop has decided.
+    in_charge: bool,
     /// How often other ways had become necessary when it looked at the way to its charger.
     changes: u32,
 }
@@ -46,6 +48,13 @@ pub enum BatterySymptom {
         /// What is in it, in percent.
         battery: f64,
     },
+    /// The robot begins to be in charge, or no longer is.
+    Charge {
+        /// Whether it is.
+        begins: bool,
+        /// What is in it, in percent.
+        battery: f64,
+    },
 }
 
 /// What to do about it.
@@ -59,6 +68,8 @@ pub enum BatteryDecision {
     Leave,
     /// Charge at another charger from now on.
     Use(Block),
+    /// Be in charge, or no longer.
+    BeInCharge(bool),
 }
 
 impl Recordable for BatterySymptom {
@@ -79,6 +90,12 @@ impl Recordable for BatterySymptom {
                 )
             }
             BatterySymptom::Charged { battery } => record!("has charged up to {battery} %", battery),
+            BatterySymptom::Charge { begins: true, battery } => {
+                record!("is at its charger with {battery} %", battery)
+            }
+            BatterySymptom::Charge { begins: false, battery } => {
+                record!("gains nothing from its charger any more, with {battery} %", battery)
+            }
         }
     }
 }
@@ -90,6 +107,8 @@ impl Recordable for BatteryDecision {
             BatteryDecision::Stop => record!("stays where it is"),
             BatteryDecision::Leave => record!("has enough for what it has to do"),
             BatteryDecision::Use(other) => record!("charges at {other} from now on", other),
+            BatteryDecision::BeInCharge(true) => record!("is in charge"),
+            BatteryDecision::BeInCharge(false) => record!("is in charge no more"),
         }
     }
 }
@@ -129,7 +148,7 @@ impl Loop for BatteryMS {
         }
         let battery = knowledge.battery.percent();
         let must_charge = knowledge.energy.must_charge();
-        Ok(if knowledge.is_at_charger() {
+        let symptom = if knowledge.is_at_charger() {
             (must_charge && knowledge.may_leave()).then_some(BatterySymptom::Charged { battery })
         } else if knowledge.battery.is_empty() {
             Some(BatterySymptom::Empty)
@@ -138,7 +157,10 @@ impl Loop for BatteryMS {
         } else {
             let (left, home) = (knowledge.battery.executions_left(), knowledge.home(knowledge.next));
             Some(BatterySymptom::Low { battery, left, home })
-        })
+        };
+        let begins = self.in_charge;
+        let changes = knowledge.variables.in_charge != begins;
+        Ok(symptom.or(changes.then_some(BatterySymptom::Charge { begins, battery })))
     }
 
     fn plan(
@@ -152,6 +174,7 @@ impl Loop for BatteryMS {
             BatterySymptom::Empty => BatteryDecision::Stop,
             BatterySymptom::Charged { .. } => BatteryDecision::Leave,
             BatterySymptom::CutOff { other, .. } => BatteryDecision::Use(other),
+            BatterySymptom::Charge { begins, .. } => BatteryDecision::BeInCharge(begins),
         }))
     }
 
@@ -161,7 +184,10 @@ impl Loop for BatteryMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        // Whatever else there is to decide, so that the journal has it.
+        knowledge.variables.in_charge = self.in_charge;
         match decision {
+            BatteryDecision::BeInCharge(_) => {}
             BatteryDecision::Charge => {
                 knowledge.energy.turn_back();
                 let (name, battery) = (&knowledge.name, &knowledge.battery);
@@ -209,8 +235,7 @@ impl BatteryMS {
     /// Takes what an execution needs, or gives what it gains.
     fn use_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
         if !knowledge.is_at_charger() {
-            self.charging = false;
-            knowledge.variables.in_charge = false;
+            (self.charging, self.in_charge) = (false, false);
             return knowledge.use_battery();
         }
         let charging = !knowledge.battery.is_full();
@@ -223,6 +248,6 @@ impl BatteryMS {
         } else if charged {
             context.info(format_args!("is fully charged"));
         }
-        knowledge.variables.in_charge = charging || knowledge.variables.asleep;
+        self.in_charge = charging || knowledge.variables.asleep;
     }
 }

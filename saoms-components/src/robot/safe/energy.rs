@@ -196,18 +196,28 @@ impl RobotKnowledge {
     fn is_within(&mut self, job: &Job, full: u32) -> bool {
         [job.from, job.to].into_iter().all(|block| {
             let way = self.routes.between(block, self.charge_block);
-            let round = way.saturating_mul(2).saturating_mul(self.energy.pace.moving);
-            round.saturating_add(self.energy.pace.handling).saturating_add(self.least_reserve(way)) <= full
+            is_within(way, self.energy.pace.moving, self.energy.pace.handling, full)
         })
     }
 
     /// What is kept back at least where so many moves lead to the charger.
     fn least_reserve(&self, way: u32) -> u32 {
-        LEAST_RESERVE.saturating_add(way.saturating_mul(self.energy.pace.moving) / 3)
+        least_reserve(way, self.energy.pace.moving)
     }
 
     /// Executions from a block to the charger.
     pub(super) fn home(&mut self, from: Block) -> u32 {
         self.energy.pace.job(self.routes.between(from, self.charge_block), 0)
     }
+}
+
+/// Whether a full battery of so many executions lasts for so many moves from the charger, collecting or depositing there, and the way back, where
+/// a move and handling luggage take these executions. A robot takes no job beyond that.
+pub(crate) fn is_within(way: u32, moving: u32, handling: u32, full: u32) -> bool {
+    let round = way.saturating_mul(2).saturating_mul(moving);
+    round.saturating_add(handling).saturating_add(least_reserve(way, moving)) <= full
+}
+
+fn least_reserve(way: u32, moving: u32) -> u32 {
+    LEAST_RESERVE.saturating_add(way.saturating_mul(moving) / 3)
 }

@@ -67,9 +67,12 @@ impl RobotKnowledge {
         if let Some(goal) = goal {
             self.routes.head_for(goal);
         }
+    }
+
+    /// Whether it goes to its charger after its job, and whether it is on the way there.
+    pub(super) fn homeward(&self) -> (bool, bool) {
         let homeward = self.energy.must_charge() || self.relieved;
-        self.variables.ready_to_go_under_charge = homeward;
-        self.variables.reaching_charge =
-            homeward && goal == Some(self.charge_block) && urgency != Urgency::None;
+        let Leg { goal, urgency, .. } = self.leg;
+        (homeward, homeward && goal == Some(self.charge_block) && urgency != Urgency::None)
     }
 }

@@ -32,5 +32,6 @@ pub use robot_list::RobotListMS;
 pub use robot_state::RobotMS;
 
 pub(super) use energy::Energy;
+pub(crate) use energy::is_within;
 pub(super) use leg::Leg;
 pub(super) use traffic::Traffic;

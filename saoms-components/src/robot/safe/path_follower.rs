@@ -3,8 +3,8 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable
 use crate::grid::Block;
 use crate::hardware::Action;
 use crate::messages::{IMMOVABLE, POSITION, Position};
-use crate::robot::RobotKnowledge;
 use crate::robot::actions::Outcome;
+use crate::robot::{RobotKnowledge, Variables};
 
 use super::leg::Urgency;
 use super::traffic::Claim;
@@ -157,6 +157,10 @@ impl Loop for PathFollowerMS {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        if !knowledge.is_bound() {
+            let variables = knowledge.homeward();
+            (knowledge.variables.ready_to_go_under_charge, knowledge.variables.reaching_charge) = variables;
+        }
         let goes_on = match decision {
             PathDecision::Hold => {
                 knowledge.next = knowledge.block;
@@ -189,6 +193,10 @@ impl PathFollowerMS {
     /// Whether the robot is where it wants to be, in nobody's way, and the others know it: then there is nothing to do.
     fn rests(&self, knowledge: &mut RobotKnowledge) -> bool {
         let at = knowledge.next;
+        let Variables { ready_to_go_under_charge, reaching_charge, .. } = knowledge.variables;
+        if (ready_to_go_under_charge, reaching_charge) != knowledge.homeward() {
+            return false;
+        }
         let on_the_way = knowledge.leg.urgency != Urgency::None || knowledge.block != at;
         if on_the_way || knowledge.traffic.wanted(at).is_some() {
             return false;

@@ -172,7 +172,7 @@ impl Recordable for CriticalDecision {
                 record!("charges first: that takes {needs} executions", needs)
             }
             CriticalDecision::Refuse(CriticalSituation { critical, .. }) => {
-                record!("leaves robot {critical} to others: its battery never lasts for that", critical)
+                record!("leaves robot {critical} to others: it can never do that", critical)
             }
             CriticalDecision::Heal(CriticalSituation { critical, kind, luggage, to, .. }) => match kind {
                 CriticalKind::CarriesLuggage => {

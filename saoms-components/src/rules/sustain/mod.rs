@@ -1,0 +1,103 @@
+//! Work that the robots cannot do with the charge that they get.
+//!
+//! Every robot has its own charger, where it starts (S5003 holds that), so it is the work that may be too much: luggage farther off than a full
+//! battery lasts, or coming faster for ever than the robots can bring it and charge.
+
+mod load;
+mod reach;
+
+use std::time::Duration;
+
+use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+
+use super::map::{Area, area, luggage};
+use super::robots::{Known, may_be_others, robots};
+use crate::grid::Block;
+use crate::robot::safe::is_within;
+use crate::robot::{Battery, Policy};
+
+use load::overloaded;
+use reach::{Ways, out_of_reach};
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5006",
+        name: "unsustainable",
+        meaning: "The robots cannot do the work with the charge that they get: luggage is farther off than a full battery lasts, or comes faster for ever than they can bring it and charge.",
+        severity: Severity::Error,
+        rule: None,
+    },
+    judges_parts: false,
+    check,
+};
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
+    // The classic rules drive on with an empty battery, and of other robots and loops nothing is known.
+    let is_known = |robot: &Known| {
+        let loops = &fleet.components()[robot.index].loops;
+        robot.properties.policy == Policy::Safe && loops.iter().all(|name| name.starts_with("saoms."))
+    };
+    if robots.is_empty() || !robots.iter().all(is_known) || may_be_others(fleet) {
+        return Vec::new();
+    }
+    let ranges: Vec<Range> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();
+    let mut ways = Ways::on(&area.map);
+    let luggage = luggage(fleet);
+    let mut findings: Vec<Finding> =
+        luggage.iter().filter_map(|piece| out_of_reach(&area, &ranges, piece, &mut ways)).collect();
+    // What is never brought is no load.
+    if findings.is_empty() {
+        findings.extend(overloaded(&area, &ranges, &luggage, &mut ways));
+    }
+    findings
+}
+
+/// How far and fast a robot gets.
+struct Range {
+    charger: Block,
+    /// Executions that a full battery lasts; `u32::MAX` where nothing drains it.
+    full: u32,
+    /// Executions that a move takes.
+    moving: u32,
+    /// Executions that collecting or depositing takes.
+    handling: u32,
+    /// Seconds from one execution to the next.
+    period: f64,
+}
+
+impl Range {
+    fn of(fleet: &FleetView<'_>, area: &Area, robot: &Known) -> Range {
+        let period = fleet.components()[robot.index].period.unwrap_or_default();
+        // A robot asks in each execution whether its action is over. Without a world each is over at once.
+        let executions = |time: Duration| match robot.world {
+            Some(world) if world == area.index => {
+                let executions = time.as_nanos().div_ceil(period.as_nanos().max(1));
+                u32::try_from(executions).unwrap_or(u32::MAX).max(1)
+            }
+            _ => 1,
+        };
+        Range {
+            charger: robot.charger,
+            full: Battery::new(100.0, robot.properties.discharge).executions_when_full(),
+            moving: executions(area.properties.move_time),
+            handling: executions(area.properties.handling_time),
+            period: period.as_secs_f64(),
+        }
+    }
+
+    /// Whether it may get there and back. It may charge between collecting and depositing, so that it never has to do more at once.
+    fn reaches(&self, moves: u32) -> bool {
+        is_within(moves, self.moving, self.handling, self.full)
+    }
+
+    /// How many moves from its charger it may go.
+    fn most(&self) -> u32 {
+        let (mut reached, mut beyond) = (0, self.full / 2 / self.moving + 1);
+        while reached + 1 < beyond {
+            let middle = reached + (beyond - reached) / 2;
+            if self.reaches(middle) { reached = middle } else { beyond = middle }
+        }
+        reached
+    }
+}
