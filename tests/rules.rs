@@ -314,9 +314,9 @@ fn several_blocked_blocks_in_one_text_are_told_how_to_write_them() {
 
 #[test]
 fn luggage_that_is_there_already_is_told() {
-    let found = with_scenario("...\n...", "at 1s luggage (2,0) to (2,0); at 1s luggage (2,0) to (0,0)..(2,0)");
-    let message =
-        "error S3014 component `Environment`: property `scenario`: found (2,0), where the luggage is already: expected another block";
+    let found =
+        with_scenario("...\n...", "at 1s luggage (2,0) to (2,0); at 1s luggage (2,0) to (0,0)..(2,0)");
+    let message = "error S3014 component `Environment`: property `scenario`: found (2,0), where the luggage is already: expected another block";
     assert_eq!(found, [message]);
 }
 
