@@ -103,7 +103,10 @@ fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
         (false, Some(_)) => inside.start.min(at)..inside.end.max(at),
         (false, None) => inside.start.min(at)..at,
     };
-    values::complete(scene, property, range, at)
+    // What is replaced is within a line, as the protocol asks.
+    let line_start = file.text[..at].rfind(['\n', '\r']).map_or(0, |found| found + 1);
+    let line_end = file.text[at..].find(['\n', '\r']).map_or(file.text.len(), |found| at + found);
+    values::complete(scene, property, range.start.max(line_start)..range.end.min(line_end), at)
 }
 
 /// A proposal of a value.
