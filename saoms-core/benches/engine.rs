@@ -243,6 +243,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
                 .map(|(name, value)| (name.to_owned(), PropertyValue::from(value.as_str())))
                 .to_vec(),
             task: Some(TaskSettings::from_values(&task, Vec::new())?),
+            library: None,
             references: Vec::new(),
             loops: Vec::new(),
         });

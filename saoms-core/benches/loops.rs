@@ -213,6 +213,7 @@ fn start(changes: Option<&str>) -> Result<Fleet, Box<dyn std::error::Error>> {
         class: Arc::clone(class),
         values: Vec::new(),
         task: Some(TaskSettings::from_values(&task, Vec::new())?),
+        library: None,
         references: Vec::new(),
         loops: changes.map(of).into_iter().collect(),
     }];

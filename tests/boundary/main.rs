@@ -4,6 +4,7 @@
 
 mod build;
 mod misbehaving;
+mod named;
 mod refused;
 mod run;
 mod together;

@@ -52,6 +52,7 @@ fn assembly(text: &str) -> Assembly {
                 TaskSettings::from_values(&values, Vec::new()).unwrap()
             }),
             class,
+            library: None,
             values: Vec::new(),
             references: Vec::new(),
             loops: Vec::new(),

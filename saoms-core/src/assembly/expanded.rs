@@ -75,7 +75,11 @@ impl Writer {
             attributes.push(("s:path", &component.path));
         }
         self.open("component", &attributes);
-        self.empty("implementation.java", &[("class", component.class.name())]);
+        let class = ("class", component.class.name());
+        match &component.library {
+            None => self.empty("implementation.java", &[class]),
+            Some(library) => self.empty("implementation.rust", &[class, ("library", library)]),
+        }
         let presets = component.class.presets();
         for (name, value) in component.values.iter().filter(|value| !presets.contains(value)) {
             self.property(name, value);

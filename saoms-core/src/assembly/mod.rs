@@ -31,6 +31,9 @@ pub struct ComponentSpec {
     pub path: String,
     /// What it is an instance of.
     pub class: Arc<Class>,
+    /// The library that a composite names for the class: a path from the folder of the first composite, or an absolute one. `None` where
+    /// none is named.
+    pub library: Option<String>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: Vec<(String, PropertyValue)>,
     /// How a periodic component runs; `None` for a passive one.

@@ -1,6 +1,7 @@
 //! Which class each component is of.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use super::fleet::{Fleet, Kind};
@@ -11,7 +12,7 @@ use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Par
 use crate::registry::{
     Class, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration, TopicDeclaration,
 };
-use crate::source::Text;
+use crate::source::{Sources, Text};
 
 /// How many names are offered in place of one that a library does not have.
 const OFFERED: usize = 3;
@@ -202,6 +203,21 @@ fn is_in_library(
         report.push(found);
     }
     false
+}
+
+/// The library that a component's composite names for its class, as the first composite would name it.
+pub(super) fn library(
+    component: &Component,
+    contribution: &Contribution,
+    sources: &Sources,
+) -> Option<String> {
+    let implementation = component.implementation.as_ref()?;
+    let Some(LibraryLink::To(path)) = contribution.library(implementation.origin) else { return None };
+    let first = contribution.asked_for().first()?;
+    let folder = Path::new(sources.get(first.file()).path()).parent().unwrap_or(Path::new(""));
+    let from_there = path.strip_prefix(folder).map(Path::to_owned).ok();
+    let path = from_there.or_else(|| std::path::absolute(path).ok()).unwrap_or_else(|| path.clone());
+    Some(path.display().to_string())
 }
 
 fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {

@@ -135,7 +135,8 @@ pub fn check(
             .collect(),
         false => Vec::new(),
     };
-    let assembly = assemble(&fleet, &classes, resolved, &wiring);
+    let assembly =
+        assemble(&fleet, &classes, resolved, &wiring, |one| classes::library(one, contribution, sources));
     if let Some(assembly) = assembly.as_ref().filter(|_| options.wiring) {
         traffic::check(assembly, &places, report);
     }
@@ -256,6 +257,7 @@ fn assemble(
     classes: &[ClassIndex<'_>],
     resolved: Vec<Option<Resolved<'_>>>,
     wiring: &Wiring,
+    library: impl Fn(&crate::model::Component) -> Option<String>,
 ) -> Option<Assembly> {
     // Components that composites implement are not there in a run: the others close ranks.
     let is_composite = |member: &fleet::Member<'_>| matches!(member.kind, Kind::Composite(_));
@@ -288,6 +290,7 @@ fn assemble(
         components.push(ComponentSpec {
             path: fleet.members[place].path().to_owned(),
             class: std::sync::Arc::clone(class.class),
+            library: library(fleet.members[place].component),
             values,
             task,
             references: references.collect(),
