@@ -108,6 +108,10 @@ pub(crate) struct FleetArguments {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(crate) settings: Vec<String>,
 
+    /// Make diagnostics of a code `allow`ed, a `note`, a `warning` or an `error` where composites say nothing else; may be repeated
+    #[arg(long = "severity", value_name = "CODE=LEVEL")]
+    pub(crate) severities: Vec<String>,
+
     #[command(flatten)]
     pub(crate) plugins: PluginArguments,
 

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, Setting, Variable, check};
+use saoms_core::check::{Options, Setting, SeveritySetting, Variable, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::load::{load_file, load_named, read, read_values};
 use saoms_core::model::{Composite, Contribution};
@@ -23,7 +23,8 @@ pub(crate) struct Checked {
     pub(crate) assembly: Option<Assembly>,
     contribution: Contribution,
     pub(crate) sources: Sources,
-    pub(crate) diagnostics: Vec<Diagnostic>,
+    /// Those that are kept for the record alone among them.
+    diagnostics: Vec<Diagnostic>,
 }
 
 /// Loads the files and checks them as one fleet, as it is asked.
@@ -37,7 +38,11 @@ pub(crate) fn checked(arguments: &FleetArguments, asked: Options) -> Result<Chec
     let settings = arguments.settings.iter();
     let settings: Vec<Setting> =
         settings.filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics)).collect();
-    let options = Options { settings, ..asked };
+    let severities = arguments.severities.iter();
+    let severities = severities
+        .filter_map(|text| SeveritySetting::parse("--severity", text, &mut sources, &mut diagnostics))
+        .collect();
+    let options = Options { settings, severities, ..asked };
     let search = search(&arguments.plugins, &arguments.files);
     Ok(checked_with(&arguments.files, arguments.max_size, options, registry, &search, sources, diagnostics))
 }
@@ -68,7 +73,7 @@ pub(crate) fn checked_with(
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
     let options = Options { variables, ..options };
     let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
-    Checked { assembly, contribution, sources, diagnostics: diagnostics.into_sorted() }
+    Checked { assembly, contribution, sources, diagnostics: diagnostics.into_all() }
 }
 
 impl Checked {
@@ -77,10 +82,14 @@ impl Checked {
         self.contribution.asked_for().first()
     }
 
+    /// The diagnostics that are not kept for the record alone.
+    pub(crate) fn told(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|one| !one.is_allowed())
+    }
+
     /// The diagnostics of at least this severity, as people read them.
     pub(crate) fn human(&self, least: Severity) -> String {
-        let shown: Vec<Diagnostic> =
-            self.diagnostics.iter().filter(|one| one.severity >= least).cloned().collect();
+        let shown: Vec<Diagnostic> = self.told().filter(|one| one.severity >= least).cloned().collect();
         human(&shown, &self.sources, std::io::stderr().is_terminal())
     }
 
@@ -96,6 +105,6 @@ impl Checked {
 
     /// How many diagnostics are of this severity.
     pub(crate) fn count(&self, severity: Severity) -> usize {
-        self.diagnostics.iter().filter(|one| one.severity == severity).count()
+        self.told().filter(|one| one.severity == severity).count()
     }
 }

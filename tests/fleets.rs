@@ -84,3 +84,18 @@ fn a_thousand_robots_are_too_many_for_the_queues_that_forty_fit_into() {
     let (_, shown) = text(&saoms(&["check", "--wiring", &path, "--set", "robots=40"], &[]));
     assert!(!shown.contains("S4013"), "{shown}");
 }
+
+#[test]
+fn severities_of_the_command_line_decide_the_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = robots(folder.path());
+    let check = |more: &[&str]| saoms(&[&["check", "--wiring", &path], more].concat(), &[]);
+    assert_eq!(check(&["--severity", "S4013=error"]).status.code(), Some(2));
+    let codes = ["S4010=allow", "S4011=allow", "S4013=allow", "S4014=allow"];
+    let options: Vec<&str> = codes.iter().flat_map(|code| ["--severity", code]).collect();
+    let allowed = check(&options);
+    assert_eq!((allowed.status.code(), text(&allowed).1), (Some(0), String::new()));
+    let run = saoms(&["run", &path, "--virtual", "--severity", "S3001=alow"], &[]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run).1.contains("replace it with `allow`"), "{}", text(&run).1);
+}

@@ -132,7 +132,8 @@ impl Checker {
         for (_, file) in found.sources.iter() {
             seen.insert(identity(Path::new(file.path())));
         }
-        for (path, one) in reported(&found.diagnostics, &found.sources) {
+        let told: Vec<_> = found.told().cloned().collect();
+        for (path, one) in reported(&told, &found.sources) {
             let known = files.entry(path).or_default();
             // Composites that several others name have their faults once.
             if !known.contains(&one) {

@@ -32,6 +32,7 @@ mod replicas;
 mod report;
 mod rules;
 mod setting;
+mod severities;
 mod slots;
 mod target;
 mod task;
@@ -64,6 +65,8 @@ use properties::{Checked, Giver, Written};
 pub(crate) use rename::topic_renames;
 use report::Report;
 pub use setting::Setting;
+use severities::Severities;
+pub use severities::SeveritySetting;
 use values::Values;
 pub use variable::Variable;
 use wires::Wiring;
@@ -93,6 +96,7 @@ pub fn check(
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly> {
+    let mut severities = Severities::of(contribution, options, registry, diagnostics);
     let report = &mut Report::new(sources, diagnostics);
     report.assumes = options.assume_classes;
     let replicas = Arena::new();
@@ -123,6 +127,7 @@ pub fn check(
         registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
     rules::check(&fleet, &classes, &resolved, &wiring, rules, report);
     report.finish();
+    severities.apply(0, report.diagnostics());
     if report.has_errors() {
         return None;
     }
@@ -138,9 +143,12 @@ pub fn check(
     let assembly =
         assemble(&fleet, &classes, resolved, &wiring, |one| classes::library(one, contribution, sources));
     if let Some(assembly) = assembly.as_ref().filter(|_| options.wiring) {
+        let known = report.diagnostics().len();
         traffic::check(assembly, &places, report);
+        severities.apply(known, report.diagnostics());
     }
-    assembly
+    severities.finish(options.wiring, report.diagnostics());
+    assembly.filter(|_| !report.has_errors())
 }
 
 /// What the properties of a component come to.

@@ -1,6 +1,6 @@
 //! What a check can be told beside the composites.
 
-use super::{Setting, Variable};
+use super::{Setting, SeveritySetting, Variable};
 use crate::source::Text;
 
 /// What a check can be told beside the composites.
@@ -10,6 +10,8 @@ pub struct Options {
     pub settings: Vec<Setting>,
     /// Environment variables that composite properties can take their values from.
     pub variables: Vec<Variable>,
+    /// Severities that count where composites say nothing else.
+    pub severities: Vec<SeveritySetting>,
     /// Whether what the registry does not know is taken as given: classes, and implementations of other kinds. There is no
     /// assembly then when a component has such a one.
     pub assume_classes: bool,

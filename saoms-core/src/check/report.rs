@@ -131,6 +131,11 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// All that was said.
+    pub(super) fn diagnostics(&mut self) -> &mut Diagnostics {
+        self.diagnostics
+    }
+
     pub(super) fn has_errors(&self) -> bool {
         self.diagnostics.has_errors() || self.copies.iter().any(|(one, ..)| one.severity == Severity::Error)
     }

@@ -112,6 +112,8 @@ codes! {
     EXPRESSION = "S2045" Error "expression": "An expression of a replica or a condition is malformed, or has no value.";
     REPLICAS = "S2046" Error "replicas": "What is said about the replicas of a component contradicts itself.";
     OVERRIDES = "S2047" Error "overrides": "A table of overrides is malformed, or is about replicas that do not exist.";
+    SEVERITY = "S2048" Error "severity": "A severity is set of a code that does not exist, or to none.";
+    SEVERITY_UNUSED = "S2049" Warning "severity-unused": "A composite lowers a severity, and there is nothing that it changes.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";
@@ -153,4 +155,35 @@ codes! {
     EFFECTOR_CLASH = "S4507" Error "effector-clash": "Two loops of a component change one effector.";
     ENTRY_REPEATED = "S4508" Error "entry-repeated": "A loop adds an entry that is there already.";
     LOOP_REFERENCE = "S4509" Error "loop-reference": "A loop has a reference of the same name as another one of the component, with another interface.";
+}
+
+/// Whether errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of every rule of a crate of
+/// components.
+pub fn is_judgement(code: &Code) -> bool {
+    const JUDGEMENTS: &[&Code] = &[
+        &UNKNOWN_ATTRIBUTE,
+        &MISSING_TARGET_NAMESPACE,
+        &MISPLACED_TEXT,
+        &COMPOSITE_REPEATED,
+        &CALL_CYCLE,
+        &INCLUDED_TWICE,
+        &INCLUDE_LOCAL,
+        &PROMOTED_MULTIPLICITY,
+        &PROMOTED_FIXED,
+        &TYPE_AND_ELEMENT,
+        &BINDING_REPEATED,
+        &SERVICE_BINDING_URI,
+        &COMPOSITE_VALUE_TYPE,
+        &COMPONENT_TYPE_REPEATED,
+        &COMPONENT_TYPE_MISSING,
+        &NOT_UNIQUE,
+    ];
+    JUDGEMENTS.contains(&code) || !ALL.contains(&code)
+}
+
+/// Whether a code is one of those that the wiring report adds.
+pub(crate) fn is_of_wiring(id: &str) -> bool {
+    [&TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR, &QUEUE, &READER_FASTER]
+        .into_iter()
+        .any(|code| code.id == id)
 }

@@ -82,6 +82,39 @@ impl Diagnostics {
         self.errors += changed;
     }
 
+    /// Lets severities be set: `set` changes the diagnostics from this place on. Those that are allowed count no more.
+    pub(crate) fn adjust(&mut self, from: usize, mut set: impl FnMut(&mut Diagnostic)) {
+        for at in from.min(self.items.len())..self.items.len() {
+            let one = &mut self.items[at];
+            let before = one.severity;
+            set(one);
+            let after = (!one.is_allowed()).then_some(one.severity);
+            let (code, file) = (one.code.id, one.location.file);
+            // Those that were not kept are as the last that was.
+            let is_last =
+                || !self.items[at + 1..].iter().any(|one| one.code.id == code && one.location.file == file);
+            let beyond = self.counts.get(&(file, code)).map_or(0, |count| count.number.saturating_sub(LIMIT));
+            let number = if beyond > 0 && is_last() { 1 + beyond as usize } else { 1 };
+            self.recount(before, number, usize::saturating_sub);
+            if let Some(after) = after {
+                self.recount(after, number, usize::saturating_add);
+            }
+        }
+    }
+
+    fn recount(&mut self, severity: Severity, number: usize, by: fn(usize, usize) -> usize) {
+        match severity {
+            Severity::Error => self.errors = by(self.errors, number),
+            Severity::Warning => self.warnings = by(self.warnings, number),
+            Severity::Note => {}
+        }
+    }
+
+    /// How many were kept.
+    pub(crate) fn len(&self) -> usize {
+        self.items.len()
+    }
+
     /// Whether one of them is an error: nothing may start.
     pub fn has_errors(&self) -> bool {
         self.errors > 0
@@ -107,8 +140,15 @@ impl Diagnostics {
         self.items.iter()
     }
 
-    /// All by file and place, with one more for each kind of which there were too many to keep.
-    pub fn into_sorted(mut self) -> Vec<Diagnostic> {
+    /// All that are to be told, by file and place, with one more for each kind of which there were too many to keep.
+    pub fn into_sorted(self) -> Vec<Diagnostic> {
+        let mut all = self.into_all();
+        all.retain(|one| !one.is_allowed());
+        all
+    }
+
+    /// The same together with those that are kept for the record alone.
+    pub fn into_all(mut self) -> Vec<Diagnostic> {
         for count in self.counts.values() {
             if let Some(place) = count.beyond {
                 let Code { id, name, .. } = count.code;

@@ -8,7 +8,8 @@ use crate::source::{Location, Sources};
 /// One object with all diagnostics, each with 1-based lines and columns in Unicode scalars, ends exclusive.
 ///
 /// `rule` is null when the diagnostic stems from no rule of the SCA specification. `help` holds what people are shown below
-/// the picture, the descriptions of suggestions included, a line each; it is null when there is nothing.
+/// the picture, the descriptions of suggestions included, a line each; it is null when there is nothing. Where the severity was set, `set` says
+/// to what, where and why; what is allowed is there with the severity that it would have.
 pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
     let all: Vec<Value> = diagnostics.iter().map(|one| diagnostic(one, sources)).collect();
     json!({ "diagnostics": all })
@@ -32,6 +33,11 @@ fn diagnostic(one: &Diagnostic, sources: &Sources) -> Value {
     object["help"] = help.into();
     object["labels"] = labels.collect();
     object["suggestions"] = suggestions.collect();
+    if let Some(set) = &one.set {
+        let mut by = placed(set.at, sources, "level", set.level.name());
+        by["reason"] = set.reason.as_deref().into();
+        object["set"] = by;
+    }
     object
 }
 

@@ -8,6 +8,7 @@ pub mod codes;
 mod collector;
 mod human;
 mod json;
+mod level;
 mod quoted;
 mod sarif;
 #[cfg(test)]
@@ -18,6 +19,7 @@ pub use codes::Code;
 pub use collector::Diagnostics;
 pub use human::human;
 pub use json::json;
+pub use level::{Level, SetBy};
 pub use quoted::quoted;
 pub use saoms_api::{Severity, nearest, nearest_few};
 pub use sarif::sarif;
@@ -72,6 +74,8 @@ pub struct Diagnostic {
     pub rule: Option<&'static str>,
     /// Ways to mend it, the likeliest first.
     pub suggestions: Vec<Suggestion>,
+    /// What set its severity, where something did.
+    pub set: Option<SetBy>,
 }
 
 impl Diagnostic {
@@ -87,7 +91,13 @@ impl Diagnostic {
             help: Vec::new(),
             rule: code.rule,
             suggestions: Vec::new(),
+            set: None,
         }
+    }
+
+    /// Whether it is kept for the record alone: it is not told, and counts for nothing.
+    pub fn is_allowed(&self) -> bool {
+        self.set.as_ref().is_some_and(|set| set.level == Level::Allow)
     }
 
     /// Sets what the picture says at the place.

@@ -62,6 +62,20 @@ fn result(one: &Diagnostic, codes: &[&Code], sources: &Sources) -> Value {
     if let Some(sca) = one.rule {
         result["properties"] = json!({ "tags": [sca] });
     }
+    if let Some(set) = &one.set {
+        // On the command line nobody says why.
+        let kind = if set.reason.is_some() { "inSource" } else { "external" };
+        if one.is_allowed() {
+            let mut suppression =
+                json!({ "kind": kind, "location": { "physicalLocation": place(set.at, sources) } });
+            if let Some(reason) = &set.reason {
+                suppression["justification"] = reason.as_str().into();
+            }
+            result["suppressions"] = json!([suppression]);
+        } else {
+            result["properties"]["severityReason"] = set.reason.as_deref().into();
+        }
+    }
     if !one.labels.is_empty() {
         let labels = one.labels.iter();
         let related = labels.map(|label| {

@@ -6,8 +6,10 @@ use super::token::{Placed, Token, tokens};
 use super::{Fault, Problem, Value};
 use crate::diagnostic::quoted;
 
-/// Operators of an expression, and expressions inside each other: what is evaluated by recursion is at most so deep.
-const MOST_DEEP: usize = 200;
+/// Operators of an expression: it is evaluated by recursion that is at most so deep.
+const MOST_OPERATORS: usize = 200;
+/// Parentheses and signs inside each other: reading one takes a recursion for each kind of operators.
+const MOST_NESTED: usize = 30;
 
 /// An expression with its bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,7 +59,7 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
 /// Reads the expression in `text[start..]` up to its end or to a `:`; and where that is.
 pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize), Fault> {
     let (tokens, end) = tokens(text, start)?;
-    let mut parser = Parser { tokens: &tokens, next: 0, end, depth: 0 };
+    let mut parser = Parser { tokens: &tokens, next: 0, end, operators: 0, depth: 0 };
     let whole = parser.level(0)?;
     match tokens.get(parser.next) {
         None => Ok((whole, end)),
@@ -80,6 +82,7 @@ struct Parser<'t> {
     tokens: &'t [Placed],
     next: usize,
     end: usize,
+    operators: usize,
     depth: usize,
 }
 
@@ -110,7 +113,10 @@ impl Parser<'_> {
             self.next += 1;
             let right = self.level(level + 1)?;
             let at = left.at.start..right.at.end;
-            self.deeper(at.clone())?;
+            self.operators += 1;
+            if self.operators > MOST_OPERATORS {
+                return Err(Problem::new("the expression is too long").at(at));
+            }
             left = Expression { at, node: Node::Two(Box::new(left), operator, Box::new(right)) };
         }
         Ok(left)
@@ -128,8 +134,8 @@ impl Parser<'_> {
 
     fn deeper(&mut self, at: Range<usize>) -> Result<(), Fault> {
         self.depth += 1;
-        match self.depth > MOST_DEEP {
-            true => Err(Problem::new("the expression is too long").at(at)),
+        match self.depth > MOST_NESTED {
+            true => Err(Problem::new("too many parentheses and signs inside each other").at(at)),
             false => Ok(()),
         }
     }

@@ -231,7 +231,7 @@ impl Loader<'_> {
         Policy::new(self.list(element, "requires"), self.list(element, "policySets"))
     }
 
-    fn value_fault(&mut self, attribute: Attribute<'_>, message: String, meant: Option<&str>) {
+    pub(super) fn value_fault(&mut self, attribute: Attribute<'_>, message: String, meant: Option<&str>) {
         let whole = attribute.location();
         let value = attribute.value_span().in_file(whole.file);
         // Nothing can be seen between two quotes.

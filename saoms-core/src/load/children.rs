@@ -58,6 +58,9 @@ impl Loader<'_> {
     /// Reports an element of SCA, or of SAOMS, that cannot be where it is.
     pub(super) fn unexpected(&mut self, element: Element<'_>, parent: &'static Kind, family: Family) {
         let name = element.local_name();
+        if family == Family::Sca && is_own_alone(name) {
+            return self.own_without_namespace(element);
+        }
         let known: Vec<&str> = match family {
             Family::Own => OWN_ELEMENTS.to_vec(),
             _ => vocabulary::children(parent).collect(),
@@ -103,6 +106,13 @@ impl Loader<'_> {
             let family = self.family(child);
             let name = child.local_name();
             let is_known = vocabulary::children(kind).any(|known| known == name);
+            if family == Family::Own
+                && name == "severity"
+                && vocabulary::SEVERITY_PARENTS.contains(&kind.name)
+            {
+                self.severity(child, element);
+                continue;
+            }
             if matches!(family, Family::Sca | Family::Own) && !(family == Family::Sca && is_known) {
                 self.unexpected(child, kind, family);
             }
@@ -137,13 +147,40 @@ impl Loader<'_> {
         self.report(one);
     }
 
+    /// Reports an element of SAOMS that is not in its namespace, with what puts it there.
+    pub(super) fn own_without_namespace(&mut self, element: Element<'_>) {
+        let name = element.local_name();
+        let root = element.document().root();
+        let file = element.document().file();
+        let message = format!(
+            "{} is an element of SAOMS: it has to be in the namespace `{SAOMS_NAMESPACE}`",
+            quoted(element.name())
+        );
+        let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        let bound =
+            root.namespace_declarations().find(|one| one.value() == SAOMS_NAMESPACE && one.name() != "xmlns");
+        let mut edits = renaming(element, Some(bound.map_or("saoms", |one| one.local_name())), name);
+        if bound.is_none() {
+            let end = Span::empty(root.name_span().end);
+            let binding = format!(" xmlns:saoms=\"{SAOMS_NAMESPACE}\"");
+            edits.insert(0, Edit { location: Location { file, span: end }, replacement: binding });
+        }
+        let prefix = bound.map_or("saoms", |one| one.local_name());
+        let help = format!(
+            "write `<{prefix}:{name} .../>`, and `xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
+        );
+        let description =
+            format!("replace {} with {}", quoted(element.name()), quoted(&format!("{prefix}:{name}")));
+        self.report(one.help(help).suggest_edits(description, edits));
+    }
+
     fn without_namespace(&mut self, element: Element<'_>, root: Element<'_>) {
         let (name, location) = (element.local_name(), element.name_location());
         if self.diagnostics.skip(&codes::UNKNOWN_ELEMENT, Severity::Error, location) {
             return;
         }
-        if name == "loop" {
-            return self.loop_without_namespace(element);
+        if is_own_alone(name) {
+            return self.own_without_namespace(element);
         }
         let message = format!("{} is in no namespace", quoted(name));
         let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, location, message);
@@ -160,6 +197,11 @@ impl Loader<'_> {
         }
         self.report(one);
     }
+}
+
+/// Whether an element of this name is of SAOMS, and none of SCA could be meant.
+fn is_own_alone(name: &str) -> bool {
+    OWN_ELEMENTS.contains(&name) && !name.contains('.')
 }
 
 /// The edits that give an element another name, in its end tag too.

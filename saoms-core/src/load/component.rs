@@ -68,7 +68,7 @@ impl Loader<'_> {
                     let one = self.looping(child);
                     component.loops.push(one);
                 }
-                (Family::Sca, "loop") => self.loop_without_namespace(child),
+                (Family::Own, "severity") => self.severity(child, element),
                 (Family::Foreign, _) => {}
                 (Family::Nobody, name) => has_faulty |= name.starts_with("implementation"),
                 (_, name) => {

@@ -37,8 +37,14 @@ pub fn load_component_type(
         return None;
     };
     let namespace = root.namespace().to_owned();
-    let mut loader =
-        Loader { version, namespace, diagnostics, gathered: Gathered::default(), is_replicated: false };
+    let mut loader = Loader {
+        version,
+        namespace,
+        diagnostics,
+        gathered: Gathered::default(),
+        is_replicated: false,
+        severities: Vec::new(),
+    };
     let mut made = ComponentType {
         origin: Origin::of(root),
         document: Arc::clone(&document),

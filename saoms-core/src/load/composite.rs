@@ -33,6 +33,7 @@ impl Loader<'_> {
             references: Vec::new(),
             components: Vec::with_capacity(root.children().count()),
             wires: Vec::new(),
+            severities: Vec::new(),
             policy: self.policy(root),
             name,
         };
@@ -53,9 +54,11 @@ impl Loader<'_> {
                     composite.references.push(self.reference(child, &COMPOSITE_REFERENCE));
                 }
                 (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+                (Family::Own, "severity") => self.severity(child, root),
                 _ => self.unexpected(child, &COMPOSITE, family),
             }
         }
+        composite.severities = std::mem::take(&mut self.severities);
         composite
     }
 

@@ -112,6 +112,7 @@ impl Loader<'_> {
                     contract.bindings.push(self.binding(child, family));
                 }
                 (Family::Foreign, _) => {}
+                (Family::Own, "severity") => self.severity(child, element),
                 _ => self.unexpected(child, kind, family),
             }
         }

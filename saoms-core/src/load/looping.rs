@@ -3,9 +3,8 @@
 use super::Loader;
 use super::children::{Family, renaming};
 use super::vocabulary::{COMPONENT_PROPERTY, LOOP};
-use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
-use crate::model::{Loop, Origin, SAOMS_NAMESPACE};
-use crate::source::{Location, Span};
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{Loop, Origin};
 use crate::xml::Element;
 
 impl Loader<'_> {
@@ -42,31 +41,5 @@ impl Loader<'_> {
         let one = Diagnostic::new(&codes::MISPLACED_ELEMENT, element.name_location(), message);
         let one = one.help("the properties of a loop are written as those of a component, as SCA has them");
         self.report(one.suggest_edits(description, renaming(element, prefix, "property")));
-    }
-
-    /// Reports a `loop` that is not in the namespace of SAOMS, with what puts it there.
-    pub(super) fn loop_without_namespace(&mut self, element: Element<'_>) {
-        let root = element.document().root();
-        let file = element.document().file();
-        let message = format!(
-            "{} is an element of SAOMS: it has to be in the namespace `{SAOMS_NAMESPACE}`",
-            quoted(element.name())
-        );
-        let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
-        let bound =
-            root.namespace_declarations().find(|one| one.value() == SAOMS_NAMESPACE && one.name() != "xmlns");
-        let mut edits = renaming(element, Some(bound.map_or("saoms", |one| one.local_name())), "loop");
-        if bound.is_none() {
-            let end = Span::empty(root.name_span().end);
-            let binding = format!(" xmlns:saoms=\"{SAOMS_NAMESPACE}\"");
-            edits.insert(0, Edit { location: Location { file, span: end }, replacement: binding });
-        }
-        let prefix = bound.map_or("saoms", |one| one.local_name());
-        let help = format!(
-            "write `<{prefix}:loop .../>`, and `xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
-        );
-        let description =
-            format!("replace {} with {}", quoted(element.name()), quoted(&format!("{prefix}:loop")));
-        self.report(one.help(help).suggest_edits(description, edits));
     }
 }

@@ -18,6 +18,7 @@ mod named;
 mod property;
 mod read;
 mod root;
+mod severity;
 mod shelf;
 mod table;
 #[cfg(test)]
@@ -35,7 +36,7 @@ pub use shelf::composites_near;
 pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Composite, Property, Reference, Service, Version};
+use crate::model::{Composite, Property, Reference, Service, SeverityRule, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
 
@@ -78,6 +79,7 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
             diagnostics,
             gathered: Gathered::default(),
             is_replicated: false,
+            severities: Vec::new(),
         };
         if loader.root(document.root()) {
             composite = Some(loader.composite(&Arc::new(document)));
@@ -102,6 +104,8 @@ struct Loader<'d> {
     gathered: Gathered,
     /// Whether the component at hand is replicated, so that its texts can hold expressions.
     is_replicated: bool,
+    /// What is said about severities.
+    severities: Vec<SeverityRule>,
 }
 
 #[derive(Default)]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::origin::parts;
-use super::{Component, Origin, Policy, Property, Reference, Service, Version};
+use super::{Component, Origin, Policy, Property, Reference, Service, SeverityRule, Version};
 use crate::source::{FileId, Located, Text};
 use crate::xml::Document;
 
@@ -38,6 +38,8 @@ pub struct Composite {
     pub components: Vec<Component>,
     /// Its wires in order.
     pub wires: Vec<Wire>,
+    /// What it says about severities, in order, that in its elements included.
+    pub severities: Vec<SeverityRule>,
     /// Intents and policy sets.
     pub policy: Policy,
 }

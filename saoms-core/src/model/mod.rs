@@ -15,6 +15,7 @@ mod origin;
 mod policy;
 mod property;
 mod replicas;
+mod severity;
 mod version;
 
 pub use component::{Component, Implementation, ImplementationKind};
@@ -29,4 +30,5 @@ pub use origin::{Origin, Part};
 pub use policy::Policy;
 pub use property::{Property, PropertyDetails, PropertyValue};
 pub use replicas::{Replicas, Row, Table};
+pub use severity::SeverityRule;
 pub use version::{SAOMS_NAMESPACE, Version};

@@ -6,8 +6,9 @@ use super::node::Node;
 use super::root;
 use super::sca::{attributes as declared, holding, name_of};
 use super::words::{Names, Words};
+use crate::diagnostic::{Level, Severity};
 use crate::load::vocabulary::{
-    Holds, IMPLEMENTATION_RUST, INTERFACE_RUST, Kind, Known, LOOP, OWN_ATTRIBUTES, children,
+    Holds, IMPLEMENTATION_RUST, INTERFACE_RUST, Kind, Known, LOOP, OWN_ATTRIBUTES, SEVERITY, children,
 };
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 
@@ -15,7 +16,7 @@ const DOC: &str =
     "What SAOMS adds to SCA, and the names that its classes and plugins bring. Written by `saoms schema`.";
 
 pub(super) fn schema(words: &Words) -> Node {
-    let own = [&LOOP, &IMPLEMENTATION_RUST, &INTERFACE_RUST];
+    let own = [&LOOP, &SEVERITY, &IMPLEMENTATION_RUST, &INTERFACE_RUST];
     // Several elements can have an attribute.
     let attributes: BTreeMap<&str, &Known> =
         OWN_ATTRIBUTES.iter().map(|(_, known)| (known.name, known)).collect();
@@ -76,7 +77,8 @@ pub(super) fn type_of(holds: Holds, is_required: bool) -> &'static str {
         Holds::Value => "saoms:Value",
         Holds::Boolean => "xs:boolean",
         Holds::Multiplicity => "saoms:Multiplicity",
-        Holds::Variable => "saoms:Given",
+        Holds::Variable | Holds::Code => "saoms:Given",
+        Holds::Level => "saoms:Level",
         Holds::Composite | Holds::End if is_required => "saoms:Given",
         Holds::Composite
         | Holds::End
@@ -90,7 +92,7 @@ pub(super) fn type_of(holds: Holds, is_required: bool) -> &'static str {
     }
 }
 
-fn simple() -> [Node; 3] {
+fn simple() -> [Node; 4] {
     let multiplicity = |value: Multiplicity| {
         let doc = match value {
             Multiplicity::ZeroOrOne => "A target or none.",
@@ -100,6 +102,15 @@ fn simple() -> [Node; 3] {
         };
         enumeration(value.name(), doc)
     };
+    let level = |level: Level| {
+        let doc = match level {
+            Level::Allow => "They are kept for the record alone.",
+            Level::Set(Severity::Note) => "They are worth knowing.",
+            Level::Set(Severity::Warning) => "They are probably not meant.",
+            Level::Set(Severity::Error) => "Nothing starts with them.",
+        };
+        enumeration(level.name(), doc)
+    };
     [
         restricted("xs:token", [Node::new("xs:pattern").with("value", r"([^\s/]|\$\{[^}]*\})+")])
             .named("Name", "A name: without blanks and `/` but in expressions, as `${index}`."),
@@ -107,6 +118,7 @@ fn simple() -> [Node; 3] {
             .named("Given", "A text that is not empty."),
         restricted("xs:token", Multiplicity::ALL.map(multiplicity))
             .named("Multiplicity", "How many targets a reference takes."),
+        restricted("xs:token", Level::ALL.map(level)).named("Level", "How bad diagnostics of a code are."),
     ]
 }
 

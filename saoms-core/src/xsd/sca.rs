@@ -9,7 +9,7 @@ use crate::load::vocabulary::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, Kind,
-    LOOP, WIRE, children, other, own_attributes,
+    LOOP, SEVERITY, WIRE, children, other, own_attributes,
 };
 use crate::model::{SAOMS_NAMESPACE, Version};
 
@@ -86,6 +86,9 @@ pub(super) fn schema(version: Version, assertions: Vec<Node>) -> Node {
 pub(super) fn name_of(kind: &Kind) -> &'static str {
     if std::ptr::eq(kind, &LOOP) {
         return "Loop";
+    }
+    if std::ptr::eq(kind, &SEVERITY) {
+        return "Severity";
     }
     TYPES.iter().find(|(_, known)| std::ptr::eq(*known, kind)).map_or("Open", |(name, _)| name)
 }

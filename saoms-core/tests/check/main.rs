@@ -18,6 +18,7 @@ mod parameters;
 mod properties;
 mod reference;
 mod rules;
+mod severities;
 mod support;
 mod tasks;
 mod topics;

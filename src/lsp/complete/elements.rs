@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::load::vocabulary::{COMPONENT, COMPOSITE, Kind, LOOP, OWN_ELEMENTS, children, other};
+use saoms_core::load::vocabulary::{
+    COMPONENT, COMPOSITE, Kind, LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, children, other,
+};
 use saoms_core::model::{SAOMS_NAMESPACE, Version};
 
 use super::item::in_snippet;
@@ -87,19 +89,25 @@ fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<
                 .rank(rank)
                 .snippet(format!("<{sca}property name=\"{}\">${{1:{value}}}</{sca}property>", one.name))
         }));
-        if let Some(own) = tree.prefix_of(text, parent, SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
-            all.push(looping(&format!("{own}:"), range));
+    }
+    if let Some(own) = tree.prefix_of(text, parent, SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
+        if std::ptr::eq(kind, &COMPONENT) {
+            all.push(added(&LOOP, &format!("{own}:"), "name=\"$1\"$2", range));
+        }
+        if SEVERITY_PARENTS.contains(&kind.name) {
+            let attributes = "code=\"$1\" level=\"$2\" reason=\"$3\"";
+            all.push(added(&SEVERITY, &format!("{own}:"), attributes, range));
         }
     }
     all
 }
 
-/// The elements that SAOMS adds and SCA's names do not have.
-fn looping(own: &str, range: &Range<usize>) -> Proposal {
-    debug_assert!(OWN_ELEMENTS.contains(&LOOP.name));
-    Proposal::new(format!("{own}{}", LOOP.name), CompletionItemKind::CLASS, range)
-        .doc(describe::element(&LOOP))
-        .snippet(format!("<{own}{} name=\"$1\"$2/>", LOOP.name))
+/// An element that SAOMS adds and SCA's names do not have.
+fn added(kind: &'static Kind, own: &str, attributes: &str, range: &Range<usize>) -> Proposal {
+    debug_assert!(OWN_ELEMENTS.contains(&kind.name));
+    Proposal::new(format!("{own}{}", kind.name), CompletionItemKind::CLASS, range)
+        .doc(describe::element(kind))
+        .snippet(format!("<{own}{} {attributes}/>", kind.name))
 }
 
 fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Range<usize>) -> Proposal {

@@ -1,6 +1,6 @@
 //! Which elements are of SCA, which of SAOMS, and which of others.
 
-use saoms_core::load::vocabulary::{COMPOSITE, Kind, LOOP, OWN_ELEMENTS};
+use saoms_core::load::vocabulary::{COMPOSITE, Kind, LOOP, OWN_ELEMENTS, SEVERITY};
 use saoms_core::model::{SAOMS_NAMESPACE, Version};
 
 use super::{Tree, local};
@@ -100,6 +100,7 @@ impl Tree {
         let name = self.local(text, element);
         match self.family(text, element) {
             Family::Own if name == LOOP.name => Some(&LOOP),
+            Family::Own if name == SEVERITY.name => Some(&SEVERITY),
             Family::Own if !OWN_ELEMENTS.contains(&name) => None,
             Family::Foreign => None,
             _ => parent.child(name),

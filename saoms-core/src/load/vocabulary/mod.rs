@@ -12,7 +12,7 @@ pub use elements::{
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, LOOP,
     OTHERS, VARIANTS, WIRE,
 };
-pub use own::{OWN_ATTRIBUTES, OWN_ELEMENTS};
+pub use own::{OWN_ATTRIBUTES, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS};
 
 use crate::model::Version;
 
@@ -87,6 +87,10 @@ pub enum Holds {
     Condition,
     /// The name of an environment variable.
     Variable,
+    /// The code of a diagnostic, such as `S4001`.
+    Code,
+    /// `allow`, `note`, `warning` or `error`.
+    Level,
     /// Any text.
     Text,
 }

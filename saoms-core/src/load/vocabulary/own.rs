@@ -1,9 +1,13 @@
 //! What SAOMS adds to SCA in its own namespace.
 
-use super::{Holds, Known};
+use super::{Holds, Kind, Known};
 
 const fn own(name: &'static str, holds: Holds, doc: &'static str) -> Known {
     Known { name, holds, doc, required: false, only_1_0: false }
+}
+
+const fn must(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+    Known { required: true, ..own(name, holds, doc) }
 }
 
 const IF: Known = own(
@@ -53,4 +57,19 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
 ];
 
 /// The elements that SAOMS adds in its own namespace.
-pub const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust", "loop"];
+pub const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust", "loop", "severity"];
+
+/// The elements of SCA that a `severity` stands in.
+pub const SEVERITY_PARENTS: &[&str] = &["composite", "component", "service", "reference", "wire", "include"];
+
+/// What a composite says about how bad a diagnostic is.
+pub static SEVERITY: Kind = Kind {
+    name: "severity",
+    doc: "Sets how bad the diagnostics of one code are: in a composite for all of it, in a component, service, reference, wire or include for that.",
+    attributes: &[
+        must("code", Holds::Code, "The code of the diagnostics, such as `S4001`."),
+        must("level", Holds::Level, "What they become: `allow`, `note`, `warning` or `error`."),
+        must("reason", Holds::Text, "Why; it stands in the output for machines."),
+    ],
+    children: &["documentation"],
+};

@@ -1,0 +1,184 @@
+//! Severities that composites and the command line set.
+
+use super::options::Options;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Level, SetBy, Severity, codes, nearest, quoted};
+use crate::model::Contribution;
+use crate::registry::Registry;
+use crate::source::{FileId, Located, Location, Sources, Span, Text};
+
+/// A severity that is set on the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeveritySetting {
+    /// The code.
+    pub code: Text,
+    /// Its level.
+    pub level: Located<Level>,
+}
+
+impl SeveritySetting {
+    /// Reads `CODE=LEVEL`, the value of the option `option` (as `--severity`). It becomes a source text of that name, so that diagnostics
+    /// can point into it. `None`, and a diagnostic, when it is none.
+    pub fn parse(
+        option: &str,
+        text: &str,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Self> {
+        let file = sources.add(option, text);
+        let split = text.find('=').unwrap_or(text.len());
+        let (code, level) = (text[..split].trim(), text[(split + 1).min(text.len())..].trim());
+        let place = |part: &str| {
+            let start = part.as_ptr() as usize - text.as_ptr() as usize;
+            Span::new(start as u32, (start + part.len()) as u32).in_file(file)
+        };
+        if let Some(level) = Level::from_name(level).map(|found| Located::new(found, place(level))) {
+            return Some(Self { code: Located::new(code.into(), place(code)), level });
+        }
+        let names = Level::ALL.map(Level::name);
+        let one = if level.is_empty() {
+            let whole = Span::new(0, text.len() as u32).in_file(file);
+            Diagnostic::new(&codes::SEVERITY, whole, format!("{} sets no severity", quoted(text)))
+        } else {
+            let message = format!("there is no severity {}", quoted(level));
+            let one = Diagnostic::new(&codes::SEVERITY, place(level), message);
+            match nearest(level, names) {
+                Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), place(level), meant),
+                None => one,
+            }
+        };
+        let help = format!("write `{option} CODE=LEVEL`, with `allow`, `note`, `warning` or `error`");
+        diagnostics.push(one.help(help));
+        None
+    }
+}
+
+/// All that is said about severities, what counts first before the others.
+pub(super) struct Severities {
+    rules: Vec<Rule>,
+}
+
+struct Rule {
+    code: String,
+    set: SetBy,
+    scope: Scope,
+    is_used: bool,
+}
+
+#[derive(Clone, Copy)]
+enum Scope {
+    /// This element.
+    Element(Location),
+    /// The composite in this file.
+    File(FileId),
+    /// The whole fleet.
+    Fleet,
+    /// The same, from the command line.
+    Option,
+}
+
+impl Scope {
+    /// What is smaller counts before what is larger.
+    fn size(self) -> (u8, u32) {
+        match self {
+            Self::Element(at) => (0, at.span.len()),
+            Self::File(_) => (1, 0),
+            Self::Fleet => (2, 0),
+            Self::Option => (3, 0),
+        }
+    }
+
+    fn holds(self, at: Location) -> bool {
+        match self {
+            Self::Element(element) => element.file == at.file && element.span.contains(at.span),
+            Self::File(file) => file == at.file,
+            Self::Fleet | Self::Option => true,
+        }
+    }
+}
+
+impl Severities {
+    /// What composites and options say. Unknown codes are reported.
+    pub(super) fn of(
+        contribution: &Contribution,
+        options: &Options,
+        registry: &Registry,
+        diagnostics: &mut Diagnostics,
+    ) -> Self {
+        let known: Vec<&Code> =
+            codes::ALL.iter().copied().chain(registry.rules().iter().map(|rule| rule.code())).collect();
+        let mut rules = Vec::new();
+        let mut add = |code: &Text, level: Level, reason: Option<&Text>, scope: Scope| {
+            if !known.iter().any(|known| known.id == code.as_str()) {
+                diagnostics.push(unknown(code, &known));
+                return;
+            }
+            let reason = reason.map(|reason| reason.as_str().to_owned());
+            let set = SetBy { level, at: code.location, reason };
+            rules.push(Rule { code: code.as_str().to_owned(), set, scope, is_used: false });
+        };
+        let asked_for = contribution.asked_for().len();
+        for (place, composite) in contribution.composites().iter().enumerate() {
+            for rule in &composite.severities {
+                let scope = match rule.within {
+                    Some(element) => Scope::Element(element),
+                    None if place < asked_for => Scope::Fleet,
+                    None => Scope::File(composite.file()),
+                };
+                add(&rule.code, rule.level.value, Some(&rule.reason), scope);
+            }
+        }
+        for setting in &options.severities {
+            add(&setting.code, setting.level.value, None, Scope::Option);
+        }
+        rules.sort_by_key(|rule| rule.scope.size());
+        Self { rules }
+    }
+
+    /// Sets the severities of the diagnostics from this place on.
+    pub(super) fn apply(&mut self, from: usize, diagnostics: &mut Diagnostics) {
+        if self.rules.is_empty() {
+            return;
+        }
+        diagnostics.adjust(from, |one| {
+            let fits = |rule: &&mut Rule| rule.code == one.code.id && rule.scope.holds(one.location);
+            let Some(rule) = self.rules.iter_mut().find(fits) else { return };
+            rule.is_used = true;
+            let is_lowered = rule.set.level != Level::Set(Severity::Error);
+            if one.severity == Severity::Error && is_lowered && !codes::is_judgement(one.code) {
+                let label = format!("not set to `{}`", rule.set.level.name());
+                one.labels.push(crate::diagnostic::Label { location: rule.set.at, text: label });
+                one.help.push("its severity cannot be lowered: nothing can run with it".to_owned());
+                return;
+            }
+            if let Level::Set(severity) = rule.set.level {
+                one.severity = severity;
+                if let Some(reason) = &rule.set.reason {
+                    let text = format!("set to `{}`: {reason}", severity.name());
+                    one.labels.push(crate::diagnostic::Label { location: rule.set.at, text });
+                }
+            }
+            one.set = Some(rule.set.clone());
+        });
+    }
+
+    /// Reports what composites say that changed nothing; those codes are left out that were not looked for.
+    pub(super) fn finish(&self, wiring: bool, diagnostics: &mut Diagnostics) {
+        let in_files = self.rules.iter().filter(|rule| !matches!(rule.scope, Scope::Option));
+        let unused = in_files.filter(|rule| !rule.is_used && rule.set.level != Level::Set(Severity::Error));
+        for rule in unused.filter(|rule| wiring || !codes::is_of_wiring(&rule.code)) {
+            let message =
+                format!("there is no {} here that could be set to `{}`", rule.code, rule.set.level.name());
+            let one = Diagnostic::new(&codes::SEVERITY_UNUSED, rule.set.at, message);
+            diagnostics.push(one.help("remove it, or it hides what somebody adds later"));
+        }
+    }
+}
+
+fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {
+    let one = Diagnostic::new(&codes::SEVERITY, code.location, format!("there is no code {}", quoted(code)));
+    let by_name = known.iter().find(|known| known.name == code.as_str()).map(|known| known.id);
+    match by_name.or_else(|| nearest(code, known.iter().map(|known| known.id))) {
+        Some(meant) => one.suggest(super::report::replacing(code, meant), code.location, meant),
+        None => one.help("each diagnostic shows its code, and `docs/diagnostics.md` lists them"),
+    }
+}

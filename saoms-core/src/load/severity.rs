@@ -1,0 +1,43 @@
+//! Severities that are set in composites, in the namespace of SAOMS.
+
+use super::Loader;
+use super::vocabulary::SEVERITY;
+use crate::diagnostic::{Level, nearest, quoted};
+use crate::model::{Origin, SeverityRule};
+use crate::source::Located;
+use crate::xml::Element;
+
+impl Loader<'_> {
+    /// Reads a `severity` that stands in `parent`.
+    pub(super) fn severity(&mut self, element: Element<'_>, parent: Element<'_>) {
+        self.parts_of(element, &SEVERITY);
+        let code = self.required(element, "code");
+        let level = self.level(element);
+        let reason = self.required(element, "reason");
+        let (Some(code), Some(level), Some(reason)) = (code, level, reason) else { return };
+        let file = element.document().file();
+        let within = parent.parent().is_some().then(|| parent.span().in_file(file));
+        self.severities.push(SeverityRule { origin: Origin::of(element), code, level, reason, within });
+    }
+
+    fn level(&mut self, element: Element<'_>) -> Option<Located<Level>> {
+        let text = self.required(element, "level")?;
+        if let Some(level) = Level::from_name(&text) {
+            return Some(Located::new(level, text.location));
+        }
+        let names = Level::ALL.map(Level::name);
+        let meant = match text.to_ascii_lowercase().as_str() {
+            "deny" | "forbid" | "fail" => Some("error"),
+            "warn" => Some("warning"),
+            "info" | "hint" => Some("note"),
+            "ignore" | "off" | "none" | "suppress" => Some("allow"),
+            other => nearest(other, names),
+        };
+        let message =
+            format!("`level` is {} and has to be `allow`, `note`, `warning` or `error`", quoted(&text));
+        if let Some(attribute) = element.attribute("level") {
+            self.value_fault(attribute, message, meant);
+        }
+        None
+    }
+}

@@ -1,0 +1,23 @@
+//! What composites say about how bad a diagnostic is.
+
+use super::Origin;
+use super::origin::parts;
+use crate::diagnostic::Level;
+use crate::source::{Located, Location, Text};
+
+/// A `severity`: it sets that of the diagnostics of one code in the element that it stands in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeverityRule {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// `code`, as `S4001`.
+    pub code: Text,
+    /// `level`.
+    pub level: Located<Level>,
+    /// `reason`.
+    pub reason: Text,
+    /// The element that it stands in; `None` for the composite itself.
+    pub within: Option<Location>,
+}
+
+parts!(SeverityRule);

@@ -1,0 +1,229 @@
+//! Severities that composites and the command line set.
+
+use expect_test::expect;
+use saoms_core::check::{Options, SeveritySetting, check};
+use saoms_core::diagnostic::{Diagnostics, json, sarif};
+use saoms_core::load::load_file;
+use saoms_core::model::Contribution;
+use saoms_core::source::Sources;
+use serde_json::Value;
+
+use crate::classes::registry;
+use crate::support::{part, shown};
+
+struct Found {
+    /// Whether the fleet can run.
+    runs: bool,
+    /// What is told.
+    told: String,
+    json: Value,
+    sarif: Value,
+}
+
+fn found(texts: &[&str], severities: &[&str]) -> Found {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let files: Vec<_> = texts.iter().map(|text| sources.add("fleet.composite", *text)).collect();
+    let severities = severities
+        .iter()
+        .filter_map(|text| SeveritySetting::parse("--severity", text, &mut sources, &mut diagnostics))
+        .collect();
+    let mut composites: Vec<_> =
+        files.into_iter().filter_map(|file| load_file(file, &sources, &mut diagnostics)).collect();
+    let others = composites.split_off(1);
+    let fleet = Contribution::with(composites, others);
+    let options = Options { severities, ..Options::default() };
+    let assembly = check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+    assert_eq!(assembly.is_some(), !diagnostics.has_errors());
+    let all = diagnostics.into_all();
+    let told = all.iter().filter(|one| !one.is_allowed()).map(|one| shown(one, &sources)).collect();
+    Found {
+        runs: assembly.is_some(),
+        told,
+        json: json(&all, &sources),
+        sarif: sarif(&all, &sources, "1.0.0"),
+    }
+}
+
+fn fleet(inside: &str) -> String {
+    part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside)
+}
+
+fn of(inside: &str, severities: &[&str]) -> Found {
+    found(&[&fleet(inside)], severities)
+}
+
+/// Two clocks that share an ID, which is a warning; and what the second one and the composite say about that.
+fn clocks(second: &str, composite: &str) -> String {
+    let clock = |name: &str, more: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.java class=\"example.Clock\"/><property name=\"ID\">C</property><property name=\"period\">1</property>{more}</component>\n"
+        )
+    };
+    clock("A", "") + &clock("B", second) + composite
+}
+
+fn severity(code: &str, level: &str) -> String {
+    format!("<saoms:severity code=\"{code}\" level=\"{level}\" reason=\"because\"/>")
+}
+
+#[test]
+fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
+    let warning = of(&clocks("", ""), &[]);
+    expect![[r#"
+        3:85-86 warning S4001: components `A` and `B` share the ID `C`
+          2:85-86 the first
+          help: messages and reports name tasks by their ID
+    "#]]
+    .assert_eq(&warning.told);
+    let error = of(&clocks("", &severity("S4001", "error")), &[]);
+    assert!(!error.runs);
+    expect![[r#"
+        3:85-86 error S4001: components `A` and `B` share the ID `C`
+          2:85-86 the first
+          4:23-28 set to `error`: because
+          help: messages and reports name tasks by their ID
+    "#]]
+    .assert_eq(&error.told);
+    let allowed = of(&clocks(&severity("S4001", "allow"), &severity("S4001", "error")), &["S4001=error"]);
+    assert!(allowed.runs && allowed.told.is_empty());
+    assert!(of(&clocks("", &severity("S4001", "note")), &["S4001=error"]).runs);
+    let denied = of(&clocks("", ""), &["S4001 = error"]);
+    assert!(!denied.runs);
+    expect![[r#"
+        3:85-86 error S4001: components `A` and `B` share the ID `C`
+          2:85-86 the first
+          help: messages and reports name tasks by their ID
+    "#]]
+    .assert_eq(&denied.told);
+    assert_eq!(of(&clocks("", ""), &["S4001=allow"]).told, "");
+}
+
+#[test]
+fn reasons_are_in_the_output_for_machines() {
+    let allowed = of(&clocks(&severity("S4001", "allow"), ""), &[]);
+    let one = &allowed.json["diagnostics"][0];
+    assert_eq!((&one["severity"], &one["code"]), (&Value::from("warning"), &Value::from("S4001")));
+    assert_eq!(
+        (&one["set"]["level"], &one["set"]["reason"]),
+        (&Value::from("allow"), &Value::from("because"))
+    );
+    let suppression = &allowed.sarif["runs"][0]["results"][0]["suppressions"][0];
+    assert_eq!(
+        (&suppression["kind"], &suppression["justification"]),
+        (&Value::from("inSource"), &Value::from("because"))
+    );
+    let outside = of(&clocks("", ""), &["S4001=allow"]);
+    assert_eq!(outside.sarif["runs"][0]["results"][0]["suppressions"][0]["kind"], "external");
+    let error = of(&clocks("", &severity("S4001", "error")), &[]);
+    assert_eq!(error.sarif["runs"][0]["results"][0]["properties"]["severityReason"], "because");
+    assert_eq!(error.sarif["runs"][0]["results"][0]["level"], "error");
+    let plain = of(&clocks("", ""), &[]);
+    assert!(plain.json["diagnostics"][0].get("set").is_none());
+}
+
+#[test]
+fn errors_that_make_a_fleet_impossible_stay() {
+    let found = of(
+        &format!(
+            "{}<component name=\"X\"><implementation.java class=\"example.Gsp\"/>{}</component>",
+            severity("S3001", "allow"),
+            severity("S3001", "warning")
+        ),
+        &[],
+    );
+    assert!(!found.runs);
+    expect![[r#"
+        2:110-121 error S3001: there is no class `example.Gsp`
+          2:146-151 not set to `warning`
+          help: looked among the 20 classes linked into this program; `saoms components` lists them
+          help: its severity cannot be lowered: nothing can run with it
+          fix: replace `example.Gsp` with `example.Gps` [2:110-121 "example.Gps"]
+    "#]]
+    .assert_eq(&found.told);
+    // Two robots of one ID can run all the same.
+    let robot = |name: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.java class=\"example.Robot001\"/><property name=\"ID\">R</property><property name=\"period\">1</property><property name=\"number\">1</property></component>\n"
+        )
+    };
+    let found = of(&format!("{}{}{}", robot("A"), robot("B"), severity("S3013", "warning")), &[]);
+    assert!(found.runs);
+    expect![[r#"
+        3:88-89 warning S3013: components `A` and `B` have the same `ID` `R`
+          2:88-89 the first
+          4:23-28 set to `warning`: because
+          help: every robot needs its own
+    "#]]
+    .assert_eq(&found.told);
+}
+
+#[test]
+fn what_is_wrong_with_severities_is_found() {
+    expect![[r#"
+        2:23-27 error S2048: there is no code `S400`
+          fix: replace `S400` with `S4001` [2:23-27 "S4001"]
+        2:101-105 error S1011: `level` is `deny` and has to be `allow`, `note`, `warning` or `error`
+          fix: replace it with `error` [2:101-105 "error"]
+        3:2-16 error S1008: `saoms:severity` needs the attribute `reason`
+          help: write `<saoms:severity reason="..."`
+        3:46-60 error S1008: `saoms:severity` needs the attribute `code`
+          help: write `<saoms:severity code="..."`
+        3:75-84 error S1011: the attribute `reason` is empty
+        4:118-126 error S1004: `severity` is an element of SAOMS: it has to be in the namespace `urn:saoms:1`
+          help: write `<saoms:severity .../>`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
+          fix: replace `severity` with `saoms:severity` [4:118-126 "saoms:severity"]
+        --severity:1:1-6 error S2048: `S4001` sets no severity
+          help: write `--severity CODE=LEVEL`, with `allow`, `note`, `warning` or `error`
+        --severity:1:1-7 error S2048: `S4001=` sets no severity
+          help: write `--severity CODE=LEVEL`, with `allow`, `note`, `warning` or `error`
+        --severity:1:7-13 error S2048: there is no severity `errror`
+          help: write `--severity CODE=LEVEL`, with `allow`, `note`, `warning` or `error`
+          fix: replace it with `error` [--severity:1:7-13 "error"]
+        --severity:1:1-7 error S2048: there is no code `S40001`
+          fix: replace `S40001` with `S0001` [--severity:1:1-7 "S0001"]
+        --severity:1:1-1 error S2048: there is no code ``
+          help: each diagnostic shows its code, and `docs/diagnostics.md` lists them
+        --severity:1:1-8 error S2048: there is no code `unwired`
+          fix: replace `unwired` with `S2018` [--severity:1:1-8 "S2018"]
+    "#]].assert_eq(&of(
+        r#"<saoms:severity code="S400" level="allow" reason="x"/><saoms:severity code="unused-property" level="deny" reason="x"/>
+<saoms:severity code="S4001" level="allow"/><saoms:severity level="allow" reason=""/>
+<component name="G"><implementation.java class="example.Gps"/><saoms:severity code="S2018" level="note" reason="x"/><severity code="S2018"/></component>"#,
+        &["S4001", "S4001=", "S4001=errror", "S40001=error", "=allow", "unwired=note"],
+    ).told);
+    // Those of the wiring report match nothing where nobody asks for it.
+    assert_eq!(
+        of(
+            &format!(
+                "{}<component name=\"G\"><implementation.java class=\"example.Gps\"/></component>",
+                severity("S4010", "allow")
+            ),
+            &[]
+        )
+        .told,
+        ""
+    );
+}
+
+#[test]
+fn composites_inside_say_it_for_themselves() {
+    let inner = |more: &str| {
+        part(
+            "inner",
+            "xmlns:saoms=\"urn:saoms:1\"",
+            &format!(
+                "<property name=\"p\">1</property><component name=\"G\"><implementation.java class=\"example.Gps\"/></component>{more}"
+            ),
+        )
+    };
+    let outer = |more: &str| {
+        fleet(&format!(
+            "<property name=\"p\">1</property><component name=\"I\"><implementation.composite name=\"t:inner\"/></component>{more}"
+        ))
+    };
+    let allow = severity("S2026", "allow");
+    let count = |outer: &str, inner: &str| found(&[outer, inner], &[]).told.matches("S2026").count();
+    assert_eq!(count(&outer(""), &inner("")), 2);
+    assert_eq!(count(&outer(""), &inner(&allow)), 1);
+    assert_eq!(count(&outer(&allow), &inner("")), 0, "what is asked for speaks for the whole fleet");
+}
