@@ -98,7 +98,7 @@ pub(crate) enum Command {
 }
 
 /// What describes a fleet.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct FleetArguments {
     /// Composite files; several form one fleet
     #[arg(required = true, value_name = "FILE")]
@@ -126,6 +126,10 @@ pub(crate) struct PluginArguments {
     /// Use the classes of this plugin, or of all plugins in this folder; may be repeated
     #[arg(long = "plugin", value_name = "PATH")]
     pub(crate) plugins: Vec<PathBuf>,
+
+    /// Whether copies of libraries are loaded, because they may change.
+    #[arg(skip)]
+    pub(crate) copies: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -207,6 +211,10 @@ pub(crate) struct RunArguments {
     /// Write every record of the journal to this file, as lines of JSON; the report holds the newest ones of each component
     #[arg(long, value_name = "FILE")]
     pub(crate) journal: Option<PathBuf>,
+
+    /// Watch the libraries of plugins: components of one that is built anew are replaced while the fleet runs
+    #[arg(long, conflicts_with = "virtual_time")]
+    pub(crate) reload: bool,
 
     /// Show nothing but errors
     #[arg(long, conflicts_with = "console")]

@@ -17,6 +17,7 @@ mod new;
 mod output;
 mod paths;
 mod plugins;
+mod reload;
 mod results;
 mod run;
 mod schema;

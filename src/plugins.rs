@@ -49,7 +49,7 @@ pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
         folders.extend(beside.into_iter().flat_map(|beside| [beside.join("plugins"), beside]));
     }
     folders.push("plugins".into());
-    Search { named: arguments.plugins.clone(), folders }
+    Search { named: arguments.plugins.clone(), folders, copies: arguments.copies }
 }
 
 /// The classes linked in and those of the plugins that a search finds, with all that is wrong.

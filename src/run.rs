@@ -13,17 +13,20 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use crate::Exit;
-use crate::arguments::{Format, RunArguments};
+use crate::arguments::{FleetArguments, Format, RunArguments};
 use crate::console::Console;
 use crate::fleet::checked;
 use crate::output::{counted, eprint, print};
 use crate::paths::Paths;
+use crate::reload::{Reload, Watched};
 use crate::results;
 use crate::summary::summary;
 use crate::watch::Watch;
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
-    let Some(assembly) = assembly(arguments) else { return Exit::WrongInput };
+    let mut files = arguments.fleet.clone();
+    files.plugins.copies = arguments.reload;
+    let Some(assembly) = assembly(arguments, &files) else { return Exit::WrongInput };
     if !results::writable(arguments) {
         return Exit::WrongInput;
     }
@@ -31,6 +34,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let watch = Watch { console: Console::new(arguments, &assembly), paths: paths.clone() };
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
     let signals = Signals::new([SIGINT, SIGTERM]);
+    let watched = arguments.reload.then(|| Watched::of(&assembly));
     let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(watch)) {
         Ok(fleet) => fleet,
         Err(error) => {
@@ -39,7 +43,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         }
     };
     end_on_signals(signals, fleet.handle());
+    let reload = watched.map(|watched| Reload::start(&files, &watched, fleet.handle()));
     let report = fleet.run_to_end();
+    drop(reload);
     if !arguments.quiet {
         print(&summary(&report));
     }
@@ -54,8 +60,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 }
 
 /// The fleet to run; without one, what is wrong has been shown. Texts and diagnostics do not outlive this: a run may last for days.
-fn assembly(arguments: &RunArguments) -> Option<Assembly> {
-    let outcome = checked(&arguments.fleet, Options::default()).ok()?;
+fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly> {
+    let outcome = checked(files, Options::default()).ok()?;
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &outcome.assembly) {
         (Format::Json, None) => print(&format!("{:#}\n", outcome.json())),

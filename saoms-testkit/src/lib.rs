@@ -65,3 +65,8 @@ struct Loops;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/testing.md")]
 struct Testing;
+
+/// The examples of `docs/plugins.md`, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/plugins.md")]
+struct Plugins;

@@ -1,7 +1,8 @@
 //! The code of a library.
 
-use std::path::Path;
-use std::{error, fmt};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::{env, error, fmt, fs, io, process};
 
 use libloading::{Library, Symbol};
 use saoms_api::abi::{Entry, ImportedClass, ImportedLoopClass, ImportedRule, PluginTable, VERSION};
@@ -9,7 +10,7 @@ use saoms_api::abi::{Entry, ImportedClass, ImportedLoopClass, ImportedRule, Plug
 use super::{Code, Metadata, PluginError};
 
 /// Loads a library for good.
-pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
+pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
     let unloadable = |message: String| PluginError::Unloadable {
         path: path.to_owned(),
         package: metadata.package.clone(),
@@ -17,8 +18,18 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     };
     // A name without a slash would be searched for in the system's folders.
     let absolute = std::path::absolute(path).map_err(|error| unloadable(error.to_string()))?;
+    let copy = match copied {
+        true => Some(copy(&absolute).map_err(|error| unloadable(format!("no copy of it: {error}")))?),
+        false => None,
+    };
+    let file = copy.as_deref().unwrap_or(&absolute);
     // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
-    let library = unsafe { Library::new(&absolute) }.map_err(|error| unloadable(whole(&error)))?;
+    let library = unsafe { Library::new(file) }.map_err(|error| unloadable(whole(&error)));
+    if let Some(copy) = &copy {
+        // What is loaded needs the name no more.
+        let _ = fs::remove_file(copy);
+    }
+    let library = library?;
     // It stays: its functions, its texts and its threads are in use until the program ends.
     let library: &'static Library = Box::leak(Box::new(library));
     let table = {
@@ -79,6 +90,19 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
             rules: rules.into_iter().map(|rule| ImportedRule::new(*rule)).collect(),
         })
     }
+}
+
+/// A copy of a library: beside it, where it finds what it depends on, or among the temporary files.
+fn copy(path: &Path) -> io::Result<PathBuf> {
+    static NUMBER: AtomicU32 = AtomicU32::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = format!(".{name}.{}-{number}", process::id());
+    let beside = path.with_file_name(&name);
+    fs::copy(path, &beside).map(|_| beside).or_else(|_| {
+        let elsewhere = env::temp_dir().join(&name);
+        fs::copy(path, &elsewhere).map(|_| elsewhere)
+    })
 }
 
 /// A table, which begins with its size.

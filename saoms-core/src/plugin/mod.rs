@@ -37,6 +37,8 @@ pub struct Plugin {
     path: PathBuf,
     text: String,
     metadata: Metadata,
+    /// Whether a copy of it is loaded, so that the file may change.
+    copied: bool,
     /// Its code, once it is loaded.
     code: OnceLock<Result<Code, PluginError>>,
 }
@@ -47,9 +49,21 @@ impl Plugin {
     /// # Errors
     /// It is no library for this machine, has no metadata, or was built for another version of the boundary.
     pub fn open(path: &Path) -> Result<Arc<Plugin>, PluginError> {
+        Plugin::read(path, false)
+    }
+
+    /// The same; a copy is loaded then, so that the file may be written anew while the program runs, and a new build of it loaded beside this one.
+    ///
+    /// # Errors
+    /// As [`open`](Plugin::open).
+    pub fn open_copy(path: &Path) -> Result<Arc<Plugin>, PluginError> {
+        Plugin::read(path, true)
+    }
+
+    fn read(path: &Path, copied: bool) -> Result<Arc<Plugin>, PluginError> {
         let text = file::read_section(path)?;
         let metadata = metadata::read(path, &text)?;
-        Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, code: OnceLock::new() }))
+        Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, copied, code: OnceLock::new() }))
     }
 
     /// Where it is.
@@ -87,7 +101,8 @@ impl Plugin {
 
     /// Loads its code, at the first call.
     fn code(&self) -> Result<&Code, Failure> {
-        let code = self.code.get_or_init(|| library::load(&self.path, &self.metadata, &self.text));
+        let code =
+            self.code.get_or_init(|| library::load(&self.path, self.copied, &self.metadata, &self.text));
         code.as_ref().map_err(|error| Failure::new(error.to_string()))
     }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{Plugin, Search};
+use super::Search;
 use crate::model::{Contribution, ImplementationKind, LibraryLink, Origin};
 use crate::registry::Registry;
 use crate::source::{Sources, identity};
@@ -30,7 +30,7 @@ pub fn open_named(
     for (origin, folder, name) in wanted {
         let link = match search.find(&folder, &name) {
             Err(looked) => LibraryLink::Missing(looked),
-            Ok(path) => match registered(&path, registry) {
+            Ok(path) => match registered(&path, search, registry) {
                 Ok(path) => LibraryLink::To(path),
                 Err(message) => LibraryLink::Faulty(message),
             },
@@ -40,12 +40,12 @@ pub fn open_named(
 }
 
 /// The path by which a library is registered, which is done now unless it is already.
-fn registered(path: &Path, registry: &mut Registry) -> Result<PathBuf, String> {
+fn registered(path: &Path, search: &Search, registry: &mut Registry) -> Result<PathBuf, String> {
     let same = identity(path);
     if let Some(known) = registry.origins().find(|known| identity(known) == same) {
         return Ok(known.to_owned());
     }
-    let plugin = Plugin::open(path).map_err(|error| error.to_string())?;
+    let plugin = search.open(path).map_err(|error| error.to_string())?;
     plugin.register(registry).map_err(|error| error.to_string())?;
     Ok(path.to_owned())
 }

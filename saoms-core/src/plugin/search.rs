@@ -12,6 +12,8 @@ pub struct Search {
     pub named: Vec<PathBuf>,
     /// Folders that are looked through where they exist; files in them without metadata are not ours.
     pub folders: Vec<PathBuf>,
+    /// Whether copies are loaded, so that the files may be written anew while the program runs.
+    pub copies: bool,
 }
 
 /// What a search came to.
@@ -26,6 +28,11 @@ pub struct Found {
 }
 
 impl Search {
+    /// Reads the metadata of one library.
+    pub(super) fn open(&self, path: &Path) -> Result<Arc<Plugin>, PluginError> {
+        if self.copies { Plugin::open_copy(path) } else { Plugin::open(path) }
+    }
+
     /// Reads the metadata of all libraries; nothing in them runs.
     pub fn run(&self) -> Found {
         let mut found = Found::default();
@@ -35,7 +42,7 @@ impl Search {
             if !seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())) {
                 return;
             }
-            match Plugin::open(path) {
+            match self.open(path) {
                 Ok(plugin) => found.plugins.push(plugin),
                 Err(error) if named => found.errors.push(error),
                 Err(PluginError::NoMetadata { .. } | PluginError::NoLibrary { .. }) => {}

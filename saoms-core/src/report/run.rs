@@ -54,6 +54,9 @@ pub struct ComponentReport {
     pub slow: u64,
     /// How often a new instance took the place of a failed one.
     pub restarts: u32,
+    /// How often a component of a new build of its class took its place (`saoms run --reload`).
+    #[serde(default)]
+    pub replaced: u32,
     /// How often it failed, by an error or a panic.
     pub failures: u64,
     /// Messages that its event queues could not hold.

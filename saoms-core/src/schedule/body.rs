@@ -5,6 +5,7 @@ use saoms_api::{CallError, Cause, Chance, Context, DynComponent, Failure, Invoca
 
 use super::host::ComponentHost;
 use super::shared::Shared;
+use crate::assembly::ComponentSpec;
 use crate::bus::{Subscription, TopicId};
 use crate::journal::Recorder;
 use crate::schema::Schema;
@@ -40,6 +41,8 @@ pub(super) struct Part {
     pub(super) initializing: bool,
     /// What goes to the journal.
     pub(super) recorder: Recorder,
+    /// The specification of a new build, where there is one: it counts instead of that of the assembly.
+    pub(super) spec: Option<Box<ComponentSpec>>,
 }
 
 /// What can be asked of a component.
@@ -72,6 +75,7 @@ impl Body {
             period,
             initializing: false,
             recorder: Recorder::default(),
+            spec: None,
         };
         Body { instance: None, inboxes: Vec::new(), part }
     }
@@ -99,7 +103,7 @@ impl Body {
     }
 
     fn start(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
-        let spec = shared.spec(self.part.index);
+        let spec = self.part.spec(shared);
         self.instance = Some(contained(|| spec.class.construct(&spec.values))??);
         self.part.initializing = true;
         self.part.recorder.reset();
@@ -124,7 +128,7 @@ impl Body {
     }
 
     #[inline]
-    fn call<T>(
+    pub(super) fn call<T>(
         &mut self,
         shared: &Arc<Shared>,
         code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> T,
@@ -138,7 +142,7 @@ impl Body {
     }
 
     /// Lets go of the instance. What its destructor does is contained, too.
-    fn discard(&mut self) {
+    pub(super) fn discard(&mut self) {
         if let Some(instance) = self.instance.take() {
             // A panic here says nothing that the failure or the shutdown before has not said.
             let _ = contained(|| drop(instance));
@@ -147,6 +151,11 @@ impl Body {
 }
 
 impl Part {
+    /// What the component is made of.
+    pub(super) fn spec<'a>(&'a self, shared: &'a Shared) -> &'a ComponentSpec {
+        self.spec.as_deref().unwrap_or_else(|| shared.spec(self.index))
+    }
+
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }

@@ -17,7 +17,7 @@ pub(super) fn call(
     call: &mut dyn ServiceCall,
 ) -> Result<(), CallError> {
     let place = reference & ((1 << TARGET_SHIFT) - 1);
-    let Some(wire) = shared.spec(caller.index).references.get(place as usize) else {
+    let Some(wire) = caller.spec(shared).references.get(place as usize) else {
         return Err(CallError::NotWired {
             reference: "(a handle that `Context::reference` did not give)".to_owned(),
         });

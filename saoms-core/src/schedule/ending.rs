@@ -120,6 +120,7 @@ impl Engine {
                     deadline_misses: statistics.deadline_misses,
                     slow: statistics.slow,
                     restarts: slot.restarts,
+                    replaced: slot.statistics.replaced,
                     failures: statistics.failures,
                     dropped: statistics.dropped,
                     messages: MessageCounts { sent: statistics.sent, received: statistics.received },

@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use saoms_api::{Level, Time};
+use saoms_api::{Failure, Level, Time};
 
 use super::clock::Clock;
 use super::drive;
@@ -15,11 +15,12 @@ use super::engine::Phase;
 use super::lifecycle::Request;
 use super::observe::{Events, Progress};
 use super::realtime;
+use super::replace::{self, ReplaceError, Replacement};
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::slot::NEVER;
 use super::start::{self, StartError};
-use crate::assembly::Assembly;
+use crate::assembly::{Assembly, ComponentSpec};
 use crate::journal::{JournalFile, Named, Stream, Written};
 use crate::report::RunReport;
 use saoms_api::contain;
@@ -292,6 +293,28 @@ impl Handle {
     pub fn is_running(&self, component: &str) -> Result<bool, UnknownComponent> {
         let index = self.find(component)?;
         Ok(self.shared.lock().slots[index].is_scheduled())
+    }
+
+    /// Replaces a component by one of a new build of its class, between two executions: the new one is constructed first, then the present one
+    /// [saves](saoms_api::Component::save) what the new one goes on with, which initializes, restores that and takes over the place in topics
+    /// and services. Values and loops are those of the specification, wires too, whose targets count the components of this fleet; how the task
+    /// runs (period, delay, policies) stays as it is. Returns when it is done.
+    ///
+    /// # Errors
+    /// The earlier component goes on: there is no such component, the new one does not come to be, or it is not possible now.
+    pub fn replace(&self, spec: ComponentSpec) -> Result<Replacement, ReplaceError> {
+        let components = &self.shared.assembly.components;
+        let index = components.iter().position(|known| known.path == spec.path);
+        let index = index.ok_or_else(|| {
+            ReplaceError::Failed(Failure::new(format!("the fleet has no component `{}`", spec.path)))
+        })?;
+        let task = components[index].task.clone();
+        replace::replace(&self.shared, index as u32, ComponentSpec { task, ..spec })
+    }
+
+    /// Tells the program something about the fleet as a whole, among its other events.
+    pub fn note(&self, level: Level, text: String) {
+        self.shared.note(level, text);
     }
 
     /// How far the run is.

@@ -28,7 +28,7 @@ const MOST_TARGETS: usize = (1 << (32 - TARGET_SHIFT)) - 1;
 
 impl ComponentHost<'_> {
     fn spec(&self) -> &ComponentSpec {
-        self.shared.spec(self.part.index)
+        self.part.spec(self.shared)
     }
 
     /// The reference of a handle.
@@ -312,11 +312,12 @@ impl Host for ComponentHost<'_> {
 
     fn journal(&mut self, phase: Phase, record: &Record) {
         let stamp = stamp(self.shared, self.part);
-        let place = self.part.recorder.present().map(usize::from);
-        let class =
-            place.and_then(|place| self.shared.spec(self.part.index).loops.get(place)).map(|one| &one.class);
+        let Part { recorder, spec, index, .. } = &mut *self.part;
+        let place = recorder.present().map(usize::from);
+        let spec = spec.as_deref().unwrap_or_else(|| self.shared.spec(*index));
+        let class = place.and_then(|place| spec.loops.get(place)).map(|one| &one.class);
         let senses = class.map_or(&[][..], |class| &class.declaration().senses);
-        self.part.recorder.write(stamp, phase, record, senses);
+        recorder.write(stamp, phase, record, senses);
     }
 
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {

@@ -262,7 +262,7 @@ impl Engine {
         }
     }
 
-    fn release(&mut self, index: u32, body: &mut Body, now: u64) {
+    pub(super) fn release(&mut self, index: u32, body: &mut Body, now: u64) {
         for kept in body.part.kept.drain(..) {
             let topic = self.bus.topic_of(&kept);
             let lost = self.bus.unsubscribe(kept);

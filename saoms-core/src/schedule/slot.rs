@@ -158,6 +158,7 @@ pub(super) struct Statistics {
     pub(super) deadline_misses: u64,
     pub(super) slow: u64,
     pub(super) failures: u64,
+    pub(super) replaced: u32,
     pub(super) dropped: u64,
     pub(super) sent: u64,
     pub(super) received: u64,

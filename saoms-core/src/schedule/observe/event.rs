@@ -47,6 +47,11 @@ pub enum Occurrence {
         /// How often that happened.
         number: u32,
     },
+    /// A component of a new build of its class has taken its place.
+    Replaced {
+        /// Whether it goes on where the earlier one was.
+        continued: bool,
+    },
     /// An execution took so long that another thread had to go on with the others. From now on the component runs on a thread of its own.
     Slow {
         /// The watchdog's budget.
@@ -80,7 +85,7 @@ impl Occurrence {
     pub fn level(&self) -> Level {
         match self {
             Occurrence::Log { level, .. } | Occurrence::Note { level, .. } => *level,
-            Occurrence::Console { .. } => Level::Info,
+            Occurrence::Console { .. } | Occurrence::Replaced { .. } => Level::Info,
             Occurrence::Started | Occurrence::Left => Level::Debug,
             Occurrence::Failed { restart: None, .. } | Occurrence::Overrun { .. } | Occurrence::Abandoned => {
                 Level::Error
@@ -110,6 +115,12 @@ impl fmt::Display for Occurrence {
                 )
             }
             Occurrence::Restarted { number } => write!(formatter, "restarted ({number})"),
+            Occurrence::Replaced { continued: true } => {
+                formatter.write_str("is replaced by its new build, and goes on")
+            }
+            Occurrence::Replaced { continued: false } => {
+                formatter.write_str("is replaced by its new build, and begins anew")
+            }
             Occurrence::Slow { budget } => write!(
                 formatter,
                 "an execution takes longer than {}: it runs on a thread of its own from now on, less punctually",

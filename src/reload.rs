@@ -1,0 +1,180 @@
+//! `saoms run --reload`: components whose library is built anew are replaced while the fleet runs.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use saoms_api::Level;
+use saoms_core::assembly::{Assembly, ComponentSpec};
+use saoms_core::check::Options;
+use saoms_core::diagnostic::Severity;
+use saoms_core::schedule::{Handle, ReplaceError};
+
+use crate::arguments::FleetArguments;
+use crate::fleet::checked;
+use crate::output::eprint;
+
+/// How often the files are looked at. A file is taken when it is the same twice.
+const LOOK: Duration = Duration::from_millis(300);
+
+/// When a component that could not be replaced is asked again.
+const AGAIN: Duration = Duration::from_secs(1);
+
+/// What a file is known by: its number, its size, and when it was written.
+type Stamp = (u64, u64, i64, i64);
+
+/// Watches the libraries of a fleet until it is dropped.
+pub(crate) struct Reload {
+    _end: Sender<()>,
+}
+
+struct Watcher {
+    arguments: FleetArguments,
+    handle: Handle,
+    /// The paths of all components, in the order of the assembly.
+    components: Vec<String>,
+    files: BTreeMap<PathBuf, Known>,
+    /// Components that have to be asked again.
+    waiting: Vec<ComponentSpec>,
+    asked: Instant,
+}
+
+struct Known {
+    loaded: Option<Stamp>,
+    /// What the file was at the last look.
+    seen: Option<Stamp>,
+}
+
+impl Reload {
+    /// Begins to watch. Only the thread of the signals does as little.
+    pub(crate) fn start(arguments: &FleetArguments, assembly: &Watched, handle: Handle) -> Reload {
+        let (end, ended) = channel();
+        let known = |path: &PathBuf| {
+            let stamp = stamp(path);
+            (path.clone(), Known { loaded: stamp, seen: stamp })
+        };
+        let watcher = Watcher {
+            arguments: arguments.clone(),
+            components: assembly.components.clone(),
+            files: assembly.files.iter().map(known).collect(),
+            waiting: Vec::new(),
+            asked: Instant::now(),
+            handle: handle.clone(),
+        };
+        let spawned =
+            thread::Builder::new().name("saoms-reload".to_owned()).spawn(move || watcher.watch(&ended));
+        if let Err(error) = spawned {
+            handle.note(Level::Warning, format!("libraries are not watched: {error}"));
+        }
+        Reload { _end: end }
+    }
+}
+
+/// What there is to watch of an assembly.
+pub(crate) struct Watched {
+    components: Vec<String>,
+    files: Vec<PathBuf>,
+}
+
+impl Watched {
+    pub(crate) fn of(assembly: &Assembly) -> Watched {
+        let components = assembly.components.iter();
+        let mut files: Vec<PathBuf> = components.flat_map(origins).map(Path::to_owned).collect();
+        files.sort();
+        files.dedup();
+        Watched { components: paths(assembly), files }
+    }
+}
+
+/// The libraries that a component's class and loops come from.
+fn origins(component: &ComponentSpec) -> impl Iterator<Item = &Path> {
+    component.class.origin().into_iter().chain(component.loops.iter().filter_map(|one| one.class.origin()))
+}
+
+fn paths(assembly: &Assembly) -> Vec<String> {
+    assembly.components.iter().map(|component| component.path.clone()).collect()
+}
+
+fn stamp(path: &Path) -> Option<Stamp> {
+    let found = fs::metadata(path).ok()?;
+    Some((found.ino(), found.size(), found.mtime(), found.mtime_nsec()))
+}
+
+impl Watcher {
+    fn watch(mut self, ended: &Receiver<()>) {
+        while ended.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+            let changed: Vec<PathBuf> =
+                self.files.iter_mut().filter_map(|(path, known)| known.look(path)).collect();
+            if !changed.is_empty() {
+                self.reload(&changed);
+            }
+            if !self.waiting.is_empty() && self.asked.elapsed() >= AGAIN {
+                let waiting = std::mem::take(&mut self.waiting);
+                self.replace(waiting);
+            }
+        }
+    }
+
+    /// Takes new builds of these libraries.
+    fn reload(&mut self, changed: &[PathBuf]) {
+        let names: Vec<String> = changed.iter().map(|path| format!("`{}`", path.display())).collect();
+        let names = names.join(", ");
+        let kept = |why: &str| format!("{names} changed: {why}; the fleet goes on with the earlier build");
+        // What is wrong with a library was told already.
+        let Ok(outcome) = checked(&self.arguments, Options::default()) else {
+            return self.handle.note(Level::Error, kept("it cannot be used"));
+        };
+        let Some(assembly) = &outcome.assembly else {
+            eprint(&outcome.human(Severity::Error));
+            return self.handle.note(Level::Error, kept("the composites do not fit to it"));
+        };
+        if paths(assembly) != self.components {
+            return self.handle.note(
+                Level::Error,
+                kept("the composites have other components than when the fleet started: start it anew"),
+            );
+        }
+        self.handle.note(Level::Info, format!("{names} changed: its components are replaced"));
+        let affected = assembly
+            .components
+            .iter()
+            .filter(|component| origins(component).any(|origin| changed.iter().any(|path| path == origin)));
+        self.waiting.clear();
+        self.replace(affected.cloned().collect());
+    }
+
+    fn replace(&mut self, components: Vec<ComponentSpec>) {
+        self.asked = Instant::now();
+        for component in components {
+            let again = component.clone();
+            let path = component.path.clone();
+            match self.handle.replace(component) {
+                Ok(_) => {}
+                Err(ReplaceError::NotNow(why)) => {
+                    self.handle.note(Level::Info, format!("component `{path}` is replaced later: {why}"));
+                    self.waiting.push(again);
+                }
+                Err(ReplaceError::Failed(failure)) => self.handle.note(
+                    Level::Error,
+                    format!("component `{path}` is not replaced, the earlier one goes on: {failure}"),
+                ),
+            }
+        }
+    }
+}
+
+impl Known {
+    /// The path, when its file is another one than the one that is loaded, and nobody writes it any more.
+    fn look(&mut self, path: &Path) -> Option<PathBuf> {
+        let now = stamp(path);
+        let settled = std::mem::replace(&mut self.seen, now) == now;
+        (settled && now.is_some() && now != self.loaded).then(|| {
+            self.loaded = now;
+            path.to_owned()
+        })
+    }
+}
