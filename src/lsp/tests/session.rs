@@ -49,7 +49,7 @@ fn fixes(id: i32) -> Event {
 
 /// What a check of this text finds.
 fn checked(generation: u64, text: &str) -> Event {
-    let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new() }));
+    let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new(), copies: false }));
     let newest = Arc::new(AtomicU64::new(generation));
     let mut checker = Checker { registries, assume_classes: false, newest, workspace: Workspace::default() };
     let mut open = OpenTexts::default();
@@ -66,7 +66,7 @@ fn session(events: Vec<Event>) -> (Vec<String>, Exit) {
     let start = [ask(0, "initialize", json!({}))];
     start.into_iter().chain(events).for_each(|event| sender.send(event).unwrap());
     drop(sender);
-    let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new() }));
+    let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new(), copies: false }));
     let mut output = Vec::new();
     let exit = Server::new(&mut output, registries, jobs, Arc::new(AtomicU64::new(0))).run(&receiver);
     let output = String::from_utf8(output).unwrap();
