@@ -226,7 +226,7 @@ fn components<'f, 'a>(
     checked: Vec<Option<Checked>>,
     loops: Vec<Option<Vec<loops::Resolved<'a>>>>,
     report: &mut Report<'_>,
-) -> Vec<Option<Resolved<'a>>> {
+) -> Vec<Option<Box<Resolved<'a>>>> {
     let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
     let mut all = Vec::with_capacity(fleet.members.len());
@@ -252,7 +252,7 @@ fn components<'f, 'a>(
             let absent =
                 class.class.presets().iter().filter(|(name, _)| checked.get(&class.slots, name).is_none());
             values.extend(absent.cloned());
-            Resolved { values, written: checked.places(&class.slots), task, renamed, loops }
+            Box::new(Resolved { values, written: checked.places(&class.slots), task, renamed, loops })
         }));
     }
     report.about_all();
@@ -263,7 +263,7 @@ fn components<'f, 'a>(
 fn assemble(
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
-    resolved: Vec<Option<Resolved<'_>>>,
+    resolved: Vec<Option<Box<Resolved<'_>>>>,
     wiring: &Wiring,
     library: impl Fn(&crate::model::Component) -> Option<String>,
 ) -> Option<Assembly> {
@@ -281,7 +281,7 @@ fn assemble(
             continue;
         }
         let class = fleet.class_of(place, classes)?;
-        let Resolved { values, task, loops, .. } = resolved?;
+        let Resolved { values, task, loops, .. } = *resolved?;
         let references = class.references.iter().zip(&wiring[place]);
         let references = references.map(|(declared, providers)| Wire {
             reference: declared.name.clone(),

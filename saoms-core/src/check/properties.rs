@@ -56,8 +56,8 @@ impl Written<'_> {
 
 /// What all properties of a component come to.
 pub(super) struct Checked {
-    /// By the places of the class's properties.
-    pub(super) given: Vec<Option<Given>>,
+    /// By the places of the class's properties, of which most components give few.
+    pub(super) given: Vec<Option<Box<Given>>>,
     /// Whether there was no fault, so that the component can be constructed.
     pub(super) is_sound: bool,
 }
@@ -65,7 +65,7 @@ pub(super) struct Checked {
 impl Checked {
     /// What is given for the property of this name.
     pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<&Given> {
-        self.given[slots.place(name)?].as_ref()
+        self.given[slots.place(name)?].as_deref()
     }
 
     /// Where the class's own properties are given.
@@ -122,7 +122,7 @@ pub(super) fn check<'a>(
     report: &mut Report<'_>,
 ) -> Checked {
     let member = giver.member;
-    let mut given: Vec<Option<Given>> = std::iter::repeat_with(|| None).take(slots.all.len()).collect();
+    let mut given: Vec<Option<Box<Given>>> = std::iter::repeat_with(|| None).take(slots.all.len()).collect();
     let mut first: Vec<Option<&Property>> = vec![None; slots.all.len()];
     // Those whose `source` is right, and has no value.
     let mut unset: Vec<&Text> = Vec::new();
@@ -149,7 +149,7 @@ pub(super) fn check<'a>(
         let slot = &slots.all[place];
         match value(member, property, slot, parameters, values, report) {
             Ok(None) => unset.push(&property.name),
-            Ok(value) => given[place] = value,
+            Ok(value) => given[place] = value.map(Box::new),
             Err(()) => is_sound = false,
         }
     }

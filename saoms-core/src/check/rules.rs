@@ -15,7 +15,7 @@ use crate::registry::Rule;
 pub(super) fn check<'s>(
     fleet: &'s Fleet<'_>,
     classes: &'s [ClassIndex<'_>],
-    resolved: &'s [Option<Resolved<'_>>],
+    resolved: &'s [Option<Box<Resolved<'_>>>],
     wiring: &Wiring,
     rules: impl Iterator<Item = &'s Rule>,
     report: &mut Report<'_>,

@@ -8,15 +8,19 @@ use crate::source::{FileId, Location};
 /// How many diagnostics of one code are kept for one file. A generated file with one mistake in each of a million
 /// components must not cost a million messages.
 const LIMIT: u32 = 1000;
+/// How many of all codes together.
+const LIMIT_OF_FILE: u32 = 2000;
 
 /// Collects diagnostics.
 ///
-/// At most 1,000 diagnostics of one code are kept for one file; all are counted, and [`Diagnostics::into_sorted`] says
-/// how many more there were.
+/// At most 1,000 diagnostics of one code, and 2,000 in all, are kept for one file; all are counted, and [`Diagnostics::into_sorted`] says how
+/// many more there were.
 #[derive(Debug, Default)]
 pub struct Diagnostics {
     items: Vec<Diagnostic>,
     counts: HashMap<(FileId, &'static str), Count>,
+    /// How many are kept for each file.
+    kept: HashMap<FileId, u32>,
     errors: usize,
     warnings: usize,
 }
@@ -25,6 +29,7 @@ pub struct Diagnostics {
 struct Count {
     code: &'static Code,
     number: u32,
+    kept: u32,
     /// The place of the first one that was not kept.
     beyond: Option<Location>,
 }
@@ -37,8 +42,10 @@ impl Diagnostics {
 
     /// Adds one.
     pub fn push(&mut self, diagnostic: Diagnostic) {
-        if !self.skip(diagnostic.code, diagnostic.severity, diagnostic.location) {
-            self.count(diagnostic.code, diagnostic.severity, diagnostic.location.file);
+        let Diagnostic { code, severity, location, .. } = diagnostic;
+        if !self.skip(code, severity, location) {
+            self.count(code, severity, location.file).kept += 1;
+            *self.kept.entry(location.file).or_insert(0) += 1;
             self.items.push(diagnostic);
         }
     }
@@ -46,21 +53,26 @@ impl Diagnostics {
     /// Whether a diagnostic of this code is one too many for its file; it is counted then, as if it had been pushed.
     /// Asked before a diagnostic is put together, where a file can have a million of them.
     pub fn skip(&mut self, code: &'static Code, severity: Severity, location: Location) -> bool {
-        let count = self.counts.get_mut(&(location.file, code.id));
-        let Some(count) = count.filter(|count| count.number >= LIMIT) else { return false };
-        count.beyond.get_or_insert(location);
-        self.count(code, severity, location.file);
+        let kept = self.counts.get(&(location.file, code.id)).map_or(0, |count| count.kept);
+        // The first of a kind is always told.
+        let is_full = kept > 0 && self.kept.get(&location.file).is_some_and(|kept| *kept >= LIMIT_OF_FILE);
+        if kept < LIMIT && !is_full {
+            return false;
+        }
+        self.count(code, severity, location.file).beyond.get_or_insert(location);
         true
     }
 
-    fn count(&mut self, code: &'static Code, severity: Severity, file: FileId) {
+    fn count(&mut self, code: &'static Code, severity: Severity, file: FileId) -> &mut Count {
         match severity {
             Severity::Error => self.errors += 1,
             Severity::Warning => self.warnings += 1,
             Severity::Note => {}
         }
-        let new = Count { code, number: 0, beyond: None };
-        self.counts.entry((file, code.id)).or_insert(new).number += 1;
+        let new = Count { code, number: 0, kept: 0, beyond: None };
+        let count = self.counts.entry((file, code.id)).or_insert(new);
+        count.number += 1;
+        count
     }
 
     /// Makes errors of all warnings of one code in one file, and says why: what a file may say can still be wrong for
@@ -76,8 +88,8 @@ impl Diagnostics {
             kept += 1;
         }
         // Those that were not kept are of the severity of the last that was.
-        let number = self.counts.get(&(file, code.id)).map_or(0, |count| count.number as usize);
-        let changed = if kept == LIMIT as usize { number } else { kept };
+        let beyond = self.counts.get(&(file, code.id)).map_or(0, |count| count.number - count.kept);
+        let changed = if kept > 0 { kept + beyond as usize } else { 0 };
         self.warnings -= changed;
         self.errors += changed;
     }
@@ -152,7 +164,7 @@ impl Diagnostics {
         for count in self.counts.values() {
             if let Some(place) = count.beyond {
                 let Code { id, name, .. } = count.code;
-                let message = format!("{} more of the kind {id} ({name})", count.number - LIMIT);
+                let message = format!("{} more of the kind {id} ({name})", count.number - count.kept);
                 self.items
                     .push(Diagnostic::new(&codes::TOO_MANY, place, message).severity(count.code.severity));
             }

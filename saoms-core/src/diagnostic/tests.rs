@@ -250,3 +250,22 @@ fn code_scanning_sees_the_same() {
         ])
     );
 }
+
+#[test]
+fn of_many_kinds_in_one_file_each_is_told_and_all_are_counted() {
+    let kinds = || codes::ALL.iter().filter(|code| code.id != codes::TOO_MANY.id).take(20);
+    let mut diagnostics = Diagnostics::new();
+    for at in 0..900 {
+        for code in kinds() {
+            diagnostics.push(Diagnostic::new(code, Span::empty(at).in_file(FileId(0)), "m"));
+        }
+    }
+    assert_eq!(diagnostics.errors() + diagnostics.warnings(), 18_000);
+    assert!((2000..2020).contains(&diagnostics.iter().count()), "{}", diagnostics.iter().count());
+    let all = diagnostics.into_sorted();
+    for code in kinds() {
+        let kept = all.iter().filter(|one| one.code.id == code.id).count();
+        let more = format!("{} more of the kind {} ({})", 900 - kept, code.id, code.name);
+        assert!(kept > 0 && all.iter().any(|one| one.message == more), "{more}");
+    }
+}

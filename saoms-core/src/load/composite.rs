@@ -19,6 +19,7 @@ impl Loader<'_> {
         self.check_attributes(root, &COMPOSITE);
         self.no_text(root);
         let name = self.name(root);
+        let components = root.children().filter(|child| child.local_name() == "component").count();
         let mut composite = Composite {
             origin: Origin::of(root),
             document: Arc::clone(document),
@@ -31,7 +32,7 @@ impl Loader<'_> {
             properties: Vec::new(),
             services: Vec::new(),
             references: Vec::new(),
-            components: Vec::with_capacity(root.children().count()),
+            components: Vec::with_capacity(components),
             wires: Vec::new(),
             severities: Vec::new(),
             policy: self.policy(root),

@@ -18,10 +18,15 @@ pub struct LineRange {
     pub end: LineColumn,
 }
 
+/// Bytes between two places whose scalars are counted beforehand, so that a place far into an endless line costs no more than another.
+const BLOCK: usize = 1024;
+
 /// Where each line of a text starts. A line ends with LF, CR LF, or a CR alone, as in XML.
 #[derive(Debug)]
 pub(super) struct LineIndex {
     starts: Vec<u32>,
+    /// How many scalars there are before each multiple of [`BLOCK`].
+    scalars: Vec<u32>,
 }
 
 impl LineIndex {
@@ -33,16 +38,22 @@ impl LineIndex {
                 starts.push(at as u32 + 1);
             }
         }
-        Self { starts }
+        let mut scalars = Vec::with_capacity(bytes.len().div_ceil(BLOCK));
+        let mut before = 0;
+        for block in bytes.chunks(BLOCK) {
+            scalars.push(before);
+            before += counted(block);
+        }
+        Self { starts, scalars }
     }
 
     pub(super) fn line_column(&self, text: &str, at: u32) -> LineColumn {
         let at = text.floor_char_boundary(at as usize);
         let line = self.starts.partition_point(|&start| start as usize <= at);
         let start = self.starts[line - 1] as usize;
-        // The byte order mark is no character of the first line: editors do not show it.
-        let before = text[start..at].trim_start_matches('\u{feff}');
-        LineColumn { line: line as u32, column: before.chars().count() as u32 + 1 }
+        let start = (start + mark(&text[start..])).min(at.max(start));
+        let column = self.before(text, at).saturating_sub(self.before(text, start)) + 1;
+        LineColumn { line: line as u32, column }
     }
 
     pub(super) fn offset(&self, text: &str, place: LineColumn) -> u32 {
@@ -50,9 +61,45 @@ impl LineIndex {
         let start = self.starts[line - 1] as usize;
         let end = self.starts.get(line).map_or(text.len(), |&next| next as usize);
         let content = text[start..end].trim_end_matches(['\r', '\n']);
-        let mark = if content.starts_with('\u{feff}') { 3 } else { 0 };
-        let column = place.column.max(1) as usize - 1;
-        let inside = content[mark..].char_indices().nth(column).map_or(content.len() - mark, |(at, _)| at);
-        (start + mark + inside) as u32
+        let end = start + content.len();
+        let start = start + mark(content);
+        let wanted = self.before(text, start).saturating_add(place.column.max(1) - 1);
+        // The last block that begins no later; the scalar with this number begins in it.
+        let block = self.scalars.partition_point(|&before| before <= wanted).saturating_sub(1);
+        let from = (block * BLOCK).clamp(start, end);
+        let mut left = wanted - self.before(text, from);
+        let place = text.as_bytes()[from..end].iter().position(|&byte| {
+            let is_here = is_first(byte) && left == 0;
+            left -= u32::from(is_first(byte) && left > 0);
+            is_here
+        });
+        place.map_or(end, |place| from + place) as u32
     }
+
+    /// How many scalars begin before byte `at`.
+    fn before(&self, text: &str, at: usize) -> u32 {
+        let block = at / BLOCK;
+        match self.scalars.get(block) {
+            Some(before) => before + counted(&text.as_bytes()[block * BLOCK..at]),
+            // Right behind the last block.
+            None => match block.checked_sub(1) {
+                Some(last) => self.scalars[last] + counted(&text.as_bytes()[last * BLOCK..at]),
+                None => 0,
+            },
+        }
+    }
+}
+
+/// The length of the byte order mark that a line starts with. It is no character of the line: editors do not show it.
+fn mark(line: &str) -> usize {
+    if line.starts_with('\u{feff}') { 3 } else { 0 }
+}
+
+fn counted(bytes: &[u8]) -> u32 {
+    bytes.iter().filter(|byte| is_first(**byte)).count() as u32
+}
+
+/// Whether a scalar begins with this byte of UTF-8.
+fn is_first(byte: u8) -> bool {
+    byte & 0xC0 != 0x80
 }

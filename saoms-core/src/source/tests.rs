@@ -31,3 +31,29 @@ fn places_that_do_not_exist_become_the_nearest() {
     assert_eq!(file.offset(LineColumn { line: 1, column: 9 }), 2);
     assert_eq!(file.offset(LineColumn { line: 0, column: 0 }), 0);
 }
+
+#[test]
+fn places_in_endless_lines_are_those_that_counting_gives() {
+    // Characters of one to four bytes, so that blocks begin within some of them, and lines of very different lengths.
+    let mut text = "\u{feff}".to_owned();
+    for number in 0..6000_u32 {
+        text.push(['a', 'é', '\u{20ac}', '😀'][(number.wrapping_mul(2_654_435_761) >> 9) as usize % 4]);
+        if [10, 2500, 2501].contains(&number) {
+            text.push('\n');
+        }
+    }
+    let mut sources = Sources::new();
+    let file = sources.add("t", text.as_str());
+    let file = sources.get(file);
+    let (mut line, mut column) = (1, 1);
+    for (at, letter) in text.char_indices().skip(1) {
+        let place = LineColumn { line, column };
+        assert_eq!(file.line_column(at as u32), place, "byte {at}");
+        assert_eq!(file.offset(place), at as u32, "{place:?}");
+        (line, column) = if letter == '\n' { (line + 1, 1) } else { (line, column + 1) };
+    }
+    assert_eq!(file.line_column(u32::MAX), LineColumn { line, column });
+    assert_eq!(file.offset(LineColumn { line, column: u32::MAX }), text.len() as u32);
+    let end = text.find('\n').unwrap() as u32;
+    assert_eq!(file.offset(LineColumn { line: 1, column: u32::MAX }), end);
+}

@@ -1,0 +1,207 @@
+//! Whatever a file holds, reading and checking it takes at most 16 MB and 20 times its size.
+//!
+//! What is counted is what is allocated, at its peak, by the thread that does it.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+#![allow(unsafe_code, reason = "an allocator is unsafe code")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use saoms_components as _;
+use saoms_core::check::{Options, check};
+use saoms_core::diagnostic::{Diagnostics, human, json};
+use saoms_core::load::{MAX_SIZE, load_file, read_from};
+use saoms_core::model::Contribution;
+use saoms_core::registry::Registry;
+use saoms_core::source::Sources;
+
+/// Counts what each thread has allocated.
+struct Counting;
+
+thread_local! {
+    static NOW: Cell<isize> = const { Cell::new(0) };
+    static PEAK: Cell<isize> = const { Cell::new(0) };
+}
+
+fn count(bytes: isize) {
+    // While a thread ends, nothing is counted any more.
+    let _ = NOW.try_with(|now| {
+        now.set(now.get() + bytes);
+        let _ = PEAK.try_with(|peak| peak.set(peak.get().max(now.get())));
+    });
+}
+
+// SAFETY: every call goes on to the system's allocator as it is; counting allocates nothing.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as isize);
+        // SAFETY: the caller keeps the contract of this very function.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        count(-(layout.size() as isize));
+        // SAFETY: as above; the pointer came from the same allocator.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    // Large blocks are moved by the kernel, page by page: old and new are not there at once.
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count(size as isize - layout.size() as isize);
+        // SAFETY: as above.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+thread_local! {
+    static REGISTRY: Registry = Registry::linked().unwrap();
+}
+
+/// The most bytes that work takes beyond those that were there before.
+fn peak(work: impl FnOnce()) -> usize {
+    let before = NOW.get();
+    PEAK.set(before);
+    work();
+    usize::try_from(PEAK.get() - before).unwrap()
+}
+
+/// Reads, checks and tells what is wrong, as `saoms check` does.
+fn checked(bytes: &[u8], assume_classes: bool) {
+    REGISTRY.with(|registry| {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let file = read_from(bytes, "x.composite", MAX_SIZE, &mut sources, &mut diagnostics);
+        let composite = file.and_then(|file| load_file(file, &sources, &mut diagnostics));
+        let fleet = Contribution::of(composite.into_iter().collect());
+        let options = Options { assume_classes, ..Options::default() };
+        let assembly = check(&fleet, registry, &options, &sources, &mut diagnostics);
+        let all = diagnostics.into_sorted();
+        drop(human(&all, &sources, false));
+        drop(json(&all, &sources));
+        drop(assembly);
+    });
+}
+
+#[track_caller]
+fn holds(what: &str, bytes: &[u8]) {
+    let taken = peak(|| checked(bytes, false));
+    let limit = 16_000_000 + 20 * bytes.len();
+    assert!(taken <= limit, "{what}: {taken} bytes for {} of the file, {limit} at most", bytes.len());
+}
+
+const HEAD: &str =
+    "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='u'>";
+
+/// So much of a part in a composite.
+fn composite(size: usize, before: &str, part: impl Fn(usize) -> String, after: &str) -> String {
+    let mut text = format!("{HEAD}{before}");
+    let mut number = 0;
+    while text.len() < size {
+        text += &part(number);
+        number += 1;
+    }
+    text + after + "</composite>"
+}
+
+/// The composites of this repository, and some of the larger collection beside it.
+fn files() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut paths = below(&root.join("composites"));
+    let collections = root.ancestors().map(|folder| folder.join("shared/corpus/files"));
+    for collection in collections.filter(|folder| folder.is_dir()).take(1) {
+        paths.extend(below(&collection).into_iter().step_by(20));
+    }
+    paths
+}
+
+fn below(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.extension() {
+            _ if path.is_dir() => found.extend(below(&path)),
+            Some(extension) if extension == "composite" => found.push(path),
+            _ => {}
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn real_files_whole_cut_off_and_with_bits_flipped() {
+    let files = files();
+    assert!(files.len() > 10);
+    for (number, path) in files.iter().enumerate() {
+        let what = path.display().to_string();
+        let mut bytes = fs::read(path).unwrap();
+        holds(&what, &bytes);
+        // Another place in each file.
+        let at = number.wrapping_mul(7919) % bytes.len();
+        holds(&what, &bytes[..at]);
+        bytes[at] ^= 1 << (number % 8);
+        holds(&what, &bytes);
+    }
+}
+
+fn same(part: &'static str) -> impl Fn(usize) -> String {
+    move |_| part.to_owned()
+}
+
+/// What takes the most for its size.
+#[test]
+fn files_made_to_take_much() {
+    const SIZE: usize = 1_000_000;
+    let robot = |number: usize| {
+        format!(
+            "<component name='R{number}'><implementation.java class='saoms.Robot'/><property name='ID'>R{number}</property><property name='period'>100</property></component>\n"
+        )
+    };
+    for (what, text) in [
+        ("elements", composite(SIZE, "", same("<a/>"), "")),
+        ("deep elements", "<a>".repeat(SIZE / 3)),
+        ("components", composite(SIZE, "", same("<component name='a'/>"), "")),
+        ("named components", composite(SIZE, "", |n| format!("<component name='{n}'/>"), "")),
+        ("robots", composite(SIZE, "", robot, "")),
+        ("promoted", composite(SIZE, "<reference name='b' promote='", same("a "), "'/>")),
+    ] {
+        holds(what, text.as_bytes());
+    }
+}
+
+/// What could take the square of its size.
+#[test]
+fn files_with_very_many_of_one_kind() {
+    const SIZE: usize = 50_000;
+    let component = |inside: &str| format!("<component name='a'>{inside}");
+    let end = "</component>";
+    let property = component("<property name='a'>");
+    for (what, text) in [
+        ("deep components", format!("{HEAD}{}", "<component name='a'>".repeat(SIZE / 20))),
+        ("deep values", format!("{HEAD}{property}{}", "<v>".repeat(SIZE / 3))),
+        ("wires", composite(SIZE, "", same("<wire source='a' target='b'/>"), "")),
+        ("includes", composite(SIZE, "", same("<include name='a'/>"), "")),
+        ("properties", composite(SIZE, &component(""), same("<property name='a'/>"), end)),
+        ("composite properties", composite(SIZE, "", |n| format!("<property name='{n}'/>"), "")),
+        ("values", composite(SIZE, &property, same("<value/>"), "</property></component>")),
+        ("services", composite(SIZE, &component(""), same("<service name='a'/>"), end)),
+        ("references", composite(SIZE, &component(""), same("<reference name='a'/>"), end)),
+        ("promotions", composite(SIZE, "", same("<service name='a' promote='b'/>"), "")),
+        ("intents", composite(SIZE, "<component name='a' requires='", same("a "), "'/>")),
+        ("attributes", composite(SIZE, "<component name='a' ", |n| format!("a{n}='' "), "/>")),
+        ("namespaces", composite(SIZE, "<component name='a' ", |n| format!("xmlns:a{n}='{n}' "), "/>")),
+        ("namespaces over and over", composite(SIZE, "", |n| format!("<b xmlns='{n}'/>"), "")),
+        ("loops", composite(SIZE, &component(""), same("<s:loop xmlns:s='urn:saoms:1' name='a'/>"), end)),
+        ("sections", composite(SIZE, "<property name='a'>", same("<![CDATA[<]]>"), "</property>")),
+        ("unknown entities", composite(SIZE, "<property name='a'>", same("&a;"), "</property>")),
+        ("less than", "<".repeat(SIZE)),
+        ("no text", "\u{1}".repeat(SIZE)),
+    ] {
+        holds(what, text.as_bytes());
+    }
+}
