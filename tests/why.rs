@@ -169,3 +169,29 @@ fn the_journal_needs_a_file_of_its_own() {
         assert!(told.contains(mentions) && told.contains("nothing was started"), "{told}");
     }
 }
+
+#[test]
+fn a_safe_robot_knows_that_it_goes_to_its_charger_and_is_in_charge() {
+    let scenario = "at 1s luggage (3,1) to (9,1); at 4s luggage (9,2) to (3,5); at 20s end";
+    let component = |name: &str, class: &str, inside: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.java class=\"{class}\"/><property name=\"ID\">{name}</property><property name=\"period\">100</property>{inside}</component>\n"
+        )
+    };
+    let text = component("World", "saoms.World", "")
+        + &component("Master", "saoms.MasterEnvironment", "")
+        + &component(
+            "Environment",
+            "saoms.Environment",
+            &format!("<property name=\"scenario\">{scenario}</property>"),
+        )
+        + &component("Robot1", "saoms.Robot", "<reference name=\"world\" target=\"World\"/>");
+    let start = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">";
+    let run = saoms_testkit::Fleet::of_text(format!("{start}\n{text}</composite>"))
+        .run(1, std::time::Duration::from_secs(60));
+    let journal: String = run.journal().entries().iter().map(|entry| format!("{entry}\n")).collect();
+    for change in ["inCharge", "reachingCharge", "readyToGoUnderCharge"] {
+        let changes = journal.lines().filter(|line| line.contains(change)).count();
+        assert!(changes >= 2, "{change} {changes}:\n{journal}");
+    }
+}

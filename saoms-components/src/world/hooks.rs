@@ -76,7 +76,10 @@ impl Hardware for World {
         name: String,
         block: Block,
     ) -> Result<Block, Failure> {
-        self.referee.enter(robot, name, block)
+        let block = self.referee.enter(robot, name, block)?;
+        // One that starts again knows nothing of what it carried: that lies where others look for it.
+        self.stock.unload(robot, block);
+        Ok(block)
     }
 
     fn area(&mut self, _context: &mut Context<'_>) -> Result<Area, Failure> {

@@ -120,6 +120,13 @@ impl Stock {
         Ok(Luggage::Delivered)
     }
 
+    /// What a robot has on board lies on a block from now on.
+    pub(super) fn unload(&mut self, robot: u32, block: Block) {
+        for piece in self.pieces.values_mut().filter(|piece| piece.place == Place::On(robot)) {
+            piece.place = Place::At(block);
+        }
+    }
+
     fn unknown(&mut self, luggage: u32) -> Result<Luggage, String> {
         match self.awaited.iter().position(|(awaited, _)| *awaited == luggage) {
             None => {
