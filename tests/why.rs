@@ -172,7 +172,7 @@ fn the_journal_needs_a_file_of_its_own() {
 
 #[test]
 fn a_safe_robot_knows_that_it_goes_to_its_charger_and_is_in_charge() {
-    let scenario = "at 1s luggage (3,1) to (9,1); at 4s luggage (9,2) to (3,5); at 20s end";
+    let scenario = "at 1s luggage (3,1) to (10,9); at 3s luggage (9,9) to (3,9); at 30s end";
     let component = |name: &str, class: &str, inside: &str| {
         format!(
             "<component name=\"{name}\"><implementation.java class=\"{class}\"/><property name=\"ID\">{name}</property><property name=\"period\">100</property>{inside}</component>\n"
