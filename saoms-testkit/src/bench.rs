@@ -1,5 +1,5 @@
 use std::path::Path;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use saoms_api::contain::{contained, install_hook};
@@ -8,7 +8,7 @@ use saoms_api::{
     Registration, ReportValue, ServiceCall, SharedMessage, Topic, Work,
 };
 use saoms_core::plugin::Plugin;
-use saoms_core::registry::Registry;
+use saoms_core::registry::{LoopClass, Registry};
 use saoms_core::schema::Schema;
 use serde_json::Value;
 
@@ -95,6 +95,11 @@ impl Bench {
         let component = contained(|| found.construct(&values))??;
         let stage = Stage::new(registry, found, &values)?;
         Ok(Bench { component, stage, waiting: Vec::new(), step: 0, started: false })
+    }
+
+    pub(crate) fn of_loop(class: &Arc<LoopClass>, component: Box<dyn DynComponent>) -> Bench {
+        let stage = Stage::of_loops(vec![Arc::clone(class)]);
+        Bench { component, stage, waiting: Vec::new(), step: 0, started: false }
     }
 
     /// Gives it another period than 100 ms.
@@ -263,7 +268,8 @@ impl Bench {
         self.stage.report.iter().rev().find(|(known, _)| known == path).map(|(_, value)| value)
     }
 
-    /// Everything that it did, a line each with its time, messages as JSON: to look at, or to compare with a file.
+    /// Everything that it did, a line each with its time, messages as JSON: to look at, or to hold to a file with
+    /// [`expect_transcript`](Bench::expect_transcript).
     pub fn transcript(&self) -> String {
         self.stage.transcript()
     }

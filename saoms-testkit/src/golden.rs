@@ -8,7 +8,7 @@ use saoms_core::format::{WIDTH, format};
 use saoms_core::source::FileId;
 use saoms_core::xml;
 
-use crate::Fleet;
+use crate::{Bench, Fleet};
 
 /// Lines around a difference that are shown.
 const AROUND: usize = 3;
@@ -21,7 +21,6 @@ impl Fleet {
     /// # Panics
     /// With the lines that differ, when the text is another one, or there is no such file; with all diagnostics when the composites have errors.
     #[track_caller]
-    #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn expect_expanded(&self, path: impl AsRef<Path>) {
         let path = path.as_ref();
         let text = self.expanded();
@@ -29,17 +28,37 @@ impl Fleet {
             Some(document) => format(&document, WIDTH),
             None => text,
         };
-        if env::var_os("UPDATE_EXPECT").is_some() {
-            return fs::write(path, text)
-                .unwrap_or_else(|error| panic!("`{}` cannot be written: {error}", path.display()));
-        }
-        let expected = fs::read_to_string(path).unwrap_or_default();
-        if let Some(difference) = difference(&expected, &text) {
-            panic!(
-                "the fleet comes to something else than `{}` says:\n{difference}- is expected, + is so; UPDATE_EXPECT=1 writes what is so",
-                path.display()
-            );
-        }
+        hold("the fleet comes to", &text, path);
+    }
+}
+
+impl Bench {
+    /// Holds everything that the component did so far, its [transcript](Bench::transcript), to the text of a file; paths are relative to the crate.
+    ///
+    /// With `UPDATE_EXPECT=1` in the environment the file is written anew.
+    ///
+    /// # Panics
+    /// With the lines that differ, when the text is another one, or there is no such file.
+    #[track_caller]
+    pub fn expect_transcript(&self, path: impl AsRef<Path>) {
+        hold("the component did", &self.transcript(), path.as_ref());
+    }
+}
+
+/// Holds a text to that of a file, or writes the file.
+#[track_caller]
+#[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
+fn hold(what: &str, text: &str, path: &Path) {
+    if env::var_os("UPDATE_EXPECT").is_some() {
+        return fs::write(path, text)
+            .unwrap_or_else(|error| panic!("`{}` cannot be written: {error}", path.display()));
+    }
+    let expected = fs::read_to_string(path).unwrap_or_default();
+    if let Some(difference) = difference(&expected, text) {
+        panic!(
+            "{what} something else than `{}` says:\n{difference}- is expected, + is so; UPDATE_EXPECT=1 writes what is so",
+            path.display()
+        );
     }
 }
 

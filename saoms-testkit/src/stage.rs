@@ -31,7 +31,8 @@ pub(crate) struct Taken {
 }
 
 pub(crate) struct Stage {
-    class: Arc<Class>,
+    /// Absent where a loop is alone on the stage.
+    class: Option<Arc<Class>>,
     loops: Vec<Arc<LoopClass>>,
     loop_names: Vec<String>,
     acting: Option<u32>,
@@ -70,8 +71,13 @@ impl Stage {
             registry.get_loop(name).cloned().ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))
         };
         let loops = declaration.loops.of(chosen).iter().map(find).collect::<Result<_, _>>()?;
-        Ok(Stage {
-            class: Arc::clone(class),
+        Ok(Stage { class: Some(Arc::clone(class)), ..Stage::of_loops(loops) })
+    }
+
+    /// The stage of loops without a component around them.
+    pub(crate) fn of_loops(loops: Vec<Arc<LoopClass>>) -> Stage {
+        Stage {
+            class: None,
             loops,
             loop_names: Vec::new(),
             acting: None,
@@ -86,7 +92,7 @@ impl Stage {
             happened: Vec::new(),
             report: Vec::new(),
             work: None,
-        })
+        }
     }
 
     pub(crate) fn set_seed(&mut self, seed: u64) {
@@ -103,12 +109,15 @@ impl Stage {
     }
 
     fn declared(&self, publishes: bool) -> impl Iterator<Item = &Declared> {
-        let class = self.class.declaration();
+        let of_class = self.class.iter().flat_map(move |class| {
+            let class = class.declaration();
+            if publishes { &class.publishes } else { &class.subscribes }
+        });
         let of_loops = self.loops.iter().flat_map(move |one| {
             let one = one.declaration();
             if publishes { &one.publishes } else { &one.subscribes }
         });
-        (if publishes { &class.publishes } else { &class.subscribes }).iter().chain(of_loops)
+        of_class.chain(of_loops)
     }
 
     /// The topics that are heard by declaration, with their schemas.
@@ -136,7 +145,7 @@ impl Stage {
             return Err(Failure::new(format!(
                 "topic `{}`: it {verb}, but neither its class `{}` nor a loop declares that",
                 topic.name,
-                self.class.name()
+                self.class.as_ref().map_or("(none)", |class| class.name())
             )));
         }
         Ok(Taken { name: topic.name.to_owned(), schema: Schema::parse(topic.schema).ok() })
@@ -236,11 +245,9 @@ impl Host for Stage {
     }
 
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {
-        let class = self.class.declaration();
+        let of_class = self.class.iter().flat_map(|class| &class.declaration().references);
         let of_loops = self.loops.iter().flat_map(|one| &one.declaration().references);
-        let declared = class
-            .references
-            .iter()
+        let declared = of_class
             .chain(of_loops)
             .any(|reference| reference.name == name && reference.interface.name == interface);
         if !declared {

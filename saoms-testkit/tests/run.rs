@@ -26,7 +26,7 @@ fn what_happened_is_found_by_its_words_and_in_its_order() {
     let deposits = robot.to("deposits luggage 1").after(&collects).after(collects.time());
     assert!(deposits.text().contains("luggage 1") && deposits.time() > takes.time());
     let moves = robot.to("block");
-    moves.again().after(&moves).before(&moves.again().again());
+    moves.again().after(&moves).before(moves.again().again());
     robot.never_to("breaks down");
     assert_eq!(robot.count("collects luggage 1"), 1);
 }

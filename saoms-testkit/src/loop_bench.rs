@@ -1,0 +1,229 @@
+use std::fmt;
+use std::ops::{Deref, DerefMut};
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use saoms_api::contain::{contained, install_hook};
+use saoms_api::{
+    CallError, Context, DynComponent, Failure, Invocation, Knowledge, KnowledgeClass, LoopClass,
+    LoopRegistration, Loops, PropertyValue, Saved, Value,
+};
+use saoms_core::plugin::Plugin;
+use saoms_core::registry::Registry;
+
+use crate::Bench;
+
+/// One loop on knowledge that a test makes: the test changes what the loop senses, and sees what it decides and changes.
+///
+/// It is a [`Bench`] otherwise: [`start`](Bench::start), [`execute`](Bench::execute), messages, log, journal. In each execution the loop
+/// monitors, analyzes, plans and executes, with the same checks as in a fleet: a loop that changes what it does not declare has failed.
+///
+/// ```
+/// use saoms_api::{
+///     Context, Effector, Entry, Extras, Failure, Knowledge, Loop, LoopClass, Record, Value, record,
+/// };
+/// use saoms_testkit::LoopBench;
+///
+/// /// What the loop works on.
+/// #[derive(Default, Knowledge)]
+/// #[knowledge(name = "test.Lamp")]
+/// struct Lamp {
+///     #[entry(unit = "lx")]
+///     brightness: f64,
+///     #[entry(effector)]
+///     is_on: bool,
+///     #[extras]
+///     extras: Extras,
+/// }
+///
+/// /// Switches a lamp on when it is dark.
+/// #[derive(LoopClass)]
+/// #[looping(name = "test.Dusk", senses("brightness"), effects("isOn"))]
+/// struct Dusk {
+///     brightness: Entry<f64>,
+///     is_on: Effector<bool>,
+/// }
+///
+/// impl Loop for Dusk {
+///     type Properties = ();
+///     type Knowledge = dyn Knowledge;
+///     type Symptom = Record;
+///     type Decision = Record;
+///
+///     fn new((): ()) -> Result<Self, Failure> {
+///         Ok(Dusk { brightness: Entry::default(), is_on: Effector::default() })
+///     }
+///
+///     fn initialize(&mut self, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+///         self.brightness = lamp.entry("brightness")?;
+///         self.is_on = lamp.effector("isOn")?;
+///         Ok(())
+///     }
+///
+///     fn analyze(&mut self, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+///         let dark = self.brightness.get(lamp)? < 10.0 && !self.is_on.get(lamp)?;
+///         Ok(dark.then(|| record!("is dark")))
+///     }
+///
+///     fn plan(&mut self, _: Record, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+///         Ok(Some(record!("switches it on")))
+///     }
+///
+///     fn execute(&mut self, _: Record, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+///         self.is_on.set(lamp, true)
+///     }
+/// }
+///
+/// let mut bench = LoopBench::of::<Dusk>(Lamp { brightness: 50.0, ..Lamp::default() }, &[])?;
+/// bench.start()?;
+/// bench.execute()?;
+/// assert_eq!(bench.journal(), [""; 0]);
+/// bench.knowledge().brightness = 3.0;
+/// bench.execute()?;
+/// assert_eq!(bench.journal(), ["Dusk symptom: is dark", "Dusk decision: switches it on", "Dusk isOn: no -> yes"]);
+/// assert!(bench.knowledge().is_on);
+/// assert_eq!(bench.value("isOn"), Some(Value::Bool(true)));
+/// # Ok::<(), Failure>(())
+/// ```
+pub struct LoopBench<K> {
+    bench: Bench,
+    knowledge: Arc<Mutex<K>>,
+}
+
+impl<K: KnowledgeClass + Send> LoopBench<K> {
+    /// A loop that the test links, with these values of its properties.
+    ///
+    /// # Errors
+    /// The loop refuses the values.
+    pub fn of<L: LoopClass>(knowledge: K, values: &[(&str, &str)]) -> Result<LoopBench<K>, Failure> {
+        let mut registry = Registry::new();
+        let registration = LoopRegistration::of::<L>();
+        let name = registration.name();
+        registry.add_loop(registration).map_err(|error| Failure::new(error.to_string()))?;
+        LoopBench::in_registry(&registry, name, knowledge, values)
+    }
+
+    /// A loop in a library, across the boundary to plugins.
+    ///
+    /// # Errors
+    /// The library cannot be used, has no such loop, or the loop refuses the values.
+    pub fn of_library(
+        library: &Path,
+        name: &str,
+        knowledge: K,
+        values: &[(&str, &str)],
+    ) -> Result<LoopBench<K>, Failure> {
+        let mut registry = Registry::new();
+        let plugin = Plugin::open(library).map_err(|error| Failure::new(error.to_string()))?;
+        plugin.register(&mut registry).map_err(|error| Failure::new(error.to_string()))?;
+        LoopBench::in_registry(&registry, name, knowledge, values)
+    }
+
+    fn in_registry(
+        registry: &Registry,
+        name: &str,
+        knowledge: K,
+        values: &[(&str, &str)],
+    ) -> Result<LoopBench<K>, Failure> {
+        install_hook();
+        let class =
+            registry.get_loop(name).ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))?;
+        let given = values.iter().map(|(name, value)| ((*name).to_owned(), PropertyValue::from(*value)));
+        let values: Vec<_> = given.collect();
+        let instance = contained(|| class.construct(&values))??;
+        let short = class.declaration().short_name().to_owned();
+        let knowledge = Arc::new(Mutex::new(knowledge));
+        let component = Subject { knowledge: Arc::clone(&knowledge), loops: Loops::of([(short, instance)]) };
+        Ok(LoopBench { bench: Bench::of_loop(class, Box::new(component)), knowledge })
+    }
+
+    /// What the loop works on, to look at it and to change it between executions.
+    pub fn knowledge(&self) -> MutexGuard<'_, K> {
+        self.knowledge.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The value of an entry by its name, also of one that the loop added; `None` where there is none, or no single value.
+    pub fn value(&self, entry: &str) -> Option<Value> {
+        let knowledge = self.knowledge();
+        let knowledge: &dyn Knowledge = &*knowledge;
+        let place = knowledge.all_declared().position(|declared| declared.name == entry)?;
+        knowledge.value(u32::try_from(place).ok()?)
+    }
+
+    /// Gives it another period than 100 ms.
+    #[must_use]
+    pub fn period(mut self, period: Duration) -> LoopBench<K> {
+        self.bench = self.bench.period(period);
+        self
+    }
+
+    /// Gives its chance another seed than 0.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> LoopBench<K> {
+        self.bench = self.bench.seed(seed);
+        self
+    }
+}
+
+impl<K> Deref for LoopBench<K> {
+    type Target = Bench;
+
+    fn deref(&self) -> &Bench {
+        &self.bench
+    }
+}
+
+impl<K> DerefMut for LoopBench<K> {
+    fn deref_mut(&mut self) -> &mut Bench {
+        &mut self.bench
+    }
+}
+
+impl<K> fmt::Debug for LoopBench<K> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.bench.fmt(formatter)
+    }
+}
+
+/// A component that is nothing but its loop.
+struct Subject<K> {
+    knowledge: Arc<Mutex<K>>,
+    loops: Loops,
+}
+
+impl<K: Knowledge> Subject<K> {
+    fn with<T>(&mut self, code: impl FnOnce(&mut Loops, &mut dyn Knowledge) -> T) -> T {
+        let mut knowledge = self.knowledge.lock().unwrap_or_else(PoisonError::into_inner);
+        code(&mut self.loops, &mut *knowledge)
+    }
+}
+
+impl<K: Knowledge + Send> DynComponent for Subject<K> {
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.with(|loops, knowledge| loops.initialize(knowledge, context))
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.with(|loops, knowledge| {
+            loops.monitor(knowledge, context)?;
+            loops.adapt(knowledge, context)
+        })
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.with(|loops, knowledge| loops.shutdown(knowledge, context))
+    }
+
+    fn serve(&mut self, invocation: &mut Invocation<'_>, _: &mut Context<'_>) -> Result<(), CallError> {
+        Err(CallError::Mismatch { message: format!("a loop has no service `{}`", invocation.service) })
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::default())
+    }
+
+    fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
+        Err("a loop alone restores nothing".into())
+    }
+}
