@@ -1,13 +1,14 @@
 //! `saoms components`: what a composite can name, from the declarations alone.
 
 mod loops;
+mod rules;
 
 use std::fmt::Write;
 
 use saoms_api::Properties;
 use saoms_core::assembly::TaskProperties;
 use saoms_core::registry::{
-    Class, InterfaceDeclaration, LoopClass, PropertyDeclaration, Registry, TopicDeclaration,
+    Class, InterfaceDeclaration, LoopClass, PropertyDeclaration, Registry, Rule, TopicDeclaration,
 };
 use serde_json::{Value, json};
 
@@ -43,13 +44,17 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
                 .into_iter()
                 .map(|one| serde_json::from_str(one.declaration_json()).unwrap_or_default())
                 .collect();
-            print(&format!("{:#}\n", json!({ "components": classes, "loops": loops })));
+            let rules: Vec<Value> = match arguments.name {
+                Some(_) => Vec::new(),
+                None => registry.rules().iter().map(rules::as_json).collect(),
+            };
+            print(&format!("{:#}\n", json!({ "components": classes, "loops": loops, "rules": rules })));
         }
         Format::Human if arguments.name.is_some() => {
             chosen.into_iter().for_each(|class| print(&described(class)));
             loops.into_iter().for_each(|one| print(&loops::described(one)));
         }
-        Format::Human => print(&listed(&chosen, &loops)),
+        Format::Human => print(&listed(&chosen, &loops, registry.rules())),
     }
     Exit::Done
 }
@@ -65,8 +70,8 @@ fn unknown(name: &str, registry: &Registry) -> String {
     text
 }
 
-/// A line per class, then one per loop.
-fn listed(classes: &[&Class], loops: &[&LoopClass]) -> String {
+/// A line per class, then one per loop, then one per rule of a plugin.
+fn listed(classes: &[&Class], loops: &[&LoopClass], rules: &[Rule]) -> String {
     let width = classes.iter().map(|class| class.name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for class in classes {
@@ -89,6 +94,7 @@ fn listed(classes: &[&Class], loops: &[&LoopClass]) -> String {
         text.push('\n');
         text.push_str(&loops::listed(loops));
     }
+    text.push_str(&rules::listed(rules));
     text.push_str("\n`saoms components NAME` describes one of them.\n");
     text
 }

@@ -2,8 +2,10 @@
 
 use std::fs;
 
+use serde_json::Value;
+
 use crate::build::library;
-use crate::run::{component, fleet, property, second};
+use crate::run::{component, fleet, property, saoms, second};
 
 #[test]
 fn messages_and_calls_go_between_plugins_and_the_program() {
@@ -41,6 +43,23 @@ fn a_rule_of_a_plugin_takes_part_in_the_check() {
     assert_eq!(run.code, Some(0), "{}", run.text);
     assert!(run.text.contains("warning[X0001]: this is one more sender"), "{}", run.text);
     assert!(run.text.contains("the first") && run.text.contains("help: keep one"), "{}", run.text);
+}
+
+#[test]
+fn what_a_library_offers_is_listed_and_runs_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = library("good");
+    let run = saoms(folder.path(), &["components", "--plugin", good.to_str().unwrap()]);
+    for expected in
+        ["good.Sender", "Sends a reading in each period", "X0001  one-sender  A fleet has several senders"]
+    {
+        assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
+    }
+    let run = saoms(folder.path(), &["components", "--format", "json", "--plugin", good.to_str().unwrap()]);
+    let listed: Value = serde_json::from_str(&run.text).unwrap();
+    let rules = listed["rules"].as_array().unwrap();
+    let rule = rules.iter().find(|rule| rule["code"] == "X0001").unwrap();
+    assert_eq!((&rule["severity"], &rule["library"]), (&"warning".into(), &good.to_str().unwrap().into()));
 }
 
 #[test]

@@ -75,7 +75,10 @@ impl Desk {
         takes_in: bool,
         code: impl FnOnce(&mut Context<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
-        if takes_in && (handle.inbox_count != 0 || self.is_filled) {
+        if !takes_in {
+            // SAFETY: as the caller promises.
+            unsafe { handle.has_all() }?;
+        } else if handle.inbox_count != 0 || self.is_filled {
             // SAFETY: as the caller promises.
             unsafe { self.take_in(handle) }?;
         }
@@ -227,4 +230,28 @@ unsafe fn copy(view: &MessageView) -> Result<SharedMessage, Failure> {
     // SAFETY: as the caller promises.
     let bytes = unsafe { view.bytes.get() }?;
     Ok(SharedMessage::from_bytes(header, (view.has_key != 0).then_some(view.key), bytes.to_vec()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::host::{FUNCTIONS, HostFunctions};
+    use super::*;
+
+    #[test]
+    fn a_program_that_is_older_than_the_library_is_refused() {
+        let older = HostFunctions { size: size_of::<HostFunctions>() - size_of::<usize>(), ..FUNCTIONS };
+        let host = |functions| HostHandle {
+            state: std::ptr::null_mut(),
+            functions,
+            inboxes: std::ptr::null(),
+            inbox_count: 0,
+        };
+        let initialized = |functions| {
+            // SAFETY: the handle is there; nothing is called through it.
+            unsafe { Desk::default().with(&host(functions), false, |_| Ok::<(), Failure>(())) }
+        };
+        assert_eq!(initialized(&raw const FUNCTIONS), Ok(()));
+        let failure = initialized(&raw const older).unwrap_err();
+        assert!(failure.message().starts_with("the program is older than the library"), "{failure}");
+    }
 }

@@ -2,7 +2,7 @@ use std::ffi::c_void;
 use std::ptr;
 use std::slice;
 
-use crate::{Failure, PropertyValue, Value};
+use crate::{Failure, PropertyValue, Record, Value};
 
 /// What the other side says to be longer than this is refused: no message, text or reply is.
 pub const MAX_BYTES: usize = 64 << 20;
@@ -354,4 +354,26 @@ pub struct RecordView {
     pub values: *const ValueView,
     /// How many values there are, at most 6.
     pub count: usize,
+}
+
+impl RecordView {
+    /// # Safety
+    /// The view is readable, and its texts are for as long as the program runs.
+    pub(super) unsafe fn read(&self) -> Result<Record, Failure> {
+        let mut values = [crate::Value::Bool(false); 6];
+        if self.count > values.len() {
+            return Err(Failure::new(format!(
+                "found {} values, expected at most {}",
+                self.count,
+                values.len()
+            )));
+        }
+        // SAFETY: as the caller promises.
+        unsafe {
+            for (place, value) in values.iter_mut().enumerate().take(self.count) {
+                *value = ValueView::read(*self.values.add(place))?;
+            }
+            Ok(Record::new(self.text.get_text()?, self.names.get_text()?, values))
+        }
+    }
 }

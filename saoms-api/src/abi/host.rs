@@ -2,8 +2,7 @@ use std::ffi::c_void;
 use std::time::Duration;
 
 use crate::{
-    Cause, Failure, Header, Host, Level, Phase, Record, SharedMessage, Time, TopicDeclaration, TopicKind,
-    Work,
+    Cause, Failure, Header, Host, Level, Phase, SharedMessage, Time, TopicDeclaration, TopicKind, Work,
 };
 
 use super::data::PropertyViews;
@@ -419,28 +418,6 @@ unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const Record
                 Err(failure) => warn(host, "a record", &failure),
             }
         });
-    }
-}
-
-impl RecordView {
-    /// # Safety
-    /// The view is readable, and its texts are for as long as the program runs.
-    unsafe fn read(&self) -> Result<Record, Failure> {
-        let mut values = [crate::Value::Bool(false); 6];
-        if self.count > values.len() {
-            return Err(Failure::new(format!(
-                "found {} values, expected at most {}",
-                self.count,
-                values.len()
-            )));
-        }
-        // SAFETY: as the caller promises.
-        unsafe {
-            for (place, value) in values.iter_mut().enumerate().take(self.count) {
-                *value = ValueView::read(*self.values.add(place))?;
-            }
-            Ok(Record::new(self.text.get_text()?, self.names.get_text()?, values))
-        }
     }
 }
 

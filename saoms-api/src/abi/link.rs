@@ -95,6 +95,26 @@ impl<'a> Link<'a> {
     }
 }
 
+impl HostHandle {
+    /// Whether all functions are there that this library was built for. Asked before a component or a loop is initialized.
+    ///
+    /// # Errors
+    /// The program is older than the library.
+    ///
+    /// # Safety
+    /// The handle is that of a call that goes on.
+    pub(super) unsafe fn has_all(&self) -> Result<(), Failure> {
+        // SAFETY: as the caller promises; the table begins with its size.
+        let size = unsafe { (*self.functions).size };
+        if size < size_of::<HostFunctions>() {
+            return Err(Failure::new(
+                "the program is older than the library: use a newer program, or build the library with an older saoms-api",
+            ));
+        }
+        Ok(())
+    }
+}
+
 /// A loop that the composite chose for a component.
 struct Chosen {
     name: String,

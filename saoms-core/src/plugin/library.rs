@@ -115,6 +115,7 @@ unsafe fn one<T>(table: *const T) -> Result<&'static T, String> {
     }
     // SAFETY: as the caller promises; all tables begin with their size.
     let size = unsafe { *table.cast::<usize>() };
+    // Where a table grows within a version, this has to be what that version began with, and what is missing none.
     if size < size_of::<T>() {
         return Err(format!("a table has {size} bytes, expected {}", size_of::<T>()));
     }
