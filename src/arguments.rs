@@ -79,7 +79,7 @@ pub(crate) enum Command {
     /// Write composites in one layout: indentation, attributes, blank lines; order, comments and text stay
     #[command(after_help = FMT_EXIT_CODES)]
     Fmt(FmtArguments),
-    /// Draw a composite: components, services, references, properties, wires, promotions, topics
+    /// Draw composites: components, services, references, properties, wires, promotions, topics
     #[command(after_help = GRAPH_EXIT_CODES)]
     Graph(GraphArguments),
     /// Tell why a robot did what it did, from the report or the journal of a run
@@ -268,9 +268,9 @@ pub(crate) struct FmtArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct GraphArguments {
-    /// The composite to draw
-    #[arg(value_name = "FILE")]
-    pub(crate) file: PathBuf,
+    /// The composite to draw; several form one fleet
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
 
     /// Where the picture goes; the ending says the format (`.svg`, `.mmd`, `.dot`), `-` is standard output
     #[arg(short, long, value_name = "PICTURE")]

@@ -33,9 +33,12 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         },
     };
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = read(&arguments.file, arguments.max_size, &mut sources, &mut diagnostics);
-    let composite = file.and_then(|file| load_file(file, &sources, &mut diagnostics));
-    let mut contribution = Contribution::of(composite.into_iter().collect());
+    let mut composites = Vec::new();
+    for path in &arguments.files {
+        let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
+        composites.extend(file.and_then(|file| load_file(file, &sources, &mut diagnostics)));
+    }
+    let mut contribution = Contribution::of(composites);
     load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
     let found = diagnostics.into_sorted();
     if contribution.composites().is_empty() {
@@ -45,15 +48,15 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let errors = found.iter().filter(|one| one.severity == Severity::Error).count();
     if errors > 0 {
         let errors = counted(errors, "error");
-        let name = arguments.file.display();
+        let names: Vec<String> = arguments.files.iter().map(|file| file.display().to_string()).collect();
+        let name = names.join(" ");
         eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows {errors}\n"));
     }
-    let mut registry = match registry(&arguments.plugins, std::slice::from_ref(&arguments.file)) {
+    let mut registry = match registry(&arguments.plugins, &arguments.files) {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
-    let files = std::slice::from_ref(&arguments.file);
-    open_named(&mut contribution, &search(&arguments.plugins, files), &sources, &mut registry);
+    open_named(&mut contribution, &search(&arguments.plugins, &arguments.files), &sources, &mut registry);
     let diagram = Diagram::of(&contribution, &registry);
     let text = match picture {
         Picture::Svg => svg(&diagram),

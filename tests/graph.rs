@@ -40,6 +40,23 @@ fn the_ending_says_the_format_and_the_airport_is_in_the_picture() {
 }
 
 #[test]
+fn several_files_are_one_fleet() {
+    let folder = tempdir().unwrap();
+    let head = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' targetNamespace='urn:c'";
+    let file = |name: &str, inside: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, format!("{head} name='{name}'>{inside}</composite>")).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let robot = "<component name='R'><implementation.java class='saoms.Robot'/><property name='ID'>R1</property><property name='period'>9</property>";
+    let robots = file("robots", &format!("{robot}<reference name='world' target='W'/></component>"));
+    let world = "<component name='W'><implementation.java class='saoms.World'/><property name='ID'>W</property><property name='period'>9</property></component>";
+    let (code, picture, error) = graph(&[&robots, &file("world", world), "--format", "mermaid"]);
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(picture.contains("robots, world") && picture.contains("\"world → hardware\""), "{picture}");
+}
+
+#[test]
 fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
     let folder = tempdir().unwrap();
     let file = |name: &str, text: &str| {

@@ -11,23 +11,23 @@ const MOST_DEEP: usize = 12;
 const MOST_INSIDE: usize = 5_000;
 
 impl Diagram {
-    /// What there is to draw of the first composite of a contribution, with what it includes, and with what is inside the
-    /// components that composites implement. Classes that are not registered are drawn with what the file says of them;
+    /// What there is to draw of the composites of a contribution that were asked for, as the one fleet that they are together, with what they
+    /// include, and with what is inside the components that composites implement. Classes that are not registered are drawn with what the file says of them;
     /// components that are named and not there are drawn as missing.
     pub fn of(contribution: &Contribution, registry: &Registry) -> Self {
-        if contribution.composites().is_empty() {
+        if contribution.asked_for().is_empty() {
             return Self::default();
         }
-        Reader { contribution, registry, open: Vec::new(), left: MOST_INSIDE }.diagram(0)
+        let asked_for = (0..contribution.asked_for().len()).collect();
+        Reader { contribution, registry, open: Vec::new(), left: MOST_INSIDE }.diagram(asked_for)
     }
 }
 
-/// A composite together with all that it includes.
+/// Composites together with all that they include.
 pub(super) struct View<'c>(Vec<&'c Composite>);
 
 impl<'c> View<'c> {
-    fn of(contribution: &'c Contribution, place: usize) -> Self {
-        let mut places = vec![place];
+    fn of(contribution: &'c Contribution, mut places: Vec<usize>) -> Self {
         let mut at = 0;
         while let Some(place) = places.get(at) {
             let includes = contribution.composites()[*place].includes.iter();
@@ -72,13 +72,19 @@ struct Reader<'c> {
 }
 
 impl Reader<'_> {
-    fn diagram(&mut self, place: usize) -> Diagram {
-        let composite = &self.contribution.composites()[place];
-        let view = View::of(self.contribution, place);
-        self.open.push(place);
+    /// The diagram of these composites; its namespace is that of the first.
+    fn diagram(&mut self, places: Vec<usize>) -> Diagram {
+        let of = |place: &usize| &self.contribution.composites()[*place];
+        let names: Vec<&str> = places.iter().map(|place| of(place).name.as_str()).collect();
+        let (name, namespace) =
+            (names.join(", "), places.first().and_then(|place| of(place).target_namespace.as_ref()));
+        let namespace = namespace.map(ToString::to_string);
+        let outside = self.open.len();
+        self.open.extend(&places);
+        let view = View::of(self.contribution, places);
         let mut diagram = Diagram {
-            name: composite.name.to_string(),
-            namespace: composite.target_namespace.as_ref().map(ToString::to_string),
+            name,
+            namespace,
             properties: view.composites().flat_map(|one| &one.properties).map(setting).collect(),
             services: view.services().map(|one| port(&one.name, one.interface.as_deref())).collect(),
             references: view.references().map(|one| port(&one.name, one.interface.as_deref())).collect(),
@@ -86,7 +92,7 @@ impl Reader<'_> {
             links: Vec::new(),
             topics: topics::of(&view, self.registry),
         };
-        self.open.pop();
+        self.open.truncate(outside);
         wiring::link(&view, &mut diagram);
         diagram
     }
@@ -101,7 +107,7 @@ impl Reader<'_> {
             let count = self.contribution.composites()[*place].components.len();
             if let Some(left) = self.left.checked_sub(count) {
                 self.left = left;
-                let inside = self.diagram(*place);
+                let inside = self.diagram(vec![*place]);
                 declared(pairs(&inside.services), &mut component.services);
                 declared(pairs(&inside.references), &mut component.references);
                 component.inside = Some(Box::new(inside));

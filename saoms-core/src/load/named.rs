@@ -61,25 +61,27 @@ pub fn load_named(
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let root = shelf.root(folder);
-        for (origin, paths, is_needed) in described {
+        for Described { origins, paths, is_needed } in described {
             // By its path in the contribution, or beside the composite under its last name.
             let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
             let found = paths.iter().map(|path| root.join(path)).chain(beside);
-            let found =
+            let mut found =
                 found.filter(|path| *side_files.entry(path.clone()).or_insert_with(|| path.is_file()));
-            match found.take(1).collect::<Vec<_>>().pop() {
-                Some(found) => {
-                    let place = types.entry(found).or_insert_with_key(|path| {
-                        let file = read(path, max_size, sources, diagnostics)?;
-                        let made = load_component_type(file, sources, diagnostics)?;
-                        Some(contribution.add_component_type(made))
-                    });
-                    if place.is_some() {
-                        contribution.describe(origin, *place);
-                    }
-                }
-                None if is_needed => contribution.describe(origin, None),
-                None => {}
+            let place = found.next().map(|found| {
+                *types.entry(found).or_insert_with_key(|path| {
+                    let file = read(path, max_size, sources, diagnostics)?;
+                    let made = load_component_type(file, sources, diagnostics)?;
+                    Some(contribution.add_component_type(made))
+                })
+            });
+            // Of a file that could not be read nothing more is said.
+            let described = match place {
+                Some(Some(place)) => Some(Some(place)),
+                None if is_needed => Some(None),
+                _ => None,
+            };
+            if let Some(place) = described {
+                origins.into_iter().for_each(|origin| contribution.describe(origin, place));
             }
         }
         for wanted in wanted {
@@ -101,17 +103,37 @@ pub fn load_named(
     }
 }
 
-/// The implementations of a composite that a file beside them may describe: its paths, and whether it has to be there.
-fn described(composite: &Composite) -> Vec<(Origin, Vec<PathBuf>, bool)> {
-    let all = composite.components.iter().filter_map(|component| {
-        let implementation = component.implementation.as_ref()?;
+/// Implementations that one file beside them may describe.
+struct Described {
+    origins: Vec<Origin>,
+    /// The files that it may be, the likeliest first.
+    paths: Vec<PathBuf>,
+    /// Whether it has to be there.
+    is_needed: bool,
+}
+
+/// The implementations of a composite that files beside them may describe; all of one class together.
+fn described(composite: &Composite) -> Vec<Described> {
+    let mut all: Vec<Described> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
+    for component in &composite.components {
+        let Some(implementation) = &component.implementation else { continue };
+        let class = component.class().map(|class| class.as_str());
+        if let Some(place) = class.and_then(|class| places.get(class)) {
+            all[*place].origins.push(implementation.origin);
+            continue;
+        }
         let paths = component_type::paths(component, composite);
+        if paths.is_empty() {
+            continue;
+        }
         // A bundle of OSGi says nothing about services by itself.
         let is_needed =
             matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi");
-        (!paths.is_empty()).then_some((implementation.origin, paths, is_needed))
-    });
-    all.collect()
+        places.extend(class.map(|class| (class, all.len())));
+        all.push(Described { origins: vec![implementation.origin], paths, is_needed });
+    }
+    all
 }
 
 struct Wanted {
