@@ -280,6 +280,10 @@ pub(crate) struct GraphArguments {
     #[arg(long, value_enum)]
     pub(crate) format: Option<Picture>,
 
+    /// Give a composite property another value; may be repeated
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub(crate) settings: Vec<String>,
+
     #[command(flatten)]
     pub(crate) plugins: PluginArguments,
 

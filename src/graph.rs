@@ -4,9 +4,10 @@ use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 
-use saoms_core::diagnostic::{Diagnostics, Severity, human};
+use saoms_core::check::{Census, Options, Setting, Variable};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human};
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
-use saoms_core::load::{load_file, load_named, read};
+use saoms_core::load::{load_file, load_named, read, read_values};
 use saoms_core::model::Contribution;
 use saoms_core::plugin::open_named;
 use saoms_core::source::Sources;
@@ -15,6 +16,9 @@ use crate::Exit;
 use crate::arguments::{GraphArguments, Picture};
 use crate::output::{counted, eprint, try_print};
 use crate::plugins::{registry, search};
+
+/// The option that sets composite properties.
+const SET: &str = "--set";
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
@@ -36,13 +40,27 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let mut composites = Vec::new();
     for path in &arguments.files {
         let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
-        composites.extend(file.and_then(|file| load_file(file, &sources, &mut diagnostics)));
+        let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
+            continue;
+        };
+        read_values(&mut composite, arguments.max_size, &mut sources, &mut diagnostics);
+        composites.push(composite);
     }
     let mut contribution = Contribution::of(composites);
     load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
+    let settings = arguments.settings.iter();
+    let settings =
+        settings.filter_map(|text| Setting::parse(SET, text, &mut sources, &mut diagnostics)).collect();
+    let variables =
+        Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
+    let options = Options { settings, variables, ..Options::default() };
+    let census = Census::of(&contribution, &options, &sources, &mut diagnostics);
     let found = diagnostics.into_sorted();
-    if contribution.composites().is_empty() {
-        eprint(&human(&found, &sources, io::stderr().is_terminal()));
+    let of_options: Vec<Diagnostic> =
+        found.iter().filter(|one| sources.get(one.location.file).path() == SET).cloned().collect();
+    if contribution.composites().is_empty() || !of_options.is_empty() {
+        let shown = if of_options.is_empty() { &found } else { &of_options };
+        eprint(&human(shown, &sources, io::stderr().is_terminal()));
         return Exit::WrongInput;
     }
     let errors = found.iter().filter(|one| one.severity == Severity::Error).count();
@@ -57,7 +75,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         Err(exit) => return exit,
     };
     open_named(&mut contribution, &search(&arguments.plugins, &arguments.files), &sources, &mut registry);
-    let diagram = Diagram::of(&contribution, &registry);
+    let diagram = Diagram::of(&contribution, &registry, &census);
     let text = match picture {
         Picture::Svg => svg(&diagram),
         Picture::Mermaid => mermaid(&diagram),

@@ -78,3 +78,17 @@ fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
     let (code, _, error) = graph(&["composites/hall.composite", "-o", "no/such/folder/hall.svg"]);
     assert!(code == 1 && error.contains("cannot be written to `no/such/folder/hall.svg`"), "{error}");
 }
+
+#[test]
+fn replicas_are_one_box_with_their_number_and_what_is_not_there_is_left_out() {
+    let hangar = "composites/hangar.composite";
+    let (code, shown, errors) = graph(&[hangar, "--format", "mermaid"]);
+    assert_eq!((code, errors.as_str()), (0, ""));
+    assert!(shown.contains("Robot* \u{d7} 40") && shown.contains("MasterRobot"), "{shown}");
+    assert!(shown.contains("\"world \u{2192} hardware\""), "{shown}");
+    let (_, shown, _) =
+        graph(&[hangar, "--format", "mermaid", "--set", "robots=14", "--set", "landings=false"]);
+    assert!(shown.contains("Robot* \u{d7} 14") && !shown.contains("MasterRobot"), "{shown}");
+    let (code, _, errors) = graph(&[hangar, "--set", "robot=14"]);
+    assert!(code == 2 && errors.contains("replace `robot` with `robots`"), "{errors}");
+}

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use saoms_core::check::{Options, check as check_fleet};
+use saoms_core::check::{Census, Options, check as check_fleet};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::format::format;
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
@@ -29,7 +29,8 @@ pub(crate) fn check(bytes: &[u8]) {
         REGISTRY.with(|registry| {
             let fleet = Contribution::of(vec![composite]);
             if !assume_classes {
-                let diagram = Diagram::of(&fleet, registry);
+                let census = Census::of(&fleet, &Options::default(), &sources, &mut Diagnostics::new());
+                let diagram = Diagram::of(&fleet, registry, &census);
                 let pictures = [svg(&diagram), dot(&diagram), mermaid(&diagram)];
                 assert!(xml::parse(FileId(0), &Arc::from(&*pictures[0])).fault.is_none(), "{}", pictures[0]);
             }

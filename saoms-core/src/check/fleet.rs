@@ -27,6 +27,8 @@ pub(super) struct Fleet<'a> {
     pub(super) absent: HashMap<(usize, &'a str), Location>,
     /// Wires that a condition keeps away, by the unit that they are in.
     pub(super) absent_wires: HashSet<(usize, FileId, ElementId)>,
+    /// The includes and wires with conditions, and whether any of them is there.
+    pub(super) conditional: HashMap<(FileId, ElementId), bool>,
     /// What the expressions in units can name, where there are any.
     pub(super) names: Vec<Option<Rc<Names>>>,
 }

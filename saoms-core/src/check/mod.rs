@@ -7,6 +7,7 @@
 mod absent;
 mod arena;
 mod autowire;
+mod census;
 mod circle;
 mod classes;
 mod construct;
@@ -56,6 +57,7 @@ use crate::registry::Registry;
 use crate::source::{Location, Sources};
 
 use arena::Arena;
+pub use census::Census;
 use classes::ClassIndex;
 use findings::Subject;
 use fleet::{Fleet, Kind, Member};

@@ -10,7 +10,7 @@ use super::report::Report;
 use super::unfold::{MOST_MEMBERS, Unfolding};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::expression::{Fault, render};
-use crate::model::{Component, Composite};
+use crate::model::{Component, Composite, Origin};
 use crate::source::Text;
 
 impl<'a> Unfolding<'a> {
@@ -42,10 +42,24 @@ impl<'a> Unfolding<'a> {
         holds.unwrap_or(false)
     }
 
+    /// Whether an include or a wire in a unit is there.
+    pub(super) fn is_there(
+        &mut self,
+        condition: Option<&Text>,
+        origin: Origin,
+        unit: usize,
+        report: &mut Report<'_>,
+    ) -> bool {
+        let Some(condition) = condition else { return true };
+        let is_there = self.holds(condition, unit, report);
+        *self.fleet.conditional.entry((origin.file(), origin.element)).or_default() |= is_there;
+        is_there
+    }
+
     /// Finds the wires of a composite that conditions keep away.
     pub(super) fn wires(&mut self, composite: &'a Composite, unit: usize, report: &mut Report<'_>) {
         for wire in &composite.wires {
-            if wire.condition.as_ref().is_some_and(|condition| !self.holds(condition, unit, report)) {
+            if !self.is_there(wire.condition.as_ref(), wire.origin, unit, report) {
                 self.fleet.absent_wires.insert((unit, wire.origin.file(), wire.origin.element));
             }
         }

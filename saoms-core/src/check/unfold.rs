@@ -37,6 +37,7 @@ pub(super) fn unfold<'a>(
         groups: HashMap::new(),
         absent: HashMap::new(),
         absent_wires: HashSet::new(),
+        conditional: HashMap::new(),
         names: Vec::new(),
     };
     let mut unfolding = Unfolding {
@@ -228,7 +229,7 @@ impl<'a> Unfolding<'a> {
         if self.is_circle(place, naming, report) {
             return;
         }
-        if include.condition.as_ref().is_some_and(|condition| !self.holds(condition, unit, report)) {
+        if !self.is_there(include.condition.as_ref(), include.origin, unit, report) {
             // Its components see what they would see, and nobody sees them.
             let unit = self.absent_unit(unit);
             return self.open(place, composite, unit, Some(naming), report);

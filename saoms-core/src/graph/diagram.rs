@@ -26,8 +26,10 @@ pub struct Diagram {
 /// A component.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Component {
-    /// Its name.
+    /// Its name; that of a replicated one with `*` for each expression.
     pub name: String,
+    /// How many replicas there are, where it is replicated and that is known.
+    pub replicas: Option<usize>,
     /// What it is an instance of: a class, or a kind of implementation; empty where the file says nothing.
     pub class: String,
     /// What is known of that.
@@ -40,6 +42,16 @@ pub struct Component {
     pub references: Vec<Port>,
     /// What is inside, when a composite implements it.
     pub inside: Option<Box<Diagram>>,
+}
+
+impl Component {
+    /// Its name as a picture has it: `Robot* × 40` for forty replicas.
+    pub(super) fn label(&self) -> String {
+        match self.replicas {
+            Some(count) => format!("{} \u{d7} {count}", self.name),
+            None => self.name.clone(),
+        }
+    }
 }
 
 /// What is known of a component.

@@ -32,7 +32,7 @@ fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut S
         let id = format!("{prefix}c{place}");
         let _ = writeln!(out, "    {id} [shape=record, {style}, label=\"{label}\"];");
         if let Some(inside) = &component.inside {
-            composite(inside, &format!("{id}_"), &id, &format!("inside {}", component.name), out);
+            composite(inside, &format!("{id}_"), &id, &format!("inside {}", component.label()), out);
         }
     }
     for (place, topic) in diagram.topics.iter().enumerate() {
@@ -92,7 +92,7 @@ fn record(component: &Component) -> String {
             ports.iter().enumerate().map(|(place, port)| format!("<{id}{place}> {}", field(&port.name)));
         fields.collect::<Vec<_>>().join("|")
     };
-    let mut middle = field(&component.name);
+    let mut middle = field(&component.label());
     if !component.class.is_empty() {
         middle.push_str(&format!("\\n{}", field(&component.class)));
     }

@@ -20,7 +20,7 @@ pub fn mermaid(diagram: &Diagram) -> String {
 fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut String) {
     let _ = writeln!(out, "  subgraph {id} [\"{}\"]", if label.is_empty() { "?" } else { label });
     for (place, component) in diagram.components.iter().enumerate() {
-        let mut label = escaped(&component.name);
+        let mut label = escaped(&component.label());
         if !component.class.is_empty() {
             label.push_str(&format!("<br/>{}", escaped(&component.class)));
         }

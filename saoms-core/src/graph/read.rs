@@ -2,7 +2,11 @@
 
 use super::diagram::{Component, Diagram, Port, Setting, State};
 use super::{topics, wiring};
-use crate::model::{self, Composite, Contribution, ImplementationKind, Interface, Link, Reference, Service};
+use crate::check::Census;
+use crate::expression::pattern;
+use crate::model::{
+    self, Composite, Contribution, ImplementationKind, Interface, Link, Reference, Service, Wire,
+};
 use crate::registry::{Class, Registry};
 
 /// Composites that are drawn inside each other, and components that are drawn in all of them: a few lines of text can name
@@ -14,23 +18,28 @@ impl Diagram {
     /// What there is to draw of the composites of a contribution that were asked for, as the one fleet that they are together, with what they
     /// include, and with what is inside the components that composites implement. Classes that are not registered are drawn with what the file says of them;
     /// components that are named and not there are drawn as missing.
-    pub fn of(contribution: &Contribution, registry: &Registry) -> Self {
+    /// Of replicated components there is one box, with how many `census` has; what is not in it is left out.
+    pub fn of(contribution: &Contribution, registry: &Registry, census: &Census) -> Self {
         if contribution.asked_for().is_empty() {
             return Self::default();
         }
         let asked_for = (0..contribution.asked_for().len()).collect();
-        Reader { contribution, registry, open: Vec::new(), left: MOST_INSIDE }.diagram(asked_for)
+        Reader { contribution, registry, census, open: Vec::new(), left: MOST_INSIDE }.diagram(asked_for)
     }
 }
 
 /// Composites together with all that they include.
-pub(super) struct View<'c>(Vec<&'c Composite>);
+pub(super) struct View<'c> {
+    composites: Vec<&'c Composite>,
+    census: &'c Census,
+}
 
 impl<'c> View<'c> {
-    fn of(contribution: &'c Contribution, mut places: Vec<usize>) -> Self {
+    fn of(contribution: &'c Contribution, census: &'c Census, mut places: Vec<usize>) -> Self {
         let mut at = 0;
         while let Some(place) = places.get(at) {
             let includes = contribution.composites()[*place].includes.iter();
+            let includes = includes.filter(|include| census.is_there(include.origin));
             let links = includes.filter_map(|include| contribution.link(include.origin));
             for link in links {
                 if let Link::To(found) = link
@@ -41,16 +50,25 @@ impl<'c> View<'c> {
             }
             at += 1;
         }
-        Self(places.into_iter().map(|place| &contribution.composites()[place]).collect())
+        let composites = places.into_iter().map(|place| &contribution.composites()[place]).collect();
+        Self { composites, census }
     }
 
     pub(super) fn composites(&self) -> impl Iterator<Item = &'c Composite> {
-        self.0.iter().copied()
+        self.composites.iter().copied()
     }
 
     /// All components, each with the composite that it is written in.
     pub(super) fn components(&self) -> impl Iterator<Item = (&'c Composite, &'c model::Component)> {
-        self.composites().flat_map(|composite| composite.components.iter().map(move |one| (composite, one)))
+        let all = self
+            .composites()
+            .flat_map(|composite| composite.components.iter().map(move |one| (composite, one)));
+        all.filter(|(_, component)| self.census.is_there(component.origin))
+    }
+
+    pub(super) fn wires(&self) -> impl Iterator<Item = &'c Wire> {
+        let all = self.composites().flat_map(|composite| &composite.wires);
+        all.filter(|wire| self.census.is_there(wire.origin))
     }
 
     pub(super) fn services(&self) -> impl Iterator<Item = &'c Service> {
@@ -65,6 +83,7 @@ impl<'c> View<'c> {
 struct Reader<'c> {
     contribution: &'c Contribution,
     registry: &'c Registry,
+    census: &'c Census,
     /// The composites that are being read.
     open: Vec<usize>,
     /// How many more components there may be inside others.
@@ -81,7 +100,7 @@ impl Reader<'_> {
         let namespace = namespace.map(ToString::to_string);
         let outside = self.open.len();
         self.open.extend(&places);
-        let view = View::of(self.contribution, places);
+        let view = View::of(self.contribution, self.census, places);
         let mut diagram = Diagram {
             name,
             namespace,
@@ -99,6 +118,9 @@ impl Reader<'_> {
 
     fn component(&mut self, one: &model::Component) -> Component {
         let mut component = component(one, self.registry);
+        if one.replicas.is_some() {
+            component.replicas = self.census.count(one.origin);
+        }
         let named = one.implementation.as_ref().and_then(|one| self.contribution.link(one.origin));
         if let Some(Link::To(place)) = named
             && !self.open.contains(place)
@@ -141,7 +163,11 @@ fn component(component: &model::Component, registry: &Registry) -> Component {
     }
     let is_unknown = class.is_none() && component.class().is_some();
     Component {
-        name: component.name.to_string(),
+        name: match component.replicas {
+            Some(_) => pattern(&component.name),
+            None => component.name.to_string(),
+        },
+        replicas: None,
         class: label(component),
         state: if is_unknown { State::UnknownClass } else { State::Known },
         properties: component.properties.iter().map(setting).collect(),

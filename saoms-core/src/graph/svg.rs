@@ -122,7 +122,7 @@ impl Out {
             State::Missing => "missing",
         };
         self.text.push_str("<g>");
-        let mut about = component.name.clone();
+        let mut about = component.label();
         if !component.class.is_empty() {
             about.push_str(&format!("\n{}", component.class));
         }

@@ -1,6 +1,7 @@
 use expect_test::{Expect, expect};
 
 use super::{Diagram, State, dot, mermaid, svg};
+use crate::check::Census;
 use crate::diagnostic::Diagnostics;
 use crate::load::load_file;
 use crate::model::Contribution;
@@ -14,7 +15,7 @@ fn diagram(content: &str) -> Diagram {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let file = sources.add("c.composite", text);
     let composite = load_file(file, &sources, &mut diagnostics).unwrap();
-    Diagram::of(&Contribution::of(vec![composite]), &Registry::new())
+    Diagram::of(&Contribution::of(vec![composite]), &Registry::new(), &Census::default())
 }
 
 /// The edges of the flowchart, each a line.
@@ -114,7 +115,7 @@ fn composites_are_drawn_inside_the_components_that_they_implement() {
         load_file(file, &sources, &mut diagnostics).unwrap()
     };
     let contribution = Contribution::of(texts.into_iter().map(load).collect());
-    let diagram = Diagram::of(&contribution, &Registry::new());
+    let diagram = Diagram::of(&contribution, &Registry::new(), &Census::default());
     expect![[r##"
         flowchart LR
           subgraph composite ["outer"]
@@ -138,4 +139,19 @@ fn composites_are_drawn_inside_the_components_that_they_implement() {
         .filter_map(|node| node.text())
         .collect();
     assert_eq!(names, ["outer", "Hall", "inner", "Lamp", "Again", "Door", "Bell"]);
+}
+
+#[test]
+fn replicas_are_one_component_that_all_their_names_lead_to() {
+    edges(
+        " xmlns:s='urn:saoms:1'><component name='Robot${index:02}' s:count='3'><service name='move'/><reference name='gps' target='Gps${ index }/position'/></component>
+         <component name='Gps${index}' s:count='3'><service name='position'/></component>
+         <component name='Master'><reference name='one' target='Robot02/move'/><reference name='all' target='Robot*/move'/><reference name='none' target='Robotx'/></component>",
+        expect![[r#"
+            c0 -->|"gps → position"| c1
+            c2 -->|"one → move"| c0
+            c2 -->|"all → move"| c0
+            c2 -->|"none"| c3
+        "#]],
+    );
 }

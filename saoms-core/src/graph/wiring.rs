@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::diagram::{Component, Diagram, End, Link, LinkKind, Port, State};
 use super::read::View;
+use crate::expression::{has_expression, pattern};
 
 /// The service that periodic components have without naming it.
 const TASK_SERVICE: &str = "TaskInterface";
@@ -14,7 +15,7 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram) {
     let places = names.map(|(place, component)| (component.name.clone(), place)).collect();
     let mut linker = Linker { diagram, places, seen: HashSet::new(), linked: HashSet::new() };
     linker.targets(view);
-    for wire in view.composites().flat_map(|composite| &composite.wires) {
+    for wire in view.wires() {
         let (Some(source), Some(target)) = (&wire.source, &wire.target) else { continue };
         let from = linker.reference(source);
         linker.wire(from, target);
@@ -117,7 +118,7 @@ impl Linker<'_> {
     fn service(&mut self, uri: &str, interface: Option<&str>) -> End {
         let (component, name) = self.split(uri);
         let services = &mut self.diagram.components[component].services;
-        let port = match name {
+        let port = match &name {
             Some(name) => named(services, name),
             None => {
                 let fits = |one: &Port| interface.is_some() && one.interface.as_deref() == interface;
@@ -135,20 +136,32 @@ impl Linker<'_> {
         let references = &mut self.diagram.components[component].references;
         let port = match (name, references.len()) {
             (None, 1..) => 0,
-            (name, _) => named(references, name.unwrap_or_default()),
+            (name, _) => named(references, &name.unwrap_or_default()),
         };
         End::Component { component, port }
     }
 
+    /// The component of a name: also that of replicas for the name of one of them.
+    fn place(&self, name: &str) -> Option<usize> {
+        if let Some(place) = self.places.get(name) {
+            return Some(*place);
+        }
+        let mut groups = self.diagram.components.iter().enumerate();
+        let found = groups.find(|(_, one)| one.name.contains('*') && is_of(name, &one.name));
+        found.map(|(place, _)| place)
+    }
+
     /// The component of a URI, drawn as missing when there is none, and what follows it.
-    fn split<'u>(&mut self, uri: &'u str) -> (usize, Option<&'u str>) {
+    fn split(&mut self, uri: &str) -> (usize, Option<String>) {
+        let uri = if has_expression(uri) { pattern(uri) } else { uri.to_owned() };
         let mut parts = uri.trim_start_matches('/').split('/');
         let name = parts.next().unwrap_or_default();
-        let place = match self.places.get(name) {
-            Some(place) => *place,
+        let place = match self.place(name) {
+            Some(place) => place,
             None => {
                 self.diagram.components.push(Component {
                     name: name.to_owned(),
+                    replicas: None,
                     class: String::new(),
                     state: State::Missing,
                     properties: Vec::new(),
@@ -160,8 +173,24 @@ impl Linker<'_> {
                 self.diagram.components.len() - 1
             }
         };
-        (place, parts.next().filter(|part| !part.is_empty()))
+        (place, parts.next().filter(|part| !part.is_empty()).map(str::to_owned))
     }
+}
+
+/// Whether a name is that of a replica of a group, such as `Robot*`: a number for each `*`.
+fn is_of(name: &str, group: &str) -> bool {
+    let mut parts = group.split('*');
+    let Some(mut rest) = name.strip_prefix(parts.next().unwrap_or_default()) else { return false };
+    for part in parts {
+        let number = rest.trim_start_matches('-');
+        let number = number.trim_start_matches(|c: char| c.is_ascii_digit());
+        if number.len() == rest.len() {
+            return false;
+        }
+        let Some(behind) = number.strip_prefix(part) else { return false };
+        rest = behind;
+    }
+    rest.is_empty()
 }
 
 /// The place of the port of this name, which is there from now on.

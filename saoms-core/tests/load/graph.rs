@@ -1,6 +1,7 @@
 //! Pictures of real files: each is well-formed, shows every component in the composite, and none over another.
 
 use roxmltree::{Document, Node};
+use saoms_core::check::Census;
 use saoms_core::diagnostic::Diagnostics;
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
 use saoms_core::load::load_file;
@@ -25,7 +26,7 @@ fn every_file_has_a_picture() {
         let file = sources.add(&*name, text);
         let Some(composite) = load_file(file, &sources, &mut diagnostics) else { continue };
         let count = composite.components.len();
-        let diagram = Diagram::of(&Contribution::of(vec![composite]), &registry);
+        let diagram = Diagram::of(&Contribution::of(vec![composite]), &registry, &Census::default());
         assert!(mermaid(&diagram).starts_with("flowchart") && dot(&diagram).starts_with("digraph"));
         let text = svg(&diagram);
         let picture = Document::parse(&text).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -54,7 +54,8 @@ pub(in crate::graph) struct Plan {
 
 impl Plan {
     pub(in crate::graph) fn of(component: &Component, has_topics: bool) -> Self {
-        let name_text = start(if component.name.is_empty() { "?" } else { &component.name }, 32);
+        let label = component.label();
+        let name_text = start(if label.is_empty() { "?" } else { &label }, 32);
         let class_text = end(&component.class, 36);
         let labels = |ports: &[Port]| ports.iter().map(|port| start(&port.name, 28)).collect();
         let services: Vec<String> = labels(&component.services);

@@ -23,6 +23,7 @@ fn ports(kind: &str, count: usize) -> Vec<Port> {
 fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], promoted: usize) -> Diagram {
     let component =
         |(place, (properties, services, references)): (usize, &(usize, usize, usize))| Component {
+            replicas: None,
             name: format!("Component{place}"),
             class: "a.package.of.classes.with.a.long.name.Class".to_owned(),
             state: State::Known,
