@@ -1,0 +1,108 @@
+//! How long the language server takes to say what can be written, in a large composite. See `benches/README.md`.
+
+#![expect(clippy::print_stderr, reason = "the progress of a measurement is for the person who waits for it")]
+
+mod editor;
+
+#[allow(dead_code, unused_imports, reason = "each benchmark uses a part")]
+#[path = "../common/mod.rs"]
+mod common;
+
+use std::fmt::Write as _;
+use std::time::Duration;
+
+use clap::Parser;
+use serde::Serialize;
+
+use common::composite::{Phases, airport};
+use common::{Outcome, median, verdict};
+use editor::Editor;
+
+/// Measures the language server.
+#[derive(Parser)]
+#[command(name = "cargo bench --bench lsp --")]
+struct Arguments {
+    /// How often each question is asked.
+    #[arg(long, default_value_t = 100)]
+    rounds: usize,
+    /// Numbers of components.
+    #[arg(long, value_delimiter = ',', default_value = "1000,10000")]
+    sizes: Vec<u32>,
+    /// What Cargo passes to every benchmark.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+/// The most time that an answer about 1,000 components may take, in ms.
+const GOAL_MS: f64 = 50.0;
+/// The size that the goal is for.
+const GOAL_SIZE: u32 = 1000;
+
+/// The places where something is typed: what they are called, what stands before them in the last robot, and what is typed there.
+const PLACES: [(&str, &str, &str); 5] = [
+    ("element", "\n    ", "<"),
+    ("class", "<implementation.java class=\"", "s"),
+    ("property", "<property name=\"", "q"),
+    ("value of a property", "<property name=\"period\">", "1"),
+    ("component in a target", "<reference name=\"world\" target=\"", "W"),
+];
+
+#[derive(Serialize)]
+struct Row {
+    components: u32,
+    what: String,
+    median_ms: f64,
+    worst_ms: f64,
+}
+
+fn main() -> Outcome<()> {
+    let arguments = Arguments::parse();
+    if !arguments.bench {
+        eprintln!("a benchmark is run with `cargo bench --bench lsp`");
+        return Ok(());
+    }
+    let mut rows = Vec::new();
+    for &size in &arguments.sizes {
+        eprintln!("{size} components ...");
+        measure(size, arguments.rounds, &mut rows)?;
+    }
+    let mut page = format!("The language server. {}.\n\n", common::description());
+    page.push_str(
+        "| components | typed and answered | median ms | worst ms |\n| ---: | --- | ---: | ---: |\n",
+    );
+    for Row { components, what, median_ms, worst_ms } in &rows {
+        writeln!(page, "| {components} | {what} | {median_ms:.1} | {worst_ms:.1} |")?;
+    }
+    let judged = rows.iter().filter(|row| row.components <= GOAL_SIZE && row.what != "diagnostics");
+    let worst = judged.map(|row| row.worst_ms).fold(0.0, f64::max);
+    writeln!(
+        page,
+        "\nThe worst completion of up to {GOAL_SIZE} components took {worst:.1} ms (goal: {GOAL_MS} ms; {}).",
+        verdict(worst <= GOAL_MS)
+    )?;
+    common::write("lsp", &page, &rows)
+}
+
+fn measure(size: u32, rounds: usize, rows: &mut Vec<Row>) -> Outcome<()> {
+    // A world, two masters and an environment are among the components.
+    let period = Duration::from_millis(100);
+    let text = airport(size.saturating_sub(4).max(1), period, Phases::Together, Duration::from_secs(1));
+    let mut editor = Editor::open(&text)?;
+    let mut row = |what: &str, times: &[f64]| {
+        rows.push(Row {
+            components: size,
+            what: what.to_owned(),
+            median_ms: median(times.iter().copied()).unwrap_or(f64::NAN),
+            worst_ms: times.iter().copied().fold(0.0, f64::max),
+        });
+    };
+    row("diagnostics", &[editor.diagnostics()?]);
+    for (what, before, typed) in PLACES {
+        let component = text.rfind("<component").ok_or("no component")?;
+        let found = text[component..].find(before).ok_or("no such place")?;
+        let at = component + found + before.len();
+        let times: Outcome<Vec<f64>> = (0..rounds).map(|_| editor.complete(&text, at, typed)).collect();
+        row(what, &times?);
+    }
+    editor.close()
+}
