@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use saoms_core::assembly::TaskProperties;
+use saoms_core::diagnostic::Code;
 use saoms_core::load::vocabulary::{Kind, Known, children};
 use saoms_core::registry::{Class, ClassDeclaration, LoopClass, PropertyDeclaration, TopicDeclaration};
 
@@ -98,6 +99,12 @@ pub(super) fn looping(one: &LoopClass) -> String {
     list(&mut text, "Publishes", declaration.publishes.iter().map(|one| one.name.as_str()));
     list(&mut text, "Subscribes to", declaration.subscribes.iter().map(|one| one.name.as_str()));
     text
+}
+
+/// A code of diagnostics, and the rule of SCA that it is about.
+pub(super) fn code(one: &Code, rule: Option<&str>) -> String {
+    let rule = rule.map_or_else(String::new, |rule| format!(" SCA Assembly: {rule}."));
+    format!("**{} {}**: {}{rule}", one.id, one.name, one.meaning)
 }
 
 /// A topic, as a class or a loop declares it.

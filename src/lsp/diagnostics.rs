@@ -10,6 +10,7 @@ use lsp_types::{
 use saoms_core::diagnostic::{Diagnostic, Severity, codes};
 use saoms_core::source::{FileId, Location as Place, Sources, identity};
 
+use super::describe;
 use super::position::Lines;
 use super::uri;
 
@@ -63,8 +64,7 @@ pub(super) fn reported<'d>(
             tags: is_unused.then(|| vec![DiagnosticTag::UNNECESSARY]),
             ..lsp_types::Diagnostic::default()
         };
-        let rule = one.rule.map_or_else(String::new, |rule| format!(" SCA Assembly: {rule}."));
-        let meaning = format!("**{} {}**: {}{rule}", one.code.id, one.code.name, one.code.meaning);
+        let meaning = describe::code(one.code, one.rule);
         let fixes = one.suggestions.iter().map(|suggestion| Fix {
             title: capitalized(&suggestion.description),
             edits: suggestion.edits.iter().fold(BTreeMap::new(), |mut edits, edit| {

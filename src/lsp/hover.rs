@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use saoms_core::diagnostic::codes;
 use saoms_core::load::vocabulary::{Holds, other, own_attributes};
 
 use super::complete::names::{declared, loop_class};
@@ -153,7 +154,15 @@ fn value_of(
             Some((property(scene, parent, &file.text[at.clone()])?, at))
         }
         Holds::Value => value_of_property(scene, element, value, byte),
-        Holds::Interface | Holds::Boolean | Holds::Multiplicity => Some((describe::attribute(known), value)),
+        Holds::Code => {
+            let id = &file.text[value.clone()];
+            let of_rules = scene.registry.rules().iter().map(|rule| rule.code());
+            let code = codes::ALL.iter().copied().chain(of_rules).find(|code| code.id == id)?;
+            Some((describe::code(code, code.rule), value))
+        }
+        Holds::Interface | Holds::Boolean | Holds::Multiplicity | Holds::Level => {
+            Some((describe::attribute(known), value))
+        }
         _ => None,
     }
 }

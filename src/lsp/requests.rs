@@ -17,20 +17,24 @@ use saoms_core::format::{WIDTH, format};
 use saoms_core::source::Sources;
 use saoms_core::xml;
 use serde_json::Value;
+use serde_json::value::RawValue;
 
-use super::complete::complete;
+use super::complete::{Proposal, complete};
 use super::hover::hover;
 use super::navigate::{Goal, definition, references};
 use super::rename::{prepare, rename};
 use super::scene::Scene;
-use super::server::{Refusal, Server};
+use super::server::{Refusal, Server, written};
 use super::symbol::Place;
 use super::symbols::symbols;
 use super::uri;
 
+/// So many proposals can be looked through; of thousands of components those come that fit what is typed.
+const MOST: usize = 300;
+
 impl<W: Write> Server<W> {
     /// The answer to a question.
-    pub(super) fn answer(&mut self, method: &str, params: Value) -> Result<Value, Refusal> {
+    pub(super) fn answer(&mut self, method: &str, params: Value) -> Result<Box<RawValue>, Refusal> {
         match method {
             ask::Completion::METHOD => answered::<ask::Completion>(params, |params| self.completion(params)),
             ask::HoverRequest::METHOD => answered::<ask::HoverRequest>(params, |params| self.hover(&params)),
@@ -67,8 +71,13 @@ impl<W: Write> Server<W> {
     fn completion(&mut self, params: CompletionParams) -> Result<Option<CompletionResponse>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position)?;
         let knows_snippets = self.client.knows_snippets;
-        let items = complete(&scene, byte).into_iter().map(|one| one.into_item(scene.file(), knows_snippets));
-        // What can be proposed, as the units behind a number, depends on what is typed.
+        let file = scene.file();
+        let typed = |one: &Proposal| &file.text[one.range.start..byte];
+        let mut found: Vec<Proposal> =
+            complete(&scene, byte).into_iter().filter(|one| one.fits(typed(one))).collect();
+        found.sort_by_cached_key(Proposal::order);
+        let items = found.into_iter().take(MOST).map(|one| one.into_item(file, knows_snippets));
+        // Others come when more is typed, as the units behind a number do.
         let list = CompletionList { is_incomplete: true, items: items.collect() };
         Ok(Some(CompletionResponse::List(list)))
     }
@@ -176,8 +185,8 @@ fn range(scene: &Scene, place: &Place) -> lsp_types::Range {
 fn answered<R: Request>(
     params: Value,
     ask: impl FnOnce(R::Params) -> Result<R::Result, Refusal>,
-) -> Result<Value, Refusal> {
+) -> Result<Box<RawValue>, Refusal> {
     let params = serde_json::from_value(params)
         .map_err(|error| Refusal(ErrorCode::InvalidParams, format!("the parameters are wrong: {error}")))?;
-    serde_json::to_value(ask(params)?).map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
+    written(&ask(params)?)
 }

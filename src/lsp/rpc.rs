@@ -6,6 +6,7 @@
 use std::io::{self, BufRead, Read, Write};
 
 use lsp_server::{ErrorCode, Message};
+use serde::Serialize;
 use serde_json::{Value, json};
 
 /// The longest message in bytes; files above it are refused anyway.
@@ -91,8 +92,8 @@ fn refusal(id: Value, code: ErrorCode, message: &str) -> Incoming {
 ///
 /// # Errors
 /// The output cannot be written.
-pub(super) fn write(output: &mut impl Write, message: &Value) -> io::Result<()> {
-    let text = message.to_string();
+pub(super) fn write(output: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
+    let text = serde_json::to_string(message)?;
     write!(output, "Content-Length: {}\r\n\r\n{text}", text.len())?;
     output.flush()
 }

@@ -17,6 +17,7 @@ use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri};
 use saoms_api::contain::contained;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
 
 use super::capabilities::{Client, capabilities, watchers};
@@ -52,6 +53,17 @@ enum State {
 /// A fault of a request: a code of the protocol and what to say.
 #[derive(Debug)]
 pub(super) struct Refusal(pub(super) ErrorCode, pub(super) String);
+
+/// The answer to a request. A long one is written once, and not made into a tree before.
+#[derive(Serialize)]
+struct Reply {
+    jsonrpc: &'static str,
+    id: RequestId,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    result: Option<Box<RawValue>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Value>,
+}
 
 /// A session.
 pub(super) struct Server<W> {
@@ -147,7 +159,7 @@ impl<W: Write> Server<W> {
             (State::New, "initialize") => {
                 self.client = Client::of(&request.params);
                 self.state = State::Running;
-                Ok(capabilities())
+                written(&capabilities())
             }
             (State::New, _) => refuse(ErrorCode::ServerNotInitialized, "`initialize` has to come first"),
             (State::ShutDown, _) => refuse(ErrorCode::InvalidRequest, "the session is shut down"),
@@ -156,20 +168,17 @@ impl<W: Write> Server<W> {
             }
             (State::Running, "shutdown") => {
                 self.state = State::ShutDown;
-                Ok(Value::Null)
+                written(&Value::Null)
             }
             // A fault of ours costs one answer, and not the session.
             (State::Running, _) => contained(|| self.answer(&request.method, request.params))
                 .unwrap_or_else(|failure| Err(Refusal(ErrorCode::InternalError, failure.to_string()))),
         };
-        let id = serde_json::to_value(request.id).unwrap_or_default();
-        let message = match answer {
-            Ok(result) => json!({ "jsonrpc": "2.0", "id": id, "result": result }),
-            Err(Refusal(code, text)) => {
-                json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code as i32, "message": text } })
-            }
+        let (result, error) = match answer {
+            Ok(result) => (Some(result), None),
+            Err(Refusal(code, text)) => (None, Some(json!({ "code": code as i32, "message": text }))),
         };
-        rpc::write(&mut self.output, &message)?;
+        rpc::write(&mut self.output, &Reply { jsonrpc: "2.0", id: request.id, result, error })?;
         self.tell_problems()
     }
 
@@ -293,6 +302,11 @@ impl<W: Write> Server<W> {
         let libraries = files.first().map(|file| file.outline.libraries.clone()).unwrap_or_default();
         Ok(Scene::new(files, self.registries.of(&path, &libraries)))
     }
+}
+
+/// An answer as it is sent.
+pub(super) fn written(answer: &impl Serialize) -> Result<Box<RawValue>, Refusal> {
+    to_raw_value(answer).map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
 }
 
 fn read<N: notice::Notification>(told: Notification) -> Option<N::Params>

@@ -76,9 +76,16 @@ impl Proposal {
         self
     }
 
+    /// Whether it can be meant by what is typed: its characters are in the label, in their order.
+    pub(in crate::lsp) fn fits(&self, typed: &str) -> bool {
+        let mut label = self.label.chars().flat_map(char::to_lowercase);
+        let mut typed = typed.trim_start_matches('<').chars().flat_map(char::to_lowercase);
+        typed.all(|wanted| label.any(|known| known == wanted))
+    }
+
     /// By what proposals are sorted.
-    pub(super) fn order(&self) -> String {
-        format!("{} {}", self.rank, self.label)
+    pub(in crate::lsp) fn order(&self) -> String {
+        format!("{:03} {}", self.rank, self.label)
     }
 
     /// The name alone, in place of another one.

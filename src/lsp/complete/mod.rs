@@ -12,7 +12,7 @@ mod values;
 
 use std::ops::Range;
 
-use saoms_core::diagnostic::{Level, codes};
+use saoms_core::diagnostic::Level;
 use saoms_core::load::vocabulary::{COMPONENT_PROPERTY, Holds, own_attributes};
 use saoms_core::model::Multiplicity;
 
@@ -60,10 +60,7 @@ fn value_of(
     match known.holds {
         Holds::Boolean => names::words(&["true", "false"], &value),
         Holds::Level => names::words(&Level::ALL.map(Level::name), &value),
-        Holds::Code => {
-            let codes: Vec<&str> = codes::ALL.iter().map(|code| code.id).collect();
-            names::words(&codes, &value)
-        }
+        Holds::Code => names::codes(scene, &value),
         Holds::Multiplicity => names::words(&Multiplicity::ALL.map(Multiplicity::name), &value),
         Holds::PropertyName => names::properties(scene, element, &value),
         Holds::ServiceName => names::services(scene, element, &value),

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
+use saoms_core::diagnostic::codes;
 use saoms_core::registry::{ClassDeclaration, InterfaceDeclaration, PropertyDeclaration};
 
 use super::Proposal;
@@ -15,6 +16,17 @@ use crate::lsp::scene::Scene;
 pub(super) fn words(words: &[&str], range: &Range<usize>) -> Vec<Proposal> {
     let all = words.iter().zip(0..);
     all.map(|(word, rank)| Proposal::new(*word, CompletionItemKind::ENUM_MEMBER, range).rank(rank)).collect()
+}
+
+/// The codes of diagnostics, those of rules over fleets included.
+pub(super) fn codes(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
+    let of_rules = scene.registry.rules().iter().map(|rule| rule.code());
+    let all = codes::ALL.iter().copied().chain(of_rules);
+    all.map(|code| {
+        let one = Proposal::new(code.id, CompletionItemKind::ENUM_MEMBER, range);
+        one.detail(format!("{}: {}", code.severity.name(), code.name)).doc(describe::code(code, code.rule))
+    })
+    .collect()
 }
 
 /// The word of a value that a byte touches.

@@ -30,9 +30,9 @@ const ROBOT: &str = "<component name=\"R\"><implementation.rust class=\"saoms.Ro
 fn elements_are_those_that_can_stand_there() {
     assert_eq!(proposed("|"), ["composite"]);
     assert_eq!(proposed("<|"), ["composite"]);
-    let top = ["component", "include", "property", "reference", "service", "wire", "documentation"];
-    assert_eq!(proposed(&composite("<|"))[..7], top);
-    assert_eq!(proposed(&composite("|"))[..7], top);
+    let top = ["component", "include", "property", "reference", "service", "wire"];
+    assert_eq!(proposed(&composite("<|"))[..6], top);
+    assert_eq!(proposed(&composite("|"))[..6], top);
     let inside = proposed(&composite("<component name=\"R\"><|"));
     assert_eq!(inside[..3], ["implementation.composite", "implementation.java", "implementation.rust"]);
     assert!(inside.contains(&"s:loop".to_owned()), "{inside:?}");
@@ -101,6 +101,10 @@ fn values_of_attributes_are_those_of_their_kind() {
     assert_eq!(names("<reference name=\"|\""), ["world"]);
     assert_eq!(names("<service name=\"|\""), ["TaskInterface"]);
     assert_eq!(names("<reference name=\"world\"><interface.java interface=\"|")[0], "saoms.Hardware");
+    let levels = proposed(&composite("<s:severity code=\"S4001\" level=\"|\"/>"));
+    assert!(levels.contains(&"warning".to_owned()), "{levels:?}");
+    let codes = proposed(&composite("<s:severity code=\"|"));
+    assert!(["S4001", "S5001"].iter().all(|code| codes.contains(&(*code).to_owned())), "{codes:?}");
     assert_eq!(proposed("<composite xmlns=\"|\"/>")[0], "http://docs.oasis-open.org/ns/opencsa/sca/200912");
 }
 
@@ -209,4 +213,15 @@ fn composites_of_other_files_are_known() {
     assert_eq!(among(&format!("{uses}</component><wire source=\"x\" target=\"I/|\"/>")), ["lamp"]);
     // What an include brings can be wired.
     assert_eq!(among("<include name=\"inner\"/><wire source=\"|\"/>"), ["L"]);
+}
+
+#[test]
+fn what_is_typed_is_looked_for_in_the_labels() {
+    let one = Proposal::new("property Period-Ä", CompletionItemKind::VALUE, &(0..0));
+    for typed in ["", "<", "<pper", "PERIOD", "period-ä", "-"] {
+        assert!(one.fits(typed), "{typed}");
+    }
+    for typed in ["x", "<doirep", "period--"] {
+        assert!(!one.fits(typed), "{typed}");
+    }
 }

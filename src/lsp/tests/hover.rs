@@ -57,6 +57,7 @@ fn everything_is_explained() {
         "p",
         &["`100`"],
     );
+    says("<s:severity code=\"S40|01\"/>", "S4001", &["task-id-shared"]);
     assert_eq!(said("<!-- comp|onent -->"), None);
     assert_eq!(said(&format!("{robot}<property name=\"non|sense\"/>")), None);
 }
