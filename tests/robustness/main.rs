@@ -54,8 +54,13 @@ fn every_file_as_it_is() {
     FILES.iter().for_each(|bytes| holds(bytes));
 }
 
+/// How many cases of each kind are tried; `PROPTEST_CASES` in the environment says another number.
+fn cases() -> u32 {
+    std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(120)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 120, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_bit_flipped(file in any::<Index>(), at in any::<Index>(), bit in 0..8_u32) {

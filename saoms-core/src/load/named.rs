@@ -1,13 +1,13 @@
 //! The composites that composites name: reading those that are in other files.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::shelf::Shelf;
 use super::{component_type, load_component_type, load_file, read, read_values};
-use crate::diagnostic::{Diagnostics, nearest_few, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
 use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
-use crate::source::{Sources, identity};
+use crate::source::{Location, Sources, identity};
 
 /// Names that are offered in place of one that is not found.
 const OFFERED: usize = 3;
@@ -34,6 +34,7 @@ pub fn load_named(
         known.insert(identity(Path::new(sources.get(composite.file()).path())), Some(place));
     }
     let (mut side_files, mut types) = (HashMap::new(), HashMap::new());
+    let mut warned = HashSet::new();
     let mut place = 0;
     while let Some(composite) = contribution.composites().get(place) {
         place += 1;
@@ -47,6 +48,7 @@ pub fn load_named(
                 let prefix = naming.name.as_str().strip_suffix(local).unwrap_or_default();
                 Wanted {
                     origin: naming.origin,
+                    at: naming.name.location,
                     prefix: prefix.to_owned(),
                     namespaces,
                     local: local.to_owned(),
@@ -89,6 +91,10 @@ pub fn load_named(
                 None => Link::Missing(missing(&mut shelf, folder, &wanted)),
                 Some(found) => {
                     shelf.adopt(folder, &found);
+                    if warned.insert(found.clone()) {
+                        let twins = shelf.twins(&found);
+                        ambiguous(&wanted, &found, &twins).into_iter().for_each(|one| diagnostics.push(one));
+                    }
                     let place = known.entry(identity(&found)).or_insert_with(|| {
                         let file = read(&found, max_size, sources, diagnostics)?;
                         let mut composite = load_file(file, sources, diagnostics)?;
@@ -138,9 +144,30 @@ fn described(composite: &Composite) -> Vec<Described> {
 
 struct Wanted {
     origin: Origin,
+    /// Where the name is.
+    at: Location,
     prefix: String,
     namespaces: Option<Vec<String>>,
     local: String,
+}
+
+/// The warning that a name leads to one of several files, which one of them nobody says.
+fn ambiguous(wanted: &Wanted, found: &Path, twins: &[PathBuf]) -> Option<Diagnostic> {
+    let name = |path: &Path| quoted(&path.file_name().unwrap_or_default().to_string_lossy());
+    let first = twins.first()?;
+    let others = match twins.len() {
+        1 => name(first),
+        more => format!("{} and {} more", name(first), more - 1),
+    };
+    let message = format!(
+        "there are two composites {} in one namespace: that in {} is taken, and not that in {others}",
+        quoted(&wanted.local),
+        name(found)
+    );
+    let one = Diagnostic::new(&codes::COMPOSITE_REPEATED, wanted.at, message);
+    Some(
+        one.severity(Severity::Warning).help("give each its own name, or move one of them to another folder"),
+    )
 }
 
 fn missing(shelf: &mut Shelf, folder: &Path, wanted: &Wanted) -> Missing {

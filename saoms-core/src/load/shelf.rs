@@ -87,6 +87,17 @@ impl Shelf {
         None
     }
 
+    /// The other files in the folder of one that was found that hold a composite of the same name and namespace.
+    pub(super) fn twins(&mut self, found: &Path) -> Vec<PathBuf> {
+        let Some(Head { namespace, local, .. }) = self.head(found).clone() else { return Vec::new() };
+        let mut all = self.listing(found.parent().unwrap_or(Path::new(""))).composites;
+        all.retain(|path| {
+            let is_same = |head: &Head| head.namespace == namespace && head.local == local;
+            path != found && self.head(path).as_ref().is_some_and(is_same)
+        });
+        all
+    }
+
     fn find_in(&mut self, folder: &Path, local: &str, fits: &impl Fn(&Head) -> bool) -> Option<PathBuf> {
         let mut all = self.listing(folder).composites;
         // Most files are called as what they hold.

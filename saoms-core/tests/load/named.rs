@@ -172,3 +172,33 @@ fn what_an_editor_holds_counts_in_place_of_files() {
     assert_eq!(*link(1), Link::To(1), "it is not on disk");
     assert!(diagnostics.is_empty());
 }
+
+#[test]
+fn of_two_composites_of_one_name_in_a_folder_one_is_taken_and_both_are_told() {
+    let twice =
+        "<include name='a:hall'/><component name='h'><implementation.composite name='a:hall'/></component>";
+    let files = [
+        ("fleet.composite", composite("urn:a", "fleet", twice)),
+        ("hall.composite", composite("urn:a", "hall", "")),
+        ("copy.composite", composite("urn:a", "hall", "")),
+        // Those of other folders are farther off, and of other namespaces others.
+        ("below/hall.composite", composite("urn:a", "hall", "")),
+        ("other.composite", composite("urn:b", "hall", "")),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in &files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let first = load(&folder.path().join("fleet.composite"), &mut sources, &mut diagnostics).unwrap();
+    let mut all = Contribution::of(vec![first]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let found: Vec<_> = diagnostics
+        .iter()
+        .map(|one| (one.code.id, one.severity.name(), sources.snippet(one.location), one.message.as_str()))
+        .collect();
+    let message = "there are two composites `hall` in one namespace: that in `hall.composite` is taken, and not that in `copy.composite`";
+    assert_eq!(found, [("S2001", "warning", "a:hall", message)]);
+}
