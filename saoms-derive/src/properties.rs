@@ -113,14 +113,6 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
 /// The JSON array.
 fn declaration(members: &[Member<'_>]) -> TokenStream {
     let mut text = Json::default();
-    if !members.iter().any(|member| matches!(member, Member::Flat(..))) {
-        let own = members.iter().filter_map(|member| match member {
-            Member::Own(property) => Some(&**property),
-            Member::Flat(..) => None,
-        });
-        text.list(own, Property::declare);
-        return json::flat(&text.into_text());
-    }
     // Each with a comma before it, which the first one loses.
     for member in members {
         match member {

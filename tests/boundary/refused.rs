@@ -40,9 +40,16 @@ fn refused(path: &Path) -> String {
 fn changed(name: &str, change: impl FnOnce(&mut Vec<u8>)) -> PathBuf {
     let mut bytes = fs::read(library("good")).unwrap();
     change(&mut bytes);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let path = folder().join(name);
     fs::write(&path, bytes).unwrap();
     path
+}
+
+/// Where libraries are written. Other tests have their composites beside it, and would find libraries there.
+fn folder() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused");
+    fs::create_dir_all(&folder).unwrap();
+    folder
 }
 
 /// The library `good` with another text in its metadata, where `from` is first.
@@ -58,7 +65,7 @@ fn said(name: &str, from: &str, to: &[u8]) -> PathBuf {
 
 /// A library from C, with these metadata and these arguments more.
 fn from_c(name: &str, metadata: Option<&str>, more: &[&str]) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let folder = folder();
     let (source, path) = (folder.join(format!("{name}.c")), folder.join(format!("{name}.so")));
     let text = metadata.map_or_else(String::new, |text| {
         let text = text.replace('"', "\\\"");
@@ -66,7 +73,7 @@ fn from_c(name: &str, metadata: Option<&str>, more: &[&str]) -> PathBuf {
     });
     fs::write(&source, text + "int something(void) { return 1; }\n").unwrap();
     let mut cc = Command::new("cc");
-    cc.args(["-shared", "-fPIC", "-o"]).args([&path, &source]).args(more).current_dir(folder);
+    cc.args(["-shared", "-fPIC", "-o"]).args([&path, &source]).args(more).current_dir(&folder);
     let output = cc.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     path

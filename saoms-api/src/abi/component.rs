@@ -234,7 +234,8 @@ unsafe fn copy(view: &MessageView) -> Result<SharedMessage, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::host::{FUNCTIONS, HostFunctions};
+    use super::super::HostFunctions;
+    use super::super::host::FUNCTIONS;
     use super::*;
 
     #[test]

@@ -11,10 +11,10 @@ use crate::{
 
 use super::data::{Buffer, ValueView};
 use super::guard::{call_outcome, outcome};
-use super::host::{HostFunctions, LEVELS, TopicView, time};
+use super::host::{LEVELS, time};
 use super::looping::import_loop;
 use super::report::with_view;
-use super::{Bytes, HostHandle, LoopInstance, PropertyView, RecordView, Sink};
+use super::{Bytes, HostFunctions, HostHandle, LoopInstance, PropertyView, RecordView, Sink, TopicView};
 
 /// The host on the other side of the boundary.
 pub(super) struct Link<'a> {

@@ -19,6 +19,7 @@
 
 mod class;
 mod component;
+mod context;
 mod data;
 mod entries;
 mod finding;
@@ -35,10 +36,10 @@ mod service;
 
 pub use class::{ClassTable, Construct, PluginTable};
 pub use component::{ComponentTable, Instance};
+pub use context::{HostFunctions, HostHandle, LoopVisitor, TopicView};
 pub use data::{Bytes, Inbox, MAX_BYTES, MessageView, PropertyView, RecordView, Sink, Status, ValueView};
 pub use entries::{EntriesFunctions, EntriesHandle, EntryView};
 pub use finding::{FindingSink, FindingView, LabelView, PlaceView};
-pub use host::{HostFunctions, HostHandle, LoopVisitor, TopicView};
 pub use import::{ImportedClass, ImportedComponent};
 pub use looping::{ImportedLoopClass, LoopClassTable, LoopInstance, LoopTable, Step};
 pub use metadata::{Entry, SECTION};
