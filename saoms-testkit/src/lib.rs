@@ -72,3 +72,8 @@ struct Testing;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/plugins.md")]
 struct Plugins;
+
+/// The example of `docs/hardware.md`, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/hardware.md")]
+struct Hardware;
