@@ -197,7 +197,7 @@ fn properties<'a>(
         report.about(member);
         if let Kind::Class(index) = member.kind {
             all.push(Some(properties::check(
-                &Giver::component(member),
+                &Giver::component(member, fleet.component_type(place)),
                 &classes[index].slots,
                 parameters,
                 &mut values,

@@ -6,15 +6,16 @@ use saoms_api::PropertyValue;
 
 use super::fleet::{Member, Unit};
 use super::parameters::{Found, Parameters, Place};
-use super::raw::Piece;
+use super::raw::{Piece, Raw, raw};
 use super::report::Report;
 use super::slots::{Slot, Slots};
 use super::values::{Path, Use, Values};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::model::{Component, Loop, Origin, Part, Property};
+use crate::model::{Component, ComponentType, Loop, Origin, Part, Property};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
+use crate::xml::Document;
 
 /// What a component gives for one property of its class.
 pub(super) struct Given {
@@ -99,17 +100,31 @@ pub(super) struct Giver<'m, 'a> {
     properties: &'a [Property],
     /// The component.
     member: &'m Member<'a>,
+    /// What a file beside the class says, whose values hold where the component gives none.
+    described: Option<&'a ComponentType>,
 }
 
 impl<'m, 'a> Giver<'m, 'a> {
-    pub(super) fn component(member: &'m Member<'a>) -> Self {
+    pub(super) fn component(member: &'m Member<'a>, described: Option<&'a ComponentType>) -> Self {
         let component = member.component;
         let (name, properties) = (&component.name, &component.properties);
-        Self { what: "component", name, origin: component.origin, properties, member }
+        Self { what: "component", name, origin: component.origin, properties, member, described }
     }
 
     pub(super) fn looping(one: &'a Loop, member: &'m Member<'a>) -> Self {
-        Self { what: "loop", name: &one.name, origin: one.origin, properties: &one.properties, member }
+        let properties = &one.properties;
+        Self { what: "loop", name: &one.name, origin: one.origin, properties, member, described: None }
+    }
+}
+
+impl<'a> Giver<'_, 'a> {
+    /// The properties that a file beside the class gives values to, with its document.
+    fn defaults(&self) -> impl Iterator<Item = (&'a Property, &'a Document)> + use<'a> {
+        let described = self.described.into_iter();
+        described.flat_map(|one| {
+            let with_values = one.properties.iter().filter(|property| property.has_value());
+            with_values.map(|property| (property, &*one.document))
+        })
     }
 }
 
@@ -153,6 +168,18 @@ pub(super) fn check<'a>(
             Err(()) => is_sound = false,
         }
     }
+    for (default, document) in giver.defaults() {
+        let Some(place) = slots.place(&default.name).filter(|place| first[*place].is_none()) else {
+            continue;
+        };
+        first[place] = Some(default);
+        let found = raw(default, document, None, report);
+        let used = Use { property: default.tag(), source: Some(giver.name.location) };
+        match found.and_then(|found| converted(default, found, used, &slots.all[place], values, report)) {
+            Ok(value) => given[place] = Some(Box::new(value)),
+            Err(()) => is_sound = false,
+        }
+    }
     for (place, slot) in slots.all.iter().enumerate() {
         let Some(declaration) = slot.main() else { continue };
         if given[place].is_some() || !slot.is_required() {
@@ -186,13 +213,25 @@ fn value<'a>(
     values: &mut Values,
     report: &mut Report<'_>,
 ) -> Result<Option<Given>, ()> {
-    let path = Path { outer: None, name: &property.name };
     let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
     let Found { raw: found, source } = parameters.values(place, property, report)?;
     if source.is_none() && property.source().is_some() && found.0.is_empty() {
         return Ok(None);
     }
     let used = Use { property: source.unwrap_or(property.tag()), source };
+    converted(property, found, used, slot, values, report).map(Some)
+}
+
+/// What was found for a property, as the class takes it.
+fn converted(
+    property: &Property,
+    found: Raw<'_>,
+    used: Use,
+    slot: &Slot<'_>,
+    values: &mut Values,
+    report: &mut Report<'_>,
+) -> Result<Given, ()> {
+    let path = Path { outer: None, name: &property.name };
     let place = found.0.first().map_or(used.property, Piece::location);
     let more = found.0.iter().skip(1).map(Piece::location).collect();
     let both: [Option<&PropertyDeclaration>; 2] = [slot.own, slot.task];
@@ -201,7 +240,7 @@ fn value<'a>(
         [Some(one), None] | [None, Some(one)] => values.convert(found, path, &[one], used, report),
         [None, None] => None,
     };
-    Ok(Some(Given { value: value.ok_or(())?, place, more, source: used.source }))
+    Ok(Given { value: value.ok_or(())?, place, more, source: used.source })
 }
 
 fn report_unknown(property: &Property, slots: &Slots<'_>, report: &mut Report<'_>) {

@@ -8,7 +8,7 @@ use saoms_api::PropertyValue;
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, check};
 use saoms_core::diagnostic::Diagnostics;
-use saoms_core::load::{MAX_SIZE, load_file, read, read_values};
+use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
 use saoms_core::model::Contribution;
 use saoms_core::source::Sources;
 
@@ -113,6 +113,45 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
           help: write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
         8:30-35 error S0004: the file has 60 bytes, and the limit is 50 bytes
           help: the limit is set with `--max-size`
+    "#]]
+    .assert_eq(&found);
+}
+
+#[test]
+fn a_component_type_gives_the_values_that_components_do_not() {
+    let described = |speed: &str| {
+        format!(
+            "<componentType xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912'>\n<property name='speed'>{speed}</property>\n<property name='grace'/></componentType>"
+        )
+    };
+    let outcome = |speed: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("Robot001.componentType"), described(speed)).unwrap();
+        let path = folder.path().join("fleet.composite");
+        let own = robot("<property name=\"speed\">0.5</property>").replace("name=\"R\"", "name=\"Own\"");
+        fs::write(&path, fleet(&(robot("") + &own.replace(">R<", ">Own<")))).unwrap();
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
+        let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+        let mut fleet = Contribution::of(vec![composite]);
+        load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
+        let assembly = check(&fleet, &registry(), &Options::default(), &sources, &mut diagnostics);
+        let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+        let speeds = assembly.map(|assembly| {
+            let all = assembly.components.into_iter().map(|one| one.values);
+            all.map(|values| values.into_iter().find(|(name, _)| name == "speed").map(|(_, value)| value))
+                .collect()
+        });
+        (speeds, without(&found, folder.path()))
+    };
+    let values: Vec<_> = ["0.75", "0.5"].map(|text| Some(PropertyValue::Text(text.to_owned()))).into();
+    assert_eq!(outcome("0.75"), (Some(values), String::new()));
+    let (speeds, found) = outcome("fast");
+    assert_eq!(speeds, None);
+    expect![[r#"
+        Robot001.componentType:2:24-28 error S3007: property `speed`: `fast` is not a number: expected a number from 0.0 to 2.5 [m/s]
+          2:18-19 used here as `speed`
+          help: `speed`: How fast it drives; the default is `1.0`
     "#]]
     .assert_eq(&found);
 }
