@@ -114,7 +114,9 @@ fn composites_are_drawn_inside_the_components_that_they_implement() {
         let file = sources.add("c.composite", text);
         load_file(file, &sources, &mut diagnostics).unwrap()
     };
-    let contribution = Contribution::of(texts.into_iter().map(load).collect());
+    let mut asked_for: Vec<_> = texts.into_iter().map(load).collect();
+    let others = asked_for.split_off(1);
+    let contribution = Contribution::with(asked_for, others);
     let diagram = Diagram::of(&contribution, &Registry::new(), &Census::default());
     expect![[r##"
         flowchart LR
