@@ -1,5 +1,7 @@
 //! The loop alone: what it makes of a battery.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
 use saoms_api::{Extras, Knowledge, Value};
 use saoms_battery_saver::BatterySaver;
 use saoms_testkit::LoopBench;
