@@ -24,8 +24,10 @@ impl Run {
 
     /// The part of the report about a component.
     pub(crate) fn component(&self, name: &str) -> &Value {
-        let all = self.report["components"].as_array().unwrap_or_else(|| panic!("no report:\n{}", self.text));
-        all.iter().find(|one| one["name"] == name).unwrap_or_else(|| panic!("no {name}:\n{}", self.text))
+        let all = self.report["components"].as_array();
+        let found = all.and_then(|all| all.iter().find(|one| one["name"] == name));
+        assert!(found.is_some(), "the report has no component {name}:\n{}", self.text);
+        found.unwrap()
     }
 
     /// Why it failed.
