@@ -42,7 +42,7 @@ const GOAL_SIZE: u32 = 1000;
 const PLACES: [(&str, &str, &str); 5] = [
     ("element", "\n    ", "<"),
     ("class", "<implementation.java class=\"", "s"),
-    ("property", "<property name=\"", "q"),
+    ("property", "<property name=\"", "r"),
     ("value of a property", "<property name=\"period\">", "1"),
     ("component in a target", "<reference name=\"world\" target=\"", "W"),
 ];
