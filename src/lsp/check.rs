@@ -33,6 +33,8 @@ pub(super) struct Job {
     pub(super) open: OpenTexts,
     /// The files that are open.
     pub(super) paths: Vec<PathBuf>,
+    /// Whether files came or went.
+    pub(super) looks_anew: bool,
 }
 
 /// What came of it: all that is wrong, by file. Files without a fault are not among them.
@@ -58,7 +60,7 @@ impl Checker {
         while let Ok(mut job) = jobs.recv() {
             loop {
                 match jobs.recv_timeout(QUIET) {
-                    Ok(newer) => job = newer,
+                    Ok(newer) => job = Job { looks_anew: newer.looks_anew || job.looks_anew, ..newer },
                     Err(RecvTimeoutError::Timeout) => break,
                     Err(RecvTimeoutError::Disconnected) => return,
                 }
@@ -75,7 +77,9 @@ impl Checker {
     /// All that is wrong; `None` where something changed in the meantime.
     pub(super) fn check(&mut self, job: Job) -> Option<Outcome> {
         self.workspace.set_open(job.open.clone());
-        self.workspace.refresh();
+        if job.looks_anew {
+            self.workspace.refresh();
+        }
         let mut files: BTreeMap<PathBuf, Vec<Reported>> = BTreeMap::new();
         let (mut checked, mut seen) = (HashSet::new(), HashSet::new());
         for path in &job.paths {

@@ -195,25 +195,24 @@ impl<W: Write> Server<W> {
                 if let Some(one) = read::<notice::DidOpenTextDocument>(told) {
                     let one = one.text_document;
                     self.documents.open(one.uri.as_str().to_owned(), one.version, one.text);
-                    self.changed();
+                    self.changed(true);
                 }
             }
             DidChangeTextDocument::METHOD => {
                 if let Some(one) = read::<notice::DidChangeTextDocument>(told) {
                     let about = one.text_document;
                     self.documents.change(about.uri.as_str(), about.version, one.content_changes);
-                    self.changed();
+                    self.changed(false);
                 }
             }
             DidCloseTextDocument::METHOD => {
                 if let Some(one) = read::<notice::DidCloseTextDocument>(told) {
                     self.documents.close(one.text_document.uri.as_str());
-                    self.changed();
+                    self.changed(true);
                 }
             }
             DidSaveTextDocument::METHOD | DidChangeWatchedFiles::METHOD => {
-                self.workspace.refresh();
-                self.changed();
+                self.changed(true);
             }
             // Others need not be understood.
             _ => {}
@@ -221,15 +220,18 @@ impl<W: Write> Server<W> {
         Ok(())
     }
 
-    /// Asks for a check of all that is open.
-    fn changed(&mut self) {
+    /// Asks for a check of all that is open; files may have come or gone.
+    fn changed(&mut self, looks_anew: bool) {
+        if looks_anew {
+            self.workspace.refresh();
+        }
         let open = self.documents.texts();
         self.workspace.set_open(open.clone());
         let generation = self.newest.fetch_add(1, Ordering::Relaxed) + 1;
         let mut paths: Vec<PathBuf> = self.documents.iter().map(|(_, one)| one.path.clone()).collect();
         paths.sort_unstable();
         // Where the thread is gone, the session is about to end.
-        let _ = self.jobs.send(Job { generation, open, paths });
+        let _ = self.jobs.send(Job { generation, open, paths, looks_anew });
     }
 
     /// Shows what a check found, and takes back what is not there any more.

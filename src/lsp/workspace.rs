@@ -11,8 +11,8 @@ use saoms_core::source::OpenTexts;
 
 use super::file::File;
 
-/// How long the names in a folder are believed: nobody types faster than files come.
-const FRESH: Duration = Duration::from_secs(2);
+/// How long the names in a folder are believed where the editor does not say that files came or went.
+const FRESH: Duration = Duration::from_secs(5);
 
 /// All files that were looked at.
 #[derive(Debug, Default)]

@@ -55,7 +55,8 @@ fn checked(generation: u64, text: &str) -> Event {
     let mut open = OpenTexts::default();
     let path = Path::new("/nowhere/fleet.composite");
     open.insert(path, text);
-    let outcome: Outcome = checker.check(Job { generation, open, paths: vec![path.to_owned()] }).unwrap();
+    let outcome: Outcome =
+        checker.check(Job { generation, open, paths: vec![path.to_owned()], looks_anew: true }).unwrap();
     Event::Checked(outcome)
 }
 
