@@ -114,7 +114,7 @@ impl Watcher {
             }
             if !self.waiting.is_empty() && self.asked.elapsed() >= AGAIN {
                 let waiting = std::mem::take(&mut self.waiting);
-                self.replace(waiting);
+                self.replace(waiting, true);
             }
         }
     }
@@ -144,19 +144,22 @@ impl Watcher {
             .iter()
             .filter(|component| origins(component).any(|origin| changed.iter().any(|path| path == origin)));
         self.waiting.clear();
-        self.replace(affected.cloned().collect());
+        self.replace(affected.cloned().collect(), false);
     }
 
-    fn replace(&mut self, components: Vec<ComponentSpec>) {
+    /// `again`: that they cannot be replaced now was told before.
+    fn replace(&mut self, components: Vec<ComponentSpec>, again: bool) {
         self.asked = Instant::now();
         for component in components {
-            let again = component.clone();
+            let next = component.clone();
             let path = component.path.clone();
             match self.handle.replace(component) {
                 Ok(_) => {}
                 Err(ReplaceError::NotNow(why)) => {
-                    self.handle.note(Level::Info, format!("component `{path}` is replaced later: {why}"));
-                    self.waiting.push(again);
+                    if !again {
+                        self.handle.note(Level::Info, format!("component `{path}` is replaced later: {why}"));
+                    }
+                    self.waiting.push(next);
                 }
                 Err(ReplaceError::Failed(failure)) => self.handle.note(
                     Level::Error,

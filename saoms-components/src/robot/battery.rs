@@ -35,6 +35,11 @@ impl Battery {
         f64::from(self.level) / 1000.0
     }
 
+    /// Sets the level, in percent.
+    pub fn set_percent(&mut self, percent: f64) {
+        self.level = thousandths(percent);
+    }
+
     /// Takes what one execution needs.
     pub fn drain(&mut self) {
         self.level = self.level.saturating_sub(self.discharge);

@@ -13,12 +13,13 @@ mod hooks;
 mod job;
 mod knowledge;
 mod lists;
+mod memory;
 mod properties;
 mod routes;
 pub mod safe;
 mod show;
 
-use saoms_api::{Class, Component, Context, Failure, Loops};
+use saoms_api::{Class, Component, Context, Failure, Loops, Saved};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
@@ -138,6 +139,14 @@ impl Component for Robot {
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.knowledge.retire(context)?;
         self.loops.shutdown(&mut self.knowledge, context)
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        self.knowledge.save()
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.knowledge.restore(saved)
     }
 }
 
