@@ -33,9 +33,7 @@ pub(super) fn definition(scene: &Scene, byte: usize) -> Vec<Goal> {
 }
 
 fn defined(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
-    let all = places(scene, symbol).into_iter();
-    // A loop that a class has is defined where its component says something about it.
-    all.filter(|one| one.is_definition).collect()
+    places(scene, symbol).into_iter().filter(|one| one.is_definition).collect()
 }
 
 /// A file beside the composite that an attribute names.

@@ -83,7 +83,6 @@ pub(super) enum Side {
 impl Outline {
     pub(super) fn of(text: &str, tree: &Tree, kinds: &[Option<&'static Kind>]) -> Self {
         let mut outline = Self::default();
-        // Where the component at hand starts, so that its parts find it.
         for (element, kind) in kinds.iter().enumerate() {
             let Some(kind) = kind else { continue };
             let parent = tree.elements[element].parent.and_then(|parent| kinds[parent]);

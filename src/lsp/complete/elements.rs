@@ -14,7 +14,7 @@ use crate::lsp::describe;
 use crate::lsp::scene::Scene;
 use crate::lsp::syntax::prefix;
 
-/// Those that a file has in most cases come first, in the order in which they are written.
+/// Those that most files have come first.
 const USUAL: &[&str] = &[
     "implementation.rust",
     "implementation.java",
@@ -121,11 +121,9 @@ fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Ran
         "component" => format!("<{written} name=\"$1\">\n  $0\n</{written}>"),
         "implementation.java" | "implementation.rust" => format!("<{written} class=\"$1\"/>"),
         "implementation.composite" | "include" => format!("<{written} name=\"$1\"/>"),
-        "property" if in_composite => format!("<{written} name=\"$1\">$2</{written}>"),
         "property" => format!("<{written} name=\"$1\">$2</{written}>"),
-        "reference" if in_composite => format!("<{written} name=\"$1\" promote=\"$2\"/>"),
+        "reference" | "service" if in_composite => format!("<{written} name=\"$1\" promote=\"$2\"/>"),
         "reference" => format!("<{written} name=\"$1\" target=\"$2\"/>"),
-        "service" if in_composite => format!("<{written} name=\"$1\" promote=\"$2\"/>"),
         "service" | "callback" => format!("<{written} name=\"$1\">$0</{written}>"),
         "wire" => format!("<{written} source=\"$1\" target=\"$2\"/>"),
         name if name.starts_with("interface.") => format!("<{written} interface=\"$1\"/>"),
