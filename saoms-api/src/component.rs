@@ -160,7 +160,7 @@ pub trait Component: Send + Sized + 'static {
 /// # Extending a class
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the topics, services, references,
 /// knowledge and loops of the other one and those that it declares itself; composites change its loops as those of the other, and rules over
-/// fleets take it for one. It calls the functions of the other where the work of the other belongs, shutdown included, and `flatten` gives it the
+/// fleets take it for one. It calls the functions of the other where the work of the other belongs, shutdown, save and restore included, and `flatten` gives it the
 /// same properties:
 ///
 /// ```

@@ -1,4 +1,4 @@
-use saoms_api::{Class, Component, Context, Failure, Properties, Publisher};
+use saoms_api::{Class, Component, Context, Failure, Properties, Publisher, Saved};
 use saoms_components::robot::{Robot, RobotProperties};
 
 use crate::picture::{CAMERA, FLOOR, ROBOT, Snapshot, WALL};
@@ -60,6 +60,15 @@ impl Component for CameraRobot {
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robot.shutdown(context)
+    }
+
+    // The camera remembers nothing: a new build goes on where the robot was.
+    fn save(&mut self) -> Result<Saved, Failure> {
+        self.robot.save()
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.robot.restore(saved)
     }
 }
 
