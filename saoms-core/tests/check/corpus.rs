@@ -56,19 +56,24 @@ fn rows(folder: &Path) -> Vec<Row> {
     table.lines().skip(1).map(row).collect()
 }
 
-/// Files that nobody calls invalid and that the schema lets pass, with the error that they have all the same.
+/// Files that nobody calls invalid and that the schema lets pass, with the error that they have all the same, and where. Every one of them
+/// breaks a rule that no schema can state.
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
-    // Two composites that implement components of each other: an endless fleet.
+    // These two include each other, so that neither has an end (ASM60031: what is left after inclusion has to be valid). They are there to show
+    // that a runtime does not hang; what it makes of them nobody asserts.
     ("itest/recursive/src/main/resources/Demo1Composite.composite", "S2032", "sample:Demo1Composite"),
     ("itest/recursive/src/main/resources/Demo2Composite.composite", "S2032", "sample:Demo2Composite"),
-    // Two references of the composite have one name (ASM60006).
+    // Four references of the composite have one name (ASM60006, and SCA 1.0 alike). It is run as a whole only, where nobody names them; the
+    // same project calls the same mistake invalid elsewhere (`DuplicateImplementationReferenceName`).
     ("itests/soap12/HelloWorldSOAP12.composite", "S2003", "helloWorldWS"),
-    // A property, or a reference, that a component has twice: what these files are there to show (ASM50031, ASM50007).
+    // A component gives one property two values in two elements, of which nothing says which counts (ASM50031): what this file is there to show.
+    // The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
     (
         "vtest/assembly/component/src/main/resources/component_duplicate_property.composite",
         "S3005",
         "strProperty",
     ),
+    // A component has one reference twice (ASM50007): what this file is there to show.
     ("vtest/assembly/component/src/main/resources/referencename_2.composite", "S2004", "b"),
 ];
 
@@ -130,7 +135,8 @@ pub(crate) const MESSAGES: &[(&str, &str, &str)] = &[
     ("UnresolvedComponentImplementation", "S2031", "sca:dummyImplementation.composite"),
 ];
 
-/// Messages for what cannot be seen: the element at fault is in a comment of the file.
+/// Messages for what cannot be seen. `AttributeURIMissing` is about an `export.resource` of the contribution's description, which is not in the
+/// collection; the composite beside it has that element in a comment, and no fault.
 const UNSEEN: &[&str] = &["AttributeURIMissing"];
 
 #[test]
@@ -139,7 +145,13 @@ fn files_that_are_invalid_by_what_is_written_have_a_diagnostic_there() {
     let mut found = 0;
     for row in rows(&folder) {
         let is_written = row.needs == "composite-only" || row.needs == "composite+sibling-xml";
-        if row.verdict != "invalid" || !is_written || UNSEEN.contains(&&*row.message) {
+        if row.verdict != "invalid" || !is_written {
+            continue;
+        }
+        if UNSEEN.contains(&&*row.message) {
+            let (diagnostics, sources) = checked(&folder.join("files").join(&row.path));
+            let all: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+            assert!(diagnostics.is_empty(), "{}: {all}", row.path);
             continue;
         }
         let known = MESSAGES.iter().find(|(message, ..)| *message == row.message);
