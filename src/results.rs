@@ -53,11 +53,22 @@ pub(crate) fn writable(arguments: &RunArguments) -> bool {
     problems.is_empty()
 }
 
+/// Whether a file can be written, without a trace of the question: what is there stays as it is, and nothing else is there afterwards.
 fn try_open(path: &Path) -> io::Result<()> {
     if path == Path::new("-") {
         return Ok(());
     }
-    File::options().append(true).create(true).open(path).map(drop)
+    match File::options().append(true).open(path) {
+        Err(problem) if problem.kind() == io::ErrorKind::NotFound => {}
+        result => return result.map(drop),
+    }
+    // A link to what is not there yet.
+    if let Ok(target) = path.read_link() {
+        return try_open(&path.parent().unwrap_or(Path::new("")).join(target));
+    }
+    // Removed is only what was made here: where somebody else was faster, this is an error.
+    File::create_new(path)?;
+    std::fs::remove_file(path)
 }
 
 /// Writes what was asked for; `false` where that was not possible, which has been told.

@@ -361,6 +361,32 @@ fn a_report_that_cannot_be_written_is_told_before_the_run_and_fails_it_after() {
 }
 
 #[test]
+fn a_refused_run_leaves_no_files_and_keeps_those_that_are_there() {
+    let folder = folder("refused");
+    let (report, kept, link) =
+        (folder.join("report.json"), folder.join("kept.svg"), folder.join("link.json"));
+    fs::write(&kept, "of an earlier run").unwrap();
+    std::os::unix::fs::symlink("behind.json", &link).unwrap();
+    let wrong: [&[&str]; 2] = [&["--set", "perod=10"], &["--journal", "no/such/folder/journal"]];
+    for (wrong, report) in [(wrong[0], &report), (wrong[1], &report), (wrong[1], &link)] {
+        let output = command(&["run", "composites/airport.composite", "--virtual", "--for", "1s"])
+            .args(wrong)
+            .arg("--report")
+            .arg(report)
+            .arg("--paths")
+            .arg(&kept)
+            .output()
+            .unwrap();
+        assert_eq!(code(&output), 2);
+    }
+    assert!(!report.exists() && !folder.join("behind.json").exists());
+    assert_eq!(fs::read_to_string(&kept).unwrap(), "of an earlier run");
+    let arguments = ["run", "composites/airport.composite", "--virtual", "--for", "1s", "--quiet"];
+    assert_eq!(code(&command(&arguments).arg("--report").arg(&link).output().unwrap()), 0);
+    assert!(fs::metadata(folder.join("behind.json")).unwrap().len() > 0, "the link is followed");
+}
+
+#[test]
 fn components_says_what_can_be_named() {
     let list = stdout(&saoms(&["components"]));
     for name in ["saoms.Robot", "saoms.World", "robot.Robot010", "unibg.robotics.tca.MessageBrokerImpl"] {
