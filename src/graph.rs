@@ -54,7 +54,12 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
     let options = Options { settings, variables, ..Options::default() };
-    let census = Census::of(&contribution, &options, &sources, &mut diagnostics);
+    let mut registry = match registry(&arguments.plugins, &arguments.files) {
+        Ok(registry) => registry,
+        Err(exit) => return exit,
+    };
+    open_named(&mut contribution, &search(&arguments.plugins, &arguments.files), &sources, &mut registry);
+    let census = Census::of(&contribution, &registry, &options, &sources, &mut diagnostics);
     let found = diagnostics.into_sorted();
     let of_options: Vec<Diagnostic> =
         found.iter().filter(|one| sources.get(one.location.file).path() == SET).cloned().collect();
@@ -70,11 +75,6 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         let name = names.join(" ");
         eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows {errors}\n"));
     }
-    let mut registry = match registry(&arguments.plugins, &arguments.files) {
-        Ok(registry) => registry,
-        Err(exit) => return exit,
-    };
-    open_named(&mut contribution, &search(&arguments.plugins, &arguments.files), &sources, &mut registry);
     let diagram = Diagram::of(&contribution, &registry, &census);
     let text = match picture {
         Picture::Svg => svg(&diagram),

@@ -92,3 +92,35 @@ fn replicas_are_one_box_with_their_number_and_what_is_not_there_is_left_out() {
     let (code, _, errors) = graph(&[hangar, "--set", "robot=14"]);
     assert!(code == 2 && errors.contains("replace `robot` with `robots`"), "{errors}");
 }
+
+/// Robots talk by their loops: the picture and the report of the wiring are to show the same topics with the same ends.
+#[test]
+fn topics_of_loops_are_drawn_as_the_wiring_report_has_them() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("halls.composite");
+    let text = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' xmlns:s='urn:saoms:1' name='h' targetNamespace='urn:h'>
+      <property name='own'>POSTOPIC,MINE</property>
+      <component name='W'><implementation.java class='saoms.World'/><property name='ID'>W</property><property name='period'>9</property></component>
+      <component name='R${index}' s:count='2'><implementation.java class='saoms.Robot'/><property name='ID'>R${index}</property><property name='period'>9</property>
+        <property name='topicRename' source='$own'/><reference name='world' target='W'/></component>
+    </composite>";
+    fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap();
+    let (code, picture, error) = graph(&[path, "--format", "dot", "--set", "own=POSTOPIC,OTHER"]);
+    assert_eq!((code, error.as_str()), (0, ""));
+    let mut drawn: Vec<&str> = picture
+        .lines()
+        .filter(|line| line.contains("shape=ellipse"))
+        .map(|line| line.split("label=\"").nth(1).unwrap().split('"').next().unwrap())
+        .collect();
+    drawn.sort_unstable();
+    let report = Command::new(env!("CARGO_BIN_EXE_saoms"))
+        .args(["check", "--wiring", "--format", "json", "--set", "own=POSTOPIC,OTHER", path])
+        .output()
+        .unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&report.stdout).unwrap();
+    let topics = report["wiring"]["topics"].as_array().unwrap();
+    let reported: Vec<&str> = topics.iter().map(|topic| topic["name"].as_str().unwrap()).collect();
+    assert_eq!(drawn, reported);
+    assert!(drawn.contains(&"OTHER") && drawn.contains(&"CSMSTOPIC"), "{drawn:?}");
+}

@@ -29,7 +29,8 @@ pub(crate) fn check(bytes: &[u8]) {
         REGISTRY.with(|registry| {
             let fleet = Contribution::of(vec![composite]);
             if !assume_classes {
-                let census = Census::of(&fleet, &Options::default(), &sources, &mut Diagnostics::new());
+                let census =
+                    Census::of(&fleet, registry, &Options::default(), &sources, &mut Diagnostics::new());
                 let diagram = Diagram::of(&fleet, registry, &census);
                 let pictures = [svg(&diagram), dot(&diagram), mermaid(&diagram)];
                 assert!(xml::parse(FileId(0), &Arc::from(&*pictures[0])).fault.is_none(), "{}", pictures[0]);

@@ -1,21 +1,35 @@
-//! What of the composites is in the fleet, and how many times, for pictures of them.
+//! What of the composites is in the fleet, how many times, and with which topics, for pictures of them.
 
 use std::collections::HashMap;
 
 use super::arena::Arena;
+use super::fleet::{Fleet, Kind};
 use super::options::Options;
 use super::parameters::Parameters;
 use super::report::Report;
-use super::unfold;
+use super::{classes, loops, task, unfold};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Contribution, Origin};
+use crate::registry::{Registry, TopicDeclaration};
 use crate::source::{FileId, Sources};
 use crate::xml::ElementId;
 
-/// How many times each replicated or conditional part of the composites is in a fleet.
+/// How many times each replicated or conditional part of the composites is in a fleet, and which topics its components use.
 #[derive(Clone, Debug, Default)]
 pub struct Census {
     counts: HashMap<(FileId, ElementId), usize>,
+    topics: HashMap<(FileId, ElementId), Vec<TopicUse>>,
+}
+
+/// A topic that a component publishes or subscribes to, itself or by one of its loops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TopicUse {
+    /// Its name, after renaming.
+    pub name: String,
+    /// What the component's part says of it.
+    pub declared: TopicDeclaration,
+    /// Whether it is published; it is subscribed to otherwise.
+    pub is_published: bool,
 }
 
 impl Census {
@@ -23,15 +37,17 @@ impl Census {
     /// is reported.
     pub fn of(
         contribution: &Contribution,
+        registry: &Registry,
         options: &Options,
         sources: &Sources,
         diagnostics: &mut Diagnostics,
     ) -> Self {
         let report = &mut Report::new(sources, diagnostics);
         let replicas = Arena::new();
-        let fleet = unfold::unfold(contribution, options, &replicas, report);
-        Parameters::of(&fleet, options, report);
+        let mut fleet = unfold::unfold(contribution, options, &replicas, report);
+        let parameters = Parameters::of(&fleet, options, report);
         report.finish();
+        let topics = topics(&mut fleet, parameters, registry, sources);
         let mut counts: HashMap<(FileId, ElementId), usize> = HashMap::new();
         for composite in contribution.composites() {
             let special = composite.components.iter();
@@ -45,7 +61,7 @@ impl Census {
             }
         }
         counts.extend(fleet.conditional.iter().map(|(place, is_there)| (*place, usize::from(*is_there))));
-        Self { counts }
+        Self { counts, topics }
     }
 
     /// How many times a part is there; `None` for one that is neither replicated nor conditional.
@@ -57,4 +73,47 @@ impl Census {
     pub fn is_there(&self, origin: Origin) -> bool {
         self.count(origin) != Some(0)
     }
+
+    /// The topics that a component and its loops use, those of all its replicas.
+    pub fn topics(&self, origin: Origin) -> &[TopicUse] {
+        self.topics.get(&(origin.file(), origin.element)).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The topics of all components whose classes are known, found in the way in which the checker finds them. What is wrong with them is
+/// left to it.
+fn topics<'a>(
+    fleet: &mut Fleet<'a>,
+    mut parameters: Parameters<'a>,
+    registry: &'a Registry,
+    sources: &Sources,
+) -> HashMap<(FileId, ElementId), Vec<TopicUse>> {
+    let mut unheard = Diagnostics::new();
+    let report = &mut Report::new(sources, &mut unheard);
+    report.assumes = true;
+    let mut classes = classes::resolve(fleet, fleet.contribution, registry, true, report);
+    let checked = super::properties(fleet, &classes, &mut parameters, report);
+    loops::resolve(fleet, &mut classes, &checked, registry, &mut parameters, report);
+    let mut all: HashMap<_, Vec<TopicUse>> = HashMap::new();
+    for (member, checked) in fleet.members.iter().zip(&checked).filter(|(member, _)| !member.is_absent) {
+        let (Kind::Class(index), Some(checked)) = (member.kind, checked) else { continue };
+        let class = &classes[index];
+        let is_periodic = class.class.declaration().is_periodic();
+        let renames = match is_periodic {
+            true => task::check(member.component, class, checked, report).renames,
+            false => Vec::new(),
+        };
+        let origin = member.component.origin;
+        let uses = all.entry((origin.file(), origin.element)).or_default();
+        let published = class.publishes.iter().map(|topic| (*topic, true));
+        for (declared, is_published) in published.chain(class.subscribes.iter().map(|topic| (*topic, false)))
+        {
+            let renamed = renames.iter().find(|(old, _)| *old == declared.name);
+            let name = renamed.map_or(&declared.name, |(_, new)| new);
+            if !uses.iter().any(|one| one.name == *name && one.is_published == is_published) {
+                uses.push(TopicUse { name: name.clone(), declared: declared.clone(), is_published });
+            }
+        }
+    }
+    all
 }

@@ -57,14 +57,13 @@ use crate::registry::Registry;
 use crate::source::{Location, Sources};
 
 use arena::Arena;
-pub use census::Census;
+pub use census::{Census, TopicUse};
 use classes::ClassIndex;
 use findings::Subject;
 use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
 use properties::{Checked, Giver, Written};
-pub(crate) use rename::topic_renames;
 use report::Report;
 pub use setting::Setting;
 use severities::Severities;

@@ -31,11 +31,6 @@ pub(super) struct Fault {
     pub(super) other: Option<(Range<usize>, &'static str)>,
 }
 
-/// The pairs of a text as (old name, new name), those without a fault.
-pub(crate) fn topic_renames(text: &str) -> impl Iterator<Item = (&str, &str)> {
-    parse(text).0.into_iter().map(|pair| (pair.old.text, pair.new.text))
-}
-
 /// The pairs of `text`, and all that is wrong with it.
 pub(super) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
     let mut pairs = Vec::new();

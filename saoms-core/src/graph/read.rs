@@ -109,7 +109,7 @@ impl Reader<'_> {
             references: view.references().map(|one| port(&one.name, one.interface.as_deref())).collect(),
             components: view.components().map(|(_, one)| self.component(one)).collect(),
             links: Vec::new(),
-            topics: topics::of(&view, self.registry),
+            topics: topics::of(&view, self.census),
         };
         self.open.truncate(outside);
         wiring::link(&view, &mut diagram);
