@@ -245,7 +245,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
             task: Some(TaskSettings::from_values(&task, Vec::new())?),
             library: None,
             references: Vec::new(),
-            loops: Vec::new(),
+            loops: std::sync::Arc::default(),
         });
     }
     Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Arc::new(Quiet))?)

@@ -55,7 +55,7 @@ fn assembly(text: &str) -> Assembly {
             library: None,
             values: Vec::new(),
             references: Vec::new(),
-            loops: Vec::new(),
+            loops: std::sync::Arc::default(),
         };
         for word in &words[2..] {
             match word.strip_prefix('>') {

@@ -40,8 +40,8 @@ pub struct ComponentSpec {
     pub task: Option<TaskSettings>,
     /// The class's references in the order of its declaration, with the services each leads to.
     pub references: Vec<Wire>,
-    /// Its loops in their order.
-    pub loops: Vec<LoopSpec>,
+    /// Its loops in their order; components share those that their class gives them.
+    pub loops: Arc<[LoopSpec]>,
 }
 
 /// One loop of a component, resolved.

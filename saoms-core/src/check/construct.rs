@@ -2,9 +2,9 @@
 
 use super::classes::ClassIndex;
 use super::findings::{Subject, diagnostic};
-use super::loops::Resolved;
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::registry::LoopClass;
 use saoms_api::{Failure, contain::contained};
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
@@ -20,10 +20,13 @@ pub(super) fn component(
     judge(|| class.class.construct(subject.values).map(drop), subject, class.class.name(), report);
 }
 
-/// The same for a loop that the composite says something about.
-pub(super) fn looping(one: &Resolved<'_>, without_plugin_code: bool, report: &mut Report<'_>) {
-    let Some(subject) = one.subject() else { return };
-    let class = &one.spec.class;
+/// The same for a loop.
+pub(super) fn looping(
+    subject: Subject<'_>,
+    class: &LoopClass,
+    without_plugin_code: bool,
+    report: &mut Report<'_>,
+) {
     if without_plugin_code && class.origin().is_some() {
         return;
     }

@@ -120,7 +120,9 @@ pub fn check(
         if let (Kind::Class(class), Some(resolved)) = (member.kind, resolved) {
             let without = options.without_plugin_code;
             construct::component(resolved.subject(member), &classes[class], without, report);
-            resolved.loops.iter().for_each(|one| construct::looping(one, without, report));
+            for (class, subject) in resolved.loops.changed() {
+                construct::looping(subject, class, without, report);
+            }
         }
     }
     report.about_all();
@@ -161,7 +163,7 @@ struct Resolved<'r> {
     task: Option<TaskSettings>,
     /// Where its topics got other names.
     renamed: Vec<(String, Location)>,
-    loops: Vec<loops::Resolved<'r>>,
+    loops: loops::Resolved<'r>,
 }
 
 /// Where a component of the assembly stands.
@@ -225,7 +227,7 @@ fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
     checked: Vec<Option<Checked>>,
-    loops: Vec<Option<Vec<loops::Resolved<'a>>>>,
+    loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
 ) -> Vec<Option<Box<Resolved<'a>>>> {
     let mut unique = unique::Unique::default();
@@ -303,7 +305,7 @@ fn assemble(
             values,
             task,
             references: references.collect(),
-            loops: loops.into_iter().map(|one| one.spec).collect(),
+            loops: loops.specs,
         });
     }
     Some(Assembly { components })

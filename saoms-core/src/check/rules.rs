@@ -57,7 +57,7 @@ pub(super) fn check<'s>(
                 known.map(|place| (reference.name.as_str(), place))
             });
             let own = declaration.publishes.iter();
-            let of_loops = resolved.loops.iter().flat_map(|one| &one.spec.class.declaration().publishes);
+            let of_loops = resolved.loops.specs.iter().flat_map(|one| &one.class.declaration().publishes);
             ComponentView {
                 path: subject.name,
                 class: &declaration.name,
@@ -67,7 +67,7 @@ pub(super) fn check<'s>(
                 period: resolved.task.as_ref().map(|task| task.period),
                 has_broker: resolved.task.as_ref().is_some_and(|task| task.url.is_some()),
                 publishes: own.chain(of_loops).map(|topic| topic.name.as_str()).collect(),
-                loops: resolved.loops.iter().map(|one| one.spec.class.name()).collect(),
+                loops: resolved.loops.specs.iter().map(|one| one.class.name()).collect(),
                 wires: wires.collect(),
             }
         })

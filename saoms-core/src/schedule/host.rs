@@ -277,7 +277,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn chosen_loops(&mut self, visit: &mut LoopVisit<'_>) {
-        for one in &self.spec().loops {
+        for one in self.spec().loops.iter() {
             visit(&one.name, one.class.name(), &one.values);
         }
     }

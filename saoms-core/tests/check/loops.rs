@@ -22,7 +22,7 @@ fn loops(text: &str) -> String {
     let said: String = diagnostics.iter().map(|one| crate::support::shown(one, &sources)).collect();
     let assembly = assembly.unwrap_or_else(|| panic!("{said}"));
     let mut out = said;
-    for one in &assembly.components[0].loops {
+    for one in assembly.components[0].loops.iter() {
         let _ = write!(out, "{} {}", one.name, one.class.name());
         one.values.iter().for_each(|(name, value)| _ = write!(out, " {name}={value:?}"));
         out.push('\n');

@@ -95,7 +95,15 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         }
     }
     let task = class.declaration().is_periodic().then_some(task);
-    ComponentSpec { path: path.to_owned(), class, library: None, values, task, references, loops: Vec::new() }
+    ComponentSpec {
+        path: path.to_owned(),
+        class,
+        library: None,
+        values,
+        task,
+        references,
+        loops: std::sync::Arc::default(),
+    }
 }
 
 fn pairs(mut text: &str) -> Vec<(&str, &str)> {

@@ -20,21 +20,30 @@ use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::Loop;
 use crate::registry::{LoopClass, Registry};
 
-/// A loop of a component, resolved.
+/// The loops of a component, resolved.
 pub(super) struct Resolved<'a> {
-    pub(super) spec: LoopSpec,
-    /// What the composite says about it, if anything.
-    element: Option<&'a Loop>,
+    /// In their order; components that say nothing about them share those of their class.
+    pub(super) specs: Arc<[LoopSpec]>,
+    /// Those that the composite says something about.
+    changed: Vec<Changed<'a>>,
+}
+
+/// A loop that the composite says something about.
+struct Changed<'a> {
+    place: usize,
+    element: &'a Loop,
     /// Where the composite gives its values.
     written: Vec<Written<'a>>,
 }
 
 impl Resolved<'_> {
-    /// For the judgement of its constructor; `None` where the composite says nothing about it, so that all is as its class has it.
-    pub(super) fn subject(&self) -> Option<Subject<'_>> {
-        let name = &self.element?.name;
-        let (values, written) = (&self.spec.values, &self.written);
-        Some(Subject { what: "loop", name, at: name.location, values, written })
+    /// Those that the composite says something about, for the judgement of their constructors: the others are as their class has them.
+    pub(super) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
+        self.changed.iter().map(|one| {
+            let (spec, name, written) = (&self.specs[one.place], &one.element.name, &one.written);
+            let subject = Subject { what: "loop", name, at: name.location, values: &spec.values, written };
+            (&*spec.class, subject)
+        })
     }
 }
 
@@ -55,10 +64,10 @@ pub(super) fn resolve<'a>(
     registry: &'a Registry,
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<Option<Vec<Resolved<'a>>>> {
+) -> Vec<Option<Resolved<'a>>> {
     let mut values = Values::default();
-    // The class of each place together with these loops.
-    let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
+    // The class of each place together with these loops, and these as they are where the composite says nothing about them.
+    let mut known: HashMap<(usize, Vec<&str>), (usize, Option<Arc<[LoopSpec]>>)> = HashMap::new();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, checked) in checked.iter().enumerate() {
         let member = &fleet.members[place];
@@ -72,41 +81,58 @@ pub(super) fn resolve<'a>(
         let (loops, is_planned) = list::plan(member, class, checked, registry, report);
         let is_team = is_planned && team::check(member, class, &loops, report);
         let used: Vec<&Arc<LoopClass>> = loops.iter().filter_map(|one| one.class).collect();
+        let mut usual = None;
         if !used.is_empty() {
             let key = (index, used.iter().map(|one| one.name()).collect());
-            let with = *known.entry(key).or_insert_with(|| {
+            let (with, specs) = known.entry(key).or_insert_with(|| {
                 let with = classes[index].with(used.iter().map(|one| one.declaration()));
                 classes.push(with);
-                classes.len() - 1
+                (classes.len() - 1, None)
             });
-            fleet.members[place].kind = Kind::Class(with);
+            fleet.members[place].kind = Kind::Class(*with);
+            usual = Some(specs).filter(|_| loops.iter().all(|one| one.element.is_none()));
         }
-        let member = &fleet.members[place];
-        let resolved: Vec<_> =
-            loops.iter().map(|one| resolved(one, member, parameters, &mut values, report)).collect();
-        all.push(resolved.into_iter().collect::<Option<Vec<_>>>().filter(|_| is_team));
+        if let Some(Some(specs)) = &usual {
+            let resolved = Resolved { specs: Arc::clone(specs), changed: Vec::new() };
+            all.push((is_team && used.len() == loops.len()).then_some(resolved));
+            continue;
+        }
+        let resolved = resolved(&loops, &fleet.members[place], parameters, &mut values, report);
+        if let (Some(usual), Some(resolved)) = (usual, &resolved) {
+            *usual = Some(Arc::clone(&resolved.specs));
+        }
+        all.push(resolved.filter(|_| is_team));
     }
     report.about_all();
     all
 }
 
-/// A loop with its values; `None` where they are wrong.
+/// Loops with their values; `None` where any of them is wrong.
 fn resolved<'a>(
-    planned: &Planned<'a>,
+    planned: &[Planned<'a>],
     member: &Member<'a>,
     parameters: &mut Parameters<'a>,
     values: &mut Values,
     report: &mut Report<'_>,
 ) -> Option<Resolved<'a>> {
-    let class = planned.class?;
-    let mut spec = LoopSpec { name: planned.name.to_owned(), class: Arc::clone(class), values: Vec::new() };
-    let Some(element) = planned.element else {
-        return Some(Resolved { spec, element: None, written: Vec::new() });
-    };
-    let slots = Slots::of_loop(class);
-    let checked = properties::check(&Giver::looping(element, member), &slots, parameters, values, report);
-    spec.values = checked.values(&slots, |slot| slot.own);
-    checked.is_sound.then(|| Resolved { spec, element: planned.element, written: checked.places(&slots) })
+    let mut specs = Vec::with_capacity(planned.len());
+    let mut changed = Vec::new();
+    for one in planned {
+        let Some(class) = one.class else { continue };
+        let mut spec = LoopSpec { name: one.name.to_owned(), class: Arc::clone(class), values: Vec::new() };
+        if let Some(element) = one.element {
+            let slots = Slots::of_loop(class);
+            let giver = Giver::looping(element, member);
+            let checked = properties::check(&giver, &slots, parameters, values, report);
+            if !checked.is_sound {
+                continue;
+            }
+            spec.values = checked.values(&slots, |slot| slot.own);
+            changed.push(Changed { place: specs.len(), element, written: checked.places(&slots) });
+        }
+        specs.push(spec);
+    }
+    (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed })
 }
 
 /// What can be said of the loops of a component that has no class.
