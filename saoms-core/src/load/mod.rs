@@ -12,6 +12,7 @@ mod composite;
 mod contract;
 mod encoding;
 mod extension;
+mod imports;
 mod looping;
 mod missing;
 mod named;

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::imports::{Imports, Kind};
 use super::shelf::Shelf;
 use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
@@ -17,7 +18,9 @@ const OFFERED: usize = 3;
 ///
 /// They are looked for by namespace and name in the folder of the file that names them, and then in the whole contribution:
 /// the nearest folder above that has a `sca-contribution.xml`, in itself or in its `META-INF`, or that first folder where
-/// there is none. No file is opened that is not needed, and a large folder is given up after some ten thousand entries.
+/// there is none. What is not there is looked for in the contributions that export its namespace (for component types, its package), where the
+/// description of its own imports that: those of the composites that are given together, those in folders beside it, and the folder that
+/// the import has as its `location`. No file is opened that is not needed, and a large folder is given up after some ten thousand entries.
 /// Texts that were not read from files are not looked at.
 ///
 /// What is wrong with a file that is found is reported; that one is not found is for the checker to say.
@@ -33,6 +36,10 @@ pub fn load_named(
     for (place, composite) in contribution.composites().iter().enumerate() {
         known.insert(identity(Path::new(sources.get(composite.file()).path())), Some(place));
     }
+    let given = contribution.composites().iter();
+    let given = given.filter_map(|one| Path::new(sources.get(one.file()).path()).parent());
+    let given: Vec<PathBuf> = given.map(|folder| shelf.root(folder)).collect();
+    let mut imports = Imports::new(given, max_size);
     let (mut side_files, mut types) = (HashMap::new(), HashMap::new());
     let mut warned = HashSet::new();
     let mut place = 0;
@@ -63,13 +70,17 @@ pub fn load_named(
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let root = shelf.root(folder);
-        for Described { origins, paths, is_needed } in described {
+        for Described { origins, paths, package, is_needed } in described {
             // By its path in the contribution, or beside the composite under its last name.
             let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
-            let found = paths.iter().map(|path| root.join(path)).chain(beside);
-            let mut found =
-                found.filter(|path| *side_files.entry(path.clone()).or_insert_with(|| path.is_file()));
-            let place = found.next().map(|found| {
+            let mut is_there =
+                |path: &PathBuf| *side_files.entry(path.clone()).or_insert_with(|| path.is_file());
+            let mut found = paths.iter().map(|path| root.join(path)).chain(beside).find(&mut is_there);
+            if let (None, Some(package)) = (&found, &package) {
+                let from = imports.exporters(&root, Kind::Java, package, sources, diagnostics);
+                found = from.iter().flat_map(|root| paths.iter().map(|path| root.join(path))).find(is_there);
+            }
+            let place = found.map(|found| {
                 *types.entry(found).or_insert_with_key(|path| {
                     let file = read(path, max_size, sources, diagnostics)?;
                     let made = load_component_type(file, sources, diagnostics)?;
@@ -87,10 +98,27 @@ pub fn load_named(
             }
         }
         for wanted in wanted {
-            let link = match shelf.find(folder, wanted.namespaces.as_deref(), &wanted.local) {
-                None => Link::Missing(missing(&mut shelf, folder, &wanted)),
+            let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
+            let own = shelf.find(folder, namespaces, local);
+            if let Some(found) = &own {
+                shelf.adopt(folder, found);
+            }
+            let found =
+                own.or_else(|| imports.find(&mut shelf, &root, namespaces, local, sources, diagnostics));
+            let link = match found {
+                None => {
+                    let mut missing = missing(&mut shelf, folder, &wanted);
+                    missing.searched.extend(imports.hints(
+                        &mut shelf,
+                        &root,
+                        namespaces,
+                        local,
+                        sources,
+                        diagnostics,
+                    ));
+                    Link::Missing(missing)
+                }
                 Some(found) => {
-                    shelf.adopt(folder, &found);
                     if warned.insert(found.clone()) {
                         let twins = shelf.twins(&found);
                         ambiguous(&wanted, &found, &twins).into_iter().for_each(|one| diagnostics.push(one));
@@ -114,6 +142,8 @@ struct Described {
     origins: Vec<Origin>,
     /// The files that it may be, the likeliest first.
     paths: Vec<PathBuf>,
+    /// The package of their class.
+    package: Option<String>,
     /// Whether it has to be there.
     is_needed: bool,
 }
@@ -137,7 +167,8 @@ fn described(composite: &Composite) -> Vec<Described> {
         let is_needed =
             matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi");
         places.extend(class.map(|class| (class, all.len())));
-        all.push(Described { origins: vec![implementation.origin], paths, is_needed });
+        let package = class.and_then(|class| Some(class.rsplit_once('.')?.0.to_owned()));
+        all.push(Described { origins: vec![implementation.origin], paths, package, is_needed });
     }
     all
 }

@@ -18,6 +18,8 @@ const MOST_ENTRIES: usize = 20_000;
 const MOST_ABOVE: usize = 12;
 /// The part of a file in which its first tag has to be.
 const HEAD: u64 = 64 * 1024;
+/// Where the description of a contribution is in its folder.
+pub(super) const DESCRIPTIONS: [&str; 2] = ["META-INF/sca-contribution.xml", "sca-contribution.xml"];
 /// Folders that hold what tools made.
 const SKIPPED: &[&str] = &["target", "node_modules"];
 
@@ -203,11 +205,7 @@ pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
 /// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.
 fn root(folder: &Path) -> PathBuf {
     let Ok(absolute) = std::path::absolute(folder) else { return folder.to_owned() };
-    let describes = |folder: &Path| {
-        ["META-INF/sca-contribution.xml", "sca-contribution.xml"]
-            .iter()
-            .any(|name| folder.join(name).is_file())
-    };
+    let describes = |folder: &Path| DESCRIPTIONS.iter().any(|name| folder.join(name).is_file());
     let found = absolute.ancestors().take(MOST_ABOVE).position(describes);
     let Some(above) = found else { return folder.to_owned() };
     // As the user wrote it, where that goes up far enough.

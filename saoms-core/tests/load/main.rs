@@ -6,6 +6,7 @@ mod corpus;
 mod files;
 mod format;
 mod graph;
+mod imports;
 mod named;
 mod oracle;
 mod places;

@@ -8,7 +8,7 @@ use saoms_core::load::{MAX_SIZE, load, load_named};
 use saoms_core::model::{Contribution, Link, Naming};
 use saoms_core::source::{OpenTexts, Sources};
 
-fn composite(namespace: &str, name: &str, inside: &str) -> String {
+pub(crate) fn composite(namespace: &str, name: &str, inside: &str) -> String {
     format!(
         "<!-- {} --><composite xmlns='http://www.osoa.org/xmlns/sca/1.0' targetNamespace='{namespace}' xmlns:a='urn:a' xmlns:b='urn:b' name='{name}'>{inside}</composite>",
         "long ".repeat(900)
@@ -16,7 +16,7 @@ fn composite(namespace: &str, name: &str, inside: &str) -> String {
 }
 
 /// Writes files into a folder and says where each include of all composites that are read for `asked_for` leads.
-fn links(files: &[(&str, String)], asked_for: &str) -> String {
+pub(crate) fn links(files: &[(&str, String)], asked_for: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
         let path = folder.path().join(name);

@@ -1,0 +1,257 @@
+//! What contributions take from each other: the `import` and `export` of `sca-contribution.xml`.
+
+use std::collections::{HashMap, HashSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::read;
+use super::shelf::{DESCRIPTIONS, Shelf};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
+use crate::model::Version;
+use crate::source::{Sources, identity};
+use crate::xml;
+
+/// Folders beside a contribution in which those that it imports from are looked for.
+const MOST_BESIDE: usize = 1_000;
+
+/// What is imported and exported: the ending of the element, and the attribute that says what.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Definitions of a namespace, as composites.
+    Namespace,
+    /// What belongs to classes of a package.
+    Java,
+}
+
+impl Kind {
+    fn of_element(ending: &str) -> Option<(Self, &'static str)> {
+        match ending {
+            "" => Some((Self::Namespace, "namespace")),
+            ".java" => Some((Self::Java, "package")),
+            _ => None,
+        }
+    }
+}
+
+/// One `import` or `export`.
+struct Entry {
+    kind: Kind,
+    what: String,
+    /// The folder of the other contribution, where it is said.
+    location: Option<PathBuf>,
+}
+
+/// What the description of a contribution says.
+#[derive(Default)]
+struct Description {
+    path: PathBuf,
+    imports: Vec<Entry>,
+    exports: Vec<Entry>,
+}
+
+/// The descriptions of contributions, each read once and when it is needed.
+pub(super) struct Imports {
+    /// The folders of the contributions that are given together.
+    given: Vec<PathBuf>,
+    descriptions: HashMap<PathBuf, Option<Description>>,
+    max_size: u64,
+}
+
+impl Imports {
+    pub(super) fn new(given: Vec<PathBuf>, max_size: u64) -> Self {
+        Self { given, descriptions: HashMap::new(), max_size }
+    }
+
+    /// The folders of the contributions from which that in `root` imports this: exporters that are given together with it, that are in the
+    /// folder beside it, or where the import says `location`. Nothing where it does not import it.
+    pub(super) fn exporters(
+        &mut self,
+        root: &Path,
+        kind: Kind,
+        what: &str,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Vec<PathBuf> {
+        if !self.imports(root, kind, what, sources, diagnostics) {
+            return Vec::new();
+        }
+        let mut all = self.others(root, kind, what);
+        all.retain(|other| {
+            let description = self.description(other, sources, diagnostics);
+            description.is_some_and(|one| one.exports.iter().any(|entry| entry.is(kind, what)))
+        });
+        all
+    }
+
+    fn imports(
+        &mut self,
+        root: &Path,
+        kind: Kind,
+        what: &str,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> bool {
+        let description = self.description(root, sources, diagnostics);
+        description.is_some_and(|one| one.imports.iter().any(|entry| entry.is(kind, what)))
+    }
+
+    /// The composite of this name that the contribution in `root` imports.
+    pub(super) fn find(
+        &mut self,
+        shelf: &mut Shelf,
+        root: &Path,
+        namespaces: Option<&[String]>,
+        local: &str,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<PathBuf> {
+        namespaces.unwrap_or_default().iter().find_map(|namespace| {
+            let from = self.exporters(root, Kind::Namespace, namespace, sources, diagnostics);
+            from.iter().find_map(|root| shelf.find(root, Some(std::slice::from_ref(namespace)), local))
+        })
+    }
+
+    /// Why a composite of these namespaces cannot be found through the description of the contribution in `root`; nothing where it has none.
+    pub(super) fn hints(
+        &mut self,
+        shelf: &mut Shelf,
+        root: &Path,
+        namespaces: Option<&[String]>,
+        local: &str,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Vec<String> {
+        let mut hints = Vec::new();
+        let Some(own) = self.description(root, sources, diagnostics) else { return hints };
+        let own = quoted(&own.path.display().to_string());
+        for namespace in namespaces.unwrap_or_default().iter().filter(|one| !one.is_empty()) {
+            let is_imported = self.imports(root, Kind::Namespace, namespace, sources, diagnostics);
+            let shown = quoted(namespace);
+            let from = self.exporters(root, Kind::Namespace, namespace, sources, diagnostics);
+            let holder = self.others(root, Kind::Namespace, namespace).into_iter().find(|other| {
+                let is_known = self.description(other, sources, diagnostics).is_some();
+                is_known && shelf.find(other, Some(std::slice::from_ref(namespace)), local).is_some()
+            });
+            let Some(holder) = holder else {
+                hints.extend(is_imported.then(|| match from.first() {
+                    Some(other) => format!(
+                        "{own} imports the namespace {shown}, and the contribution in {}, which exports it, has no such composite",
+                        quoted(&other.display().to_string())
+                    ),
+                    None => format!(
+                        "{own} imports the namespace {shown}, which no contribution that is known exports: name a composite of it beside this one, or write its folder as `location` of the `import`"
+                    ),
+                }));
+                continue;
+            };
+            let other = quoted(&holder.display().to_string());
+            let is_exported = self.description(&holder, sources, diagnostics).is_some_and(|description| {
+                description.exports.iter().any(|entry| entry.is(Kind::Namespace, namespace))
+            });
+            let mut lacking = Vec::new();
+            if !is_imported {
+                lacking.push(format!("write `<import namespace=\"{namespace}\"/>` in {own}"));
+            }
+            if !is_exported {
+                let description = quoted(&description_in(&holder).unwrap_or(holder).display().to_string());
+                lacking.push(format!("write `<export namespace=\"{namespace}\"/>` in {description}"));
+            }
+            hints.push(format!("the contribution in {other} has it: {}", lacking.join(", and ")));
+        }
+        hints
+    }
+
+    /// The contributions that that in `root` may import this from, the likeliest first.
+    fn others(&self, root: &Path, kind: Kind, what: &str) -> Vec<PathBuf> {
+        let own = self.descriptions.get(root).and_then(Option::as_ref);
+        let entries = own.iter().flat_map(|one| &one.imports).filter(|entry| entry.is(kind, what));
+        let mut all: Vec<PathBuf> =
+            entries.filter_map(|entry| Some(root.join(entry.location.as_ref()?))).collect();
+        all.extend(self.given.iter().cloned());
+        all.extend(beside(root));
+        let mut seen = HashSet::from([identity(root)]);
+        all.retain(|other| seen.insert(identity(other)));
+        all
+    }
+
+    fn description(
+        &mut self,
+        root: &Path,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<&Description> {
+        let max_size = self.max_size;
+        let known = self.descriptions.entry(root.to_owned()).or_insert_with(|| {
+            description_in(root).map(|path| described(path, max_size, sources, diagnostics))
+        });
+        known.as_ref()
+    }
+}
+
+impl Entry {
+    fn is(&self, kind: Kind, what: &str) -> bool {
+        self.kind == kind && self.what == what
+    }
+}
+
+fn description_in(root: &Path) -> Option<PathBuf> {
+    DESCRIPTIONS.iter().map(|name| root.join(name)).find(|path| path.is_file())
+}
+
+/// The folders of contributions in the folder that a contribution is in.
+fn beside(root: &Path) -> Vec<PathBuf> {
+    let absolute = || std::path::absolute(root).ok()?.parent().map(Path::to_owned);
+    let around = match (root.file_name(), root.parent()) {
+        (Some(_), Some(around)) => Some(around.to_owned()),
+        _ => absolute(),
+    };
+    let Some(around) = around else { return Vec::new() };
+    let here = if around.as_os_str().is_empty() { Path::new(".") } else { &around };
+    let entries = fs::read_dir(here).into_iter().flatten().take(MOST_BESIDE).flatten();
+    let mut all: Vec<PathBuf> = entries.map(|entry| around.join(entry.file_name())).collect();
+    all.retain(|folder| description_in(folder).is_some());
+    all.sort_unstable();
+    all
+}
+
+/// Reads a description. What is wrong with it is reported.
+fn described(
+    path: PathBuf,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Description {
+    let mut made = Description { path, ..Description::default() };
+    let Some(file) = read(&made.path, max_size, sources, diagnostics) else { return made };
+    let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
+    fault.into_iter().for_each(|fault| diagnostics.push(fault));
+    let Some(document) = document.map(Arc::new) else { return made };
+    let root = document.root();
+    if root.local_name() != "contribution" || Version::from_namespace(root.namespace()).is_none() {
+        let message =
+            format!("the root element is {} and has to be `contribution` of SCA", quoted(root.name()));
+        let one = Diagnostic::new(&codes::ROOT, root.name_location(), message);
+        diagnostics.push(one.severity(Severity::Warning).help("what it imports and exports is not known"));
+        return made;
+    }
+    for child in root.children().filter(|child| child.namespace() == root.namespace()) {
+        let name = child.local_name();
+        let (list, ending) = match (name.strip_prefix("import"), name.strip_prefix("export")) {
+            (Some(ending), _) => (&mut made.imports, ending),
+            (_, Some(ending)) => (&mut made.exports, ending),
+            _ => continue,
+        };
+        let Some((kind, attribute)) = Kind::of_element(ending) else { continue };
+        let text = |name| child.attribute(name).map(|one| one.trimmed().as_str().to_owned());
+        let Some(what) = text(attribute).filter(|what| !what.is_empty()) else {
+            let message = format!("`{name}` lacks the attribute `{attribute}`");
+            diagnostics.push(Diagnostic::new(&codes::MISSING_ATTRIBUTE, child.name_location(), message));
+            continue;
+        };
+        // The addresses of contributions elsewhere are no folders.
+        let location = text("location").filter(|location| !location.contains(':')).map(PathBuf::from);
+        list.push(Entry { kind, what, location });
+    }
+    made
+}
