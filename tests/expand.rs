@@ -178,3 +178,41 @@ fn the_command_writes_a_composite_that_checks() {
     assert_eq!(saoms(&["fmt", "--check", &path]).status.code(), Some(0), "it is in the one layout");
     assert_eq!(saoms(&["expand", "composites/none.composite"]).status.code(), Some(2));
 }
+
+#[test]
+fn composites_of_another_contribution_are_found_from_every_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |path: &str, text: String| {
+        let path = folder.path().join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    let sca = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
+    let description = |inside: &str| format!("<contribution xmlns='{sca}'>{inside}</contribution>");
+    write("fleet/sca-contribution.xml", description("<import namespace='urn:h'/>"));
+    let composite = |namespace: &str, name: &str, inside: &str| {
+        format!(
+            "<composite xmlns='{sca}' targetNamespace='{namespace}' xmlns:h='urn:h' name='{name}'>{inside}</composite>"
+        )
+    };
+    write("fleet/part/fleet.composite", composite("urn:f", "fleet", "<include name='h:pair'/>"));
+    write("halls/sca-contribution.xml", description("<export namespace='urn:h'/>"));
+    write(
+        "halls/pair.composite",
+        composite(
+            "urn:h",
+            "pair",
+            "<component name='m'><implementation.java class='unibg.robotics.tca.MessageBrokerImpl'/></component>",
+        ),
+    );
+    for (inside, path) in [
+        ("", "fleet/part/fleet.composite"),
+        ("fleet", "part/fleet.composite"),
+        ("fleet/part", "fleet.composite"),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
+        let output = command.args(["expand", path]).current_dir(folder.path().join(inside)).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(text.contains("name=\"m\""), "{path}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}

@@ -201,12 +201,11 @@ fn description_in(root: &Path) -> Option<PathBuf> {
 
 /// The folders of contributions in the folder that a contribution is in.
 fn beside(root: &Path) -> Vec<PathBuf> {
-    let absolute = || std::path::absolute(root).ok()?.parent().map(Path::to_owned);
+    // `..`, and nothing for the folder that we are in, have no parent that they name.
     let around = match (root.file_name(), root.parent()) {
-        (Some(_), Some(around)) => Some(around.to_owned()),
-        _ => absolute(),
+        (Some(_), Some(around)) => around.to_owned(),
+        _ => root.join(".."),
     };
-    let Some(around) = around else { return Vec::new() };
     let here = if around.as_os_str().is_empty() { Path::new(".") } else { &around };
     let entries = fs::read_dir(here).into_iter().flatten().take(MOST_BESIDE).flatten();
     let mut all: Vec<PathBuf> = entries.map(|entry| around.join(entry.file_name())).collect();

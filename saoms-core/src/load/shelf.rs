@@ -204,7 +204,9 @@ pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
 
 /// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.
 fn root(folder: &Path) -> PathBuf {
-    let Ok(absolute) = std::path::absolute(folder) else { return folder.to_owned() };
+    // The folder that we are in, which an empty path means, has no absolute one by that name.
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let Ok(absolute) = std::path::absolute(here) else { return folder.to_owned() };
     let describes = |folder: &Path| DESCRIPTIONS.iter().any(|name| folder.join(name).is_file());
     let found = absolute.ancestors().take(MOST_ABOVE).position(describes);
     let Some(above) = found else { return folder.to_owned() };
