@@ -22,7 +22,7 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
         eprint(&format!("\n{}: nothing to expand\n", counted(outcome.count(Severity::Error), "error")));
         return Exit::WrongInput;
     };
-    let text = expanded(assembly, first);
+    let text = expanded(assembly, first, outcome.diagnostics());
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
     match xml::parse(FileId(0), &text.as_str().into()).document {
         Some(document) => print(&format(&document, WIDTH)),

@@ -82,6 +82,11 @@ impl Checked {
         self.contribution.asked_for().first()
     }
 
+    /// All diagnostics, those that are kept for the record alone among them.
+    pub(crate) fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
     /// The diagnostics that are not kept for the record alone.
     pub(crate) fn told(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|one| !one.is_allowed())

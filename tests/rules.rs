@@ -150,6 +150,21 @@ fn a_charger_outside_the_map_is_shown_where_it_leaves_the_map() {
     }
 }
 
+/// The world lets no robot start there: a check that passes is not to promise it.
+#[test]
+fn what_no_world_lets_start_cannot_be_lowered() {
+    let charger: &[(&str, &str)] = &[("chargeX", "0"), ("chargeY", "1")];
+    let fleet = fleet(&[
+        ("World", "saoms.World", &[], false),
+        ("Robot1", "saoms.Robot", &[], true),
+        ("Robot2", "saoms.Robot", charger, true),
+    ]);
+    let lowered =
+        "<s:severity xmlns:s='urn:saoms:1' code='S5003' level='warning' reason='one dock'/></composite>";
+    let shown = Fleet::of_text(fleet.replace("</composite>", lowered)).shown();
+    assert!(shown.starts_with("error[S5003]") && shown.contains("cannot be lowered"), "{shown}");
+}
+
 #[test]
 fn robots_of_one_number_are_found_with_and_without_a_world() {
     fn robot<'a>(name: &'a str, class: &'a str, properties: &'a [(&'a str, &'a str)]) -> Component<'a> {

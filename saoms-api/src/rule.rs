@@ -63,6 +63,7 @@ pub struct Code {
 ///         rule: None,
 ///     },
 ///     judges_parts: true,
+///     prevents_start: false,
 ///     check: one_clock,
 /// };
 /// saoms_api::fleet_rules!(ONE_CLOCK);
@@ -74,6 +75,8 @@ pub struct FleetRule {
     /// Whether what it finds holds whatever the components are that [`FleetView::misses`] tells of. A rule that looks for something that
     /// should be there can judge whole fleets only.
     pub judges_parts: bool,
+    /// Whether no fleet starts with an error that it finds, as with robots on blocked blocks: the severity of such errors cannot be lowered.
+    pub prevents_start: bool,
     /// What it finds in a fleet.
     pub check: fn(&FleetView<'_>) -> Vec<Finding>,
 }

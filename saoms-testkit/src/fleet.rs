@@ -91,7 +91,7 @@ impl Fleet {
     pub fn expanded(&self) -> String {
         let (assembly, sources, diagnostics, contribution) = self.checked();
         match (assembly, contribution.asked_for().first()) {
-            (Some(assembly), Some(first)) => saoms_core::assembly::expanded(&assembly, first),
+            (Some(assembly), Some(first)) => saoms_core::assembly::expanded(&assembly, first, &diagnostics),
             _ => panic!("{}", human(&diagnostics, &sources, false)),
         }
     }

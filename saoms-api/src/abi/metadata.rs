@@ -12,7 +12,7 @@ use super::PluginTable;
 /// | `entry` | the name of its function of type [`Entry`] |
 /// | `classes` | the [declarations](crate::declaration) of its classes |
 /// | `loops` | those of its loops |
-/// | `rules` | its rules over whole fleets: `{"code":"X0001","name":"one-clock","meaning":"...","severity":"warning","rule":null,"judgesParts":true}` |
+/// | `rules` | its rules over whole fleets: `{"code":"X0001","name":"one-clock","meaning":"...","severity":"warning","rule":null,"judgesParts":true,"preventsStart":false}` |
 pub const SECTION: &str = ".saoms.plugin";
 
 /// The function by which a library gives its table: it takes the version of the program's boundary.
@@ -86,7 +86,8 @@ macro_rules! plugin {
                     Some(rule) => Text::Quoted(rule),
                     None => Text::Plain("null"),
                 },
-                Text::Plain(if $rule.judges_parts { ",\"judgesParts\":true}" } else { ",\"judgesParts\":false}" }),
+                Text::Plain(if $rule.judges_parts { ",\"judgesParts\":true" } else { ",\"judgesParts\":false" }),
+                Text::Plain(if $rule.prevents_start { ",\"preventsStart\":true}" } else { ",\"preventsStart\":false}" }),
             )*];
             const TEXT: Text = Text::Joined(&[
                 Text::Plain("{\"saoms\":\"plugin\",\"abi\":1,\"api\":"),

@@ -409,6 +409,7 @@ fn shown(fleet: &FleetView<'_>) -> Vec<Finding> {
 static SHOWN: FleetRule = FleetRule {
     code: Code { id: "X0001", name: "shown", meaning: "", severity: Severity::Warning, rule: None },
     judges_parts: true,
+    prevents_start: false,
     check: shown,
 };
 

@@ -16,6 +16,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         rule: None,
     },
     judges_parts: true,
+    prevents_start: false,
     check,
 };
 

@@ -1,11 +1,13 @@
 //! An assembly as a composite that comes to the same assembly.
 
+use std::collections::BTreeMap;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
 use saoms_api::{PropertyValue, format_duration};
 
 use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};
+use crate::diagnostic::{Diagnostic, Level, SetBy, Severity, codes};
 use crate::model::{Composite, SAOMS_NAMESPACE, Version};
 
 /// Writes an assembly as one composite in which nothing is left to resolve: no includes, no inner composites, no sources of properties,
@@ -16,7 +18,14 @@ use crate::model::{Composite, SAOMS_NAMESPACE, Version};
 ///
 /// A reference that leads nowhere although it should is a warning in SCA 1.0 and an error in 1.1: an assembly with such a one is
 /// written in 1.0.
-pub fn expanded(assembly: &Assembly, like: &Composite) -> String {
+///
+/// What would be an error again in that composite and is lowered in those that it comes from is lowered in it as well, for the same reason: `found` are the
+/// diagnostics of the check that made the assembly.
+pub fn expanded<'d>(
+    assembly: &Assembly,
+    like: &Composite,
+    found: impl IntoIterator<Item = &'d Diagnostic>,
+) -> String {
     let names = names(assembly);
     let lacks_target = |component: &ComponentSpec| {
         let references = component.class.declaration().references.iter().zip(&component.references);
@@ -31,18 +40,39 @@ pub fn expanded(assembly: &Assembly, like: &Composite) -> String {
     let is_own = |(component, name): (&ComponentSpec, &String)| {
         component.path != *name || !loops(component).is_empty()
     };
-    if assembly.components.iter().zip(&names).any(is_own) {
+    let lowered = lowered(found);
+    if !lowered.is_empty() || assembly.components.iter().zip(&names).any(is_own) {
         attributes.push(("xmlns:s", SAOMS_NAMESPACE));
     }
     attributes.push(("name", like.name.as_str()));
     attributes
         .extend(like.target_namespace.as_ref().map(|namespace| ("targetNamespace", namespace.as_str())));
     out.open("composite", &attributes);
+    for (code, set) in lowered {
+        let reason = set.reason.as_deref().unwrap_or("set on the command line");
+        out.empty("s:severity", &[("code", code), ("level", set.level.name()), ("reason", reason)]);
+    }
     for (component, name) in assembly.components.iter().zip(&names) {
         out.component(component, name, &names);
     }
     out.close("composite");
     out.text
+}
+
+/// The codes that are lowered although the composite that is left has what they are about; each with what hides least.
+fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'static str, &'d SetBy> {
+    let place = |set: &SetBy| Level::ALL.iter().position(|level| *level == set.level);
+    let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
+    for one in found.into_iter().filter(|one| codes::outlives_expansion(one.code)) {
+        let Some(set) = one.set.as_ref().filter(|set| set.level != Level::Set(Severity::Error)) else {
+            continue;
+        };
+        let known = all.entry(one.code.id).or_insert(set);
+        if place(set) > place(known) {
+            *known = set;
+        }
+    }
+    all
 }
 
 /// A name for each component: its path, with dots for what a name cannot have. No two are the same.

@@ -55,6 +55,8 @@ impl SeveritySetting {
 /// All that is said about severities, what counts first before the others.
 pub(super) struct Severities {
     rules: Vec<Rule>,
+    /// The codes of rules over fleets whose errors keep a fleet from starting.
+    preventing: Vec<&'static str>,
 }
 
 struct Rule {
@@ -131,7 +133,8 @@ impl Severities {
             add(&setting.code, setting.level.value, None, Scope::Option);
         }
         rules.sort_by_key(|rule| rule.scope.size());
-        Self { rules }
+        let preventing = registry.rules().iter().filter(|rule| rule.prevents_start());
+        Self { rules, preventing: preventing.map(|rule| rule.code().id).collect() }
     }
 
     /// Sets the severities of the diagnostics from this place on.
@@ -144,7 +147,8 @@ impl Severities {
             let Some(rule) = self.rules.iter_mut().find(fits) else { return };
             rule.is_used = true;
             let is_lowered = rule.set.level != Level::Set(Severity::Error);
-            if one.severity == Severity::Error && is_lowered && !codes::is_judgement(one.code) {
+            let is_fixed = !codes::is_judgement(one.code) || self.preventing.contains(&one.code.id);
+            if one.severity == Severity::Error && is_lowered && is_fixed {
                 let label = format!("not set to `{}`", rule.set.level.name());
                 one.labels.push(crate::diagnostic::Label { location: rule.set.at, text: label });
                 one.help.push("its severity cannot be lowered: nothing can run with it".to_owned());

@@ -181,6 +181,11 @@ pub fn is_judgement(code: &Code) -> bool {
     JUDGEMENTS.contains(&code) || !ALL.contains(&code)
 }
 
+/// Whether a lowered error of a code is found again in the composite that is left when all is resolved.
+pub(crate) fn outlives_expansion(code: &Code) -> bool {
+    [&MISSING_TARGET_NAMESPACE, &CALL_CYCLE, &NOT_UNIQUE].contains(&code) || !ALL.contains(&code)
+}
+
 /// Whether a code is one of those that the wiring report adds.
 pub(crate) fn is_of_wiring(id: &str) -> bool {
     [&TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR, &QUEUE, &READER_FASTER]

@@ -42,6 +42,7 @@ pub struct Metadata {
 pub(super) struct RuleMetadata {
     pub(super) code: &'static Code,
     pub(super) judges_parts: bool,
+    pub(super) prevents_start: bool,
 }
 
 impl<'de> Deserialize<'de> for RuleMetadata {
@@ -55,13 +56,17 @@ impl<'de> Deserialize<'de> for RuleMetadata {
             severity: String,
             rule: Option<String>,
             judges_parts: bool,
+            #[serde(default)]
+            prevents_start: bool,
         }
-        let Written { code: id, name, meaning, severity, rule, judges_parts } = Written::deserialize(from)?;
+        let Written { code: id, name, meaning, severity, rule, judges_parts, prevents_start } =
+            Written::deserialize(from)?;
         let severities = [Severity::Note, Severity::Warning, Severity::Error];
         let severity = severities.into_iter().find(|known| known.name() == severity).ok_or_else(|| {
             D::Error::custom(format!("`{severity}` is none of `note`, `warning` and `error`"))
         })?;
-        Ok(RuleMetadata { code: kept(&id, &name, &meaning, severity, rule.as_deref()), judges_parts })
+        let code = kept(&id, &name, &meaning, severity, rule.as_deref());
+        Ok(RuleMetadata { code, judges_parts, prevents_start })
     }
 }
 

@@ -93,7 +93,7 @@ impl Plugin {
         }
         for (place, rule) in self.metadata.rules.iter().enumerate() {
             let provider = Part { plugin: Arc::clone(self), place };
-            all.add_rule_provided(rule.code, rule.judges_parts, Arc::new(provider))?;
+            all.add_rule_provided(rule.code, rule.judges_parts, rule.prevents_start, Arc::new(provider))?;
         }
         *registry = all;
         Ok(())

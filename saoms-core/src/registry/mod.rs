@@ -99,7 +99,7 @@ impl Registry {
     /// # Errors
     /// Its code is that of another rule, or of the checker itself.
     pub fn add_rule(&mut self, rule: &'static FleetRule) -> Result<(), RegistryError> {
-        self.add_rule_provided(&rule.code, rule.judges_parts, Arc::new(rule))
+        self.add_rule_provided(&rule.code, rule.judges_parts, rule.prevents_start, Arc::new(rule))
     }
 
     /// Adds a rule by its code and where its own code comes from.
@@ -110,9 +110,10 @@ impl Registry {
         &mut self,
         code: &'static Code,
         judges_parts: bool,
+        prevents_start: bool,
         provider: Arc<dyn RuleProvider>,
     ) -> Result<(), RegistryError> {
-        let rule = Rule { code, judges_parts, provider };
+        let rule = Rule { code, judges_parts, prevents_start, provider };
         let taken = |known: &Code, origin| RegistryError::NameTaken {
             name: code.id.to_owned(),
             first: Holder::new("rule", known.name, origin),

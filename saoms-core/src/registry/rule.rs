@@ -10,6 +10,7 @@ use saoms_api::{Code, Failure, Finding, FleetRule, FleetView};
 pub struct Rule {
     pub(super) code: &'static Code,
     pub(super) judges_parts: bool,
+    pub(super) prevents_start: bool,
     pub(super) provider: Arc<dyn RuleProvider>,
 }
 
@@ -22,6 +23,11 @@ impl Rule {
     /// As [`FleetRule::judges_parts`].
     pub fn judges_parts(&self) -> bool {
         self.judges_parts
+    }
+
+    /// As [`FleetRule::prevents_start`].
+    pub fn prevents_start(&self) -> bool {
+        self.prevents_start
     }
 
     /// What it finds in a fleet.

@@ -26,7 +26,7 @@ fn expand(texts: &[&str]) -> (Assembly, String) {
         let errors: String = errors.map(|one| shown(one, &sources)).collect();
         panic!("{errors}\n{}", texts.join("\n"));
     };
-    let text = expanded(&assembly, &fleet.asked_for()[0]);
+    let text = expanded(&assembly, &fleet.asked_for()[0], diagnostics.iter());
     (assembly, text)
 }
 
@@ -107,6 +107,21 @@ fn references_without_a_target_make_it_one_of_sca_1_0() {
     .replace("http://docs.oasis-open.org/ns/opencsa/sca/200912", "http://www.osoa.org/xmlns/sca/1.0");
     let fleet = part("outer", "", r#"<include name="t:fleet"/>"#);
     assert!(settled(&[&fleet, &text]).contains("xmlns=\"http://www.osoa.org/xmlns/sca/1.0\""));
+}
+
+/// What a composite lowers stays lowered, or its expansion would not run.
+#[test]
+fn lowered_errors_stay_lowered() {
+    let robot = |name: &str, more: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.java class=\"example.Robot001\"/><property name=\"ID\">R</property><property name=\"period\">1</property><property name=\"number\">1</property>{more}</component>\n"
+        )
+    };
+    let lowered = "<s:severity code=\"S3013\" level=\"note\" reason=\"twins, &lt;they say\"/>";
+    let text =
+        settled(&[&part("fleet", "xmlns:s=\"urn:saoms:1\"", &(robot("A", "") + &robot("B", lowered)))]);
+    let expected = "<s:severity code=\"S3013\" level=\"note\" reason=\"twins, &lt;they say\"/>";
+    assert_eq!(text.matches(expected).count(), 1, "{text}");
 }
 
 #[test]

@@ -153,6 +153,7 @@ static ONE_SENDER: FleetRule = FleetRule {
         rule: None,
     },
     judges_parts: true,
+    prevents_start: false,
     check: one_sender,
 };
 
