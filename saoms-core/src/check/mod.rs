@@ -17,6 +17,7 @@ mod described;
 mod endpoint;
 mod findings;
 mod fleet;
+mod global;
 mod instance;
 mod loops;
 mod names;

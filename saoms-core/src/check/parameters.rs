@@ -162,6 +162,17 @@ impl<'a> Parameters<'a> {
         Ok(Found { raw: raw(property, &place.composite.document, place.instance, report)?, source: None })
     }
 
+    /// The values of a component's property as its class takes them: what is inside of an `element`. Faults are reported.
+    pub(super) fn taken(
+        &mut self,
+        place: Place<'a>,
+        property: &'a Property,
+        report: &mut Report<'_>,
+    ) -> Result<Found<'a>, ()> {
+        let found = self.values(place, property, report)?;
+        Ok(Found { raw: found.raw.inside_elements_of(property), ..found })
+    }
+
     /// What `source` stands for in this unit. Faults are reported.
     pub(super) fn resolve(
         &mut self,
@@ -195,8 +206,8 @@ impl<'a> Parameters<'a> {
             return Err(());
         };
         parameter.is_used = true;
-        let (composite, property) = (parameter.composite, parameter.property);
-        let mut whole = match parameter.given {
+        let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
+        let mut whole = match given {
             Some(Given::Setting(setting)) => Raw::one(&setting.value),
             Some(Given::Variable(variable)) => Raw::one(&variable.value),
             Some(Given::Component(outside, property)) => self.values(outside, property, report)?.raw,
@@ -209,7 +220,14 @@ impl<'a> Parameters<'a> {
             // Reported where it should have been supplied.
             return Err(());
         }
-        let Some(path) = path else { return Ok(whole) };
+        let Some(path) = path else {
+            // Where the composite does not say it, the component that it implements may.
+            let typed = match given {
+                Some(Given::Component(_, outside)) if property.element().is_none() => outside,
+                _ => property,
+            };
+            return Ok(whole.inside_elements_of(typed));
+        };
         let start = source.len() - path.len();
         walk(whole, path).map_err(|(step, message)| {
             let at = report.part(source, start + step.start..start + step.end);

@@ -175,6 +175,7 @@ pub(super) fn check<'a>(
         first[place] = Some(default);
         let found = raw(default, document, None, report);
         let used = Use { property: default.tag(), source: Some(giver.name.location) };
+        let found = found.map(|found| found.inside_elements_of(default));
         match found.and_then(|found| converted(default, found, used, &slots.all[place], values, report)) {
             Ok(value) => given[place] = Some(Box::new(value)),
             Err(()) => is_sound = false,
@@ -214,7 +215,7 @@ fn value<'a>(
     report: &mut Report<'_>,
 ) -> Result<Option<Given>, ()> {
     let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
-    let Found { raw: found, source } = parameters.values(place, property, report)?;
+    let Found { raw: found, source } = parameters.taken(place, property, report)?;
     if source.is_none() && property.source().is_some() && found.0.is_empty() {
         return Ok(None);
     }

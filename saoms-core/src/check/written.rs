@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::fleet::Fleet;
+use super::global;
 use super::report::Report;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::{Binding, Part, Property, Reference, Service, Version};
@@ -14,6 +15,7 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         for property in &composite.properties {
             type_and_element(property, "ASM60040", report);
             value_type(property, report);
+            global::check(property, &composite.document, &codes::COMPOSITE_VALUE_TYPE, report);
         }
         composite
             .services
@@ -26,7 +28,10 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for member in &fleet.members {
         report.about(member);
         let component = member.component;
-        component.properties.iter().for_each(|property| type_and_element(property, "ASM50035", report));
+        for property in &component.properties {
+            type_and_element(property, "ASM50035", report);
+            global::check(property, &member.composite.document, &codes::VALUE_TYPE, report);
+        }
         component.services.iter().for_each(|one| service(one, member.composite.version, report));
         component.references.iter().for_each(|one| reference(one, member.composite.version, report));
     }

@@ -237,8 +237,11 @@ pub static COMPOSITE_REFERENCE: Kind = Kind {
 };
 
 const TYPE: Known = known("type", Holds::Text, "The type of the value, such as `xsd:string` or `xsd:int`.");
-const ELEMENT: Known =
-    known("element", Holds::Text, "The global element of a schema that the value is, instead of a type.");
+const ELEMENT: Known = known(
+    "element",
+    Holds::Text,
+    "The global element of a schema, instead of a type: the value is such an element, and components take what is inside.",
+);
 const MANY: Known = known("many", Holds::Boolean, "Whether it has any number of values, each in a `value`.");
 const VALUE: Known = known("value", Holds::Value, "The value, instead of the text inside.");
 
