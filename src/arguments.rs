@@ -268,9 +268,8 @@ pub(crate) struct FmtArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct GraphArguments {
-    /// The composite to draw; several form one fleet
-    #[arg(required = true, value_name = "FILE")]
-    pub(crate) files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
 
     /// Where the picture goes; the ending says the format (`.svg`, `.mmd`, `.dot`), `-` is standard output
     #[arg(short, long, value_name = "PICTURE")]
@@ -279,17 +278,6 @@ pub(crate) struct GraphArguments {
     /// The format where no ending says it; SVG by default
     #[arg(long, value_enum)]
     pub(crate) format: Option<Picture>,
-
-    /// Give a composite property another value; may be repeated
-    #[arg(long = "set", value_name = "NAME=VALUE")]
-    pub(crate) settings: Vec<String>,
-
-    #[command(flatten)]
-    pub(crate) plugins: PluginArguments,
-
-    /// Refuse larger files
-    #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
-    pub(crate) max_size: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

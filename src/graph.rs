@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 
-use saoms_core::check::{Census, Options, Setting, Variable};
+use saoms_core::check::{Census, Options, Setting, SeveritySetting, Variable};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human};
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
 use saoms_core::load::{load_file, load_named, read, read_values};
@@ -19,6 +19,8 @@ use crate::plugins::{registry, search};
 
 /// The option that sets composite properties.
 const SET: &str = "--set";
+/// The option that sets severities.
+const SEVERITY: &str = "--severity";
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
@@ -36,33 +38,38 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
             }
         },
     };
+    let fleet = &arguments.fleet;
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let mut composites = Vec::new();
-    for path in &arguments.files {
-        let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
+    for path in &fleet.files {
+        let file = read(path, fleet.max_size, &mut sources, &mut diagnostics);
         let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
             continue;
         };
-        read_values(&mut composite, arguments.max_size, &mut sources, &mut diagnostics);
+        read_values(&mut composite, fleet.max_size, &mut sources, &mut diagnostics);
         composites.push(composite);
     }
     let mut contribution = Contribution::of(composites);
-    load_named(&mut contribution, arguments.max_size, &mut sources, &mut diagnostics);
-    let settings = arguments.settings.iter();
+    load_named(&mut contribution, fleet.max_size, &mut sources, &mut diagnostics);
+    let settings = fleet.settings.iter();
     let settings =
         settings.filter_map(|text| Setting::parse(SET, text, &mut sources, &mut diagnostics)).collect();
+    let severities = fleet.severities.iter();
+    let severities = severities
+        .filter_map(|text| SeveritySetting::parse(SEVERITY, text, &mut sources, &mut diagnostics))
+        .collect();
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
-    let options = Options { settings, variables, ..Options::default() };
-    let mut registry = match registry(&arguments.plugins, &arguments.files) {
+    let options = Options { settings, variables, severities, ..Options::default() };
+    let mut registry = match registry(&fleet.plugins, &fleet.files) {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
-    open_named(&mut contribution, &search(&arguments.plugins, &arguments.files), &sources, &mut registry);
+    open_named(&mut contribution, &search(&fleet.plugins, &fleet.files), &sources, &mut registry);
     let census = Census::of(&contribution, &registry, &options, &sources, &mut diagnostics);
     let found = diagnostics.into_sorted();
-    let of_options: Vec<Diagnostic> =
-        found.iter().filter(|one| sources.get(one.location.file).path() == SET).cloned().collect();
+    let is_of_option = |one: &&Diagnostic| matches!(sources.get(one.location.file).path(), SET | SEVERITY);
+    let of_options: Vec<Diagnostic> = found.iter().filter(is_of_option).cloned().collect();
     if contribution.composites().is_empty() || !of_options.is_empty() {
         let shown = if of_options.is_empty() { &found } else { &of_options };
         eprint(&human(shown, &sources, io::stderr().is_terminal()));
@@ -71,7 +78,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let errors = found.iter().filter(|one| one.severity == Severity::Error).count();
     if errors > 0 {
         let errors = counted(errors, "error");
-        let names: Vec<String> = arguments.files.iter().map(|file| file.display().to_string()).collect();
+        let names: Vec<String> = fleet.files.iter().map(|file| file.display().to_string()).collect();
         let name = names.join(" ");
         eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows {errors}\n"));
     }

@@ -124,3 +124,25 @@ fn topics_of_loops_are_drawn_as_the_wiring_report_has_them() {
     assert_eq!(drawn, reported);
     assert!(drawn.contains(&"OTHER") && drawn.contains(&"CSMSTOPIC"), "{drawn:?}");
 }
+
+#[test]
+fn severities_count_as_for_the_check_that_it_points_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let composite = |file: &str, name: &str, inside: &str| {
+        let text = format!(
+            "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' targetNamespace='urn:h' name='{name}'>{inside}</composite>"
+        );
+        fs::write(folder.path().join(file), text).unwrap();
+    };
+    composite("fleet.composite", "fleet", "<include name='hall'/>");
+    composite("hall.composite", "hall", "");
+    composite("other.composite", "hall", "");
+    let path = folder.path().join("fleet.composite").display().to_string();
+    let of = |severity: &str| graph(&[&path, "--format", "dot", "--severity", severity]);
+    let (code, _, told) = of("S2001=note");
+    assert_eq!((code, told.as_str()), (0, ""));
+    let (code, _, told) = of("S2001=error");
+    assert!(code == 0 && told.contains("shows 1 error"), "{told}");
+    let (code, _, told) = of("S2001=eror");
+    assert!(code == 2 && told.contains("replace it with `error`"), "{told}");
+}

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, Setting, check};
+use saoms_core::check::{Options, Setting, SeveritySetting, Variable, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, human};
 use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
 use saoms_core::model::Contribution;
@@ -17,11 +17,15 @@ use saoms_core::source::{FileId, SourceFile, Sources};
 use crate::expected::{Checked, Found};
 use crate::run::{Log, Run};
 
-/// A fleet under test: one or several composites, and values for their properties.
+/// A fleet under test: one or several composites, values for their properties, variables of the environment, and severities.
+///
+/// The environment of the process is not looked at: a test gives the same everywhere.
 #[derive(Clone, Debug, Default)]
 pub struct Fleet {
     composites: Vec<Composite>,
     settings: Vec<String>,
+    variables: Vec<(String, String)>,
+    severities: Vec<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -38,7 +42,7 @@ impl Fleet {
 
     /// The fleet of a composite that is given as text; its name in diagnostics is `text.composite`.
     pub fn of_text(text: impl Into<String>) -> Fleet {
-        Fleet { composites: vec![Composite::Text(text.into())], settings: Vec::new() }
+        Fleet { composites: vec![Composite::Text(text.into())], ..Fleet::default() }
     }
 
     /// The same fleet with the components of a further file.
@@ -52,6 +56,41 @@ impl Fleet {
     #[must_use]
     pub fn set(mut self, name: &str, value: &str) -> Fleet {
         self.settings.push(format!("{name}={value}"));
+        self
+    }
+
+    /// The same fleet with a variable of the environment, for composite properties with `saoms:env`. Of one that is given twice the last
+    /// value counts.
+    ///
+    /// ```
+    /// use saoms_testkit::Fleet;
+    ///
+    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:fleet"
+    ///     xmlns:saoms="urn:saoms:1"><property name="robots" mustSupply="true" saoms:env="ROBOTS"/></composite>"#);
+    /// assert!(fleet.diagnostics().contains("S2025"), "it has to have a value");
+    /// assert!(!fleet.with_variable("ROBOTS", "40").diagnostics().contains("S2025"));
+    /// ```
+    #[must_use]
+    pub fn with_variable(mut self, name: &str, value: &str) -> Fleet {
+        self.variables.retain(|(known, _)| known != name);
+        self.variables.push((name.to_owned(), value.to_owned()));
+        self
+    }
+
+    /// The same fleet with another severity for a code, as `--severity` gives it: `allow`, `note`, `warning` or `error`.
+    ///
+    /// ```
+    /// use saoms_testkit::Fleet;
+    ///
+    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:fleet">
+    ///   <property name="unused">1</property>
+    /// </composite>"#);
+    /// assert!(fleet.diagnostics().starts_with("warning S2026"));
+    /// assert_eq!(fleet.with_severity("S2026", "allow").diagnostics(), "");
+    /// ```
+    #[must_use]
+    pub fn with_severity(mut self, code: &str, level: &str) -> Fleet {
+        self.severities.push(format!("{code}={level}"));
         self
     }
 
@@ -135,6 +174,10 @@ impl Fleet {
         for setting in &self.settings {
             settings.extend(Setting::parse("set", setting, &mut sources, &mut diagnostics));
         }
+        let mut severities = Vec::new();
+        for severity in &self.severities {
+            severities.extend(SeveritySetting::parse("severity", severity, &mut sources, &mut diagnostics));
+        }
         let mut composites = Vec::new();
         for composite in &self.composites {
             let file = match composite {
@@ -151,7 +194,11 @@ impl Fleet {
         let mut contribution = Contribution::of(composites);
         load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
         open_named(&mut contribution, &Search::default(), &sources, &mut registry);
-        let options = Options::with_settings(settings);
+        let variable = |name: &str| {
+            self.variables.iter().find(|(known, _)| known == name).map(|(_, value)| value.into())
+        };
+        let variables = Variable::read(&contribution, variable, &mut sources, &mut diagnostics);
+        let options = Options { settings, variables, severities, ..Options::default() };
         let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
         (assembly, sources, diagnostics.into_sorted(), contribution)
     }

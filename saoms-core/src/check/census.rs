@@ -7,6 +7,7 @@ use super::fleet::{Fleet, Kind};
 use super::options::Options;
 use super::parameters::Parameters;
 use super::report::Report;
+use super::severities::Severities;
 use super::{classes, loops, task, unfold};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Contribution, Origin};
@@ -42,11 +43,13 @@ impl Census {
         sources: &Sources,
         diagnostics: &mut Diagnostics,
     ) -> Self {
+        let mut severities = Severities::of(contribution, options, registry, diagnostics);
         let report = &mut Report::new(sources, diagnostics);
         let replicas = Arena::new();
         let mut fleet = unfold::unfold(contribution, options, &replicas, report);
         let parameters = Parameters::of(&fleet, options, report);
         report.finish();
+        severities.apply(0, report.diagnostics());
         let topics = topics(&mut fleet, parameters, registry, sources);
         let mut counts: HashMap<(FileId, ElementId), usize> = HashMap::new();
         for composite in contribution.composites() {
