@@ -91,7 +91,8 @@ fn wrong_names_and_sources_are_told() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, expected) in [
         (["new", "plugin", "MyRobot"].as_slice(), "expected one for a Rust package"),
-        (&["new", "plugin", "loop"], "expected one for a Rust package"),
+        (&["new", "plugin", "loop"], "a name of Rust itself"),
+        (&["new", "plugin", "saoms-api"], "a crate of SAOMS itself"),
         (&["new", "plugin", "robot", "--api", "nowhere"], "expected a folder with `saoms-api` in it"),
         (&["new", "composite", "2 halls"], "it becomes the name of the composite"),
     ] {

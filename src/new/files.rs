@@ -35,12 +35,22 @@ impl Names {
             "std", "alloc", "extern", "false", "true", "return", "unsafe", "abstract", "become", "final",
             "macro", "override", "priv", "try", "typeof", "unsized", "virtual", "yield", "gen",
         ];
-        if !starts || !fits || WORDS.contains(&package) {
+        // A crate cannot depend on another one of its own name.
+        const CRATES: &[&str] =
+            &["saoms", "saoms-api", "saoms-components", "saoms-core", "saoms-derive", "saoms-testkit"];
+        if !starts || !fits {
             return Err(format!(
-                "found the name `{package}`, expected one for a Rust package: a small letter, then small letters, digits and `-`, such as `my-robot`"
+                "found the name `{package}`, expected one for a Rust package: a small letter, then small letters, digits, `-` and `_`, such as `my-robot`"
             ));
         }
-        Ok(Names { package: package.to_owned(), library: package.replace('-', "_"), class })
+        let taken = if WORDS.contains(&package) {
+            "a name of Rust itself"
+        } else if CRATES.contains(&package.replace('_', "-").as_str()) {
+            "a crate of SAOMS itself"
+        } else {
+            return Ok(Names { package: package.to_owned(), library: package.replace('-', "_"), class });
+        };
+        Err(format!("found the name `{package}`, which is {taken}: take another one, such as `my-{package}`"))
     }
 }
 
@@ -151,8 +161,19 @@ mod tests {
     fn names_follow_from_the_package() {
         let names = Names::of("my-robot2").unwrap();
         assert_eq!((names.library.as_str(), names.class.as_str()), ("my_robot2", "MyRobot2"));
-        for wrong in ["", "MyRobot", "2robots", "loop", "mein-röbot", "a/b", "-a"] {
-            assert!(Names::of(wrong).is_err(), "{wrong}");
+        for wrong in ["", "MyRobot", "2robots", "mein-röbot", "a/b", "-a"] {
+            assert!(Names::of(wrong).err().unwrap().contains("expected one for a Rust package"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn names_that_are_taken_are_refused() {
+        for (name, taken) in [
+            ("loop", "a name of Rust itself"),
+            ("saoms-api", "a crate of SAOMS itself"),
+            ("saoms_core", "a crate of SAOMS itself"),
+        ] {
+            assert!(Names::of(name).err().unwrap().contains(taken), "{name}");
         }
     }
 }

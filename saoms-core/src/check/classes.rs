@@ -234,7 +234,7 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
             list(registry.iter().map(|class| class.name()))
         ),
         count => format!(
-            "looked among the {count} classes linked into this program; `saoms components` lists them"
+            "looked among the {count} classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin"
         ),
     };
     one.help(looked)

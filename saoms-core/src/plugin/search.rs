@@ -59,7 +59,10 @@ impl Search {
                 look(library, false, &mut found);
             }
             if libraries.is_empty() {
-                let message = "there is no library (`*.so`) in this folder".to_owned();
+                let message = match fs::read_dir(path) {
+                    Ok(_) => "there is no library (`*.so`) in this folder".to_owned(),
+                    Err(error) => error.to_string(),
+                };
                 found.errors.push(PluginError::Unreadable { path: path.clone(), message });
             }
         }

@@ -80,7 +80,7 @@ fn names_of_loops_and_their_classes_are_known() {
   help: to add a loop, say which: `class=\"...\"`
   fix: replace `ColisionMS` with `CollisionMS` [3:19-29 \"CollisionMS\"]
 4:33-53 error S3001: there is no loop class `example.BatterySafer`
-  help: looked among the 12 loops linked into this program; `saoms components` lists them
+  help: looked among the 12 loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
   fix: replace `example.BatterySafer` with `example.BatterySaver` [4:33-53 \"example.BatterySaver\"]
   fix: replace `example.BatterySafer` with `example.BatteryMS` [4:33-53 \"example.BatteryMS\"]
 4:63-69 error S4501: component `Cart` has no loop `PathSM`

@@ -186,7 +186,9 @@ fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
         0 => "no loop is linked into this program".to_owned(),
         1..=SHOWN => format!("the loops linked into this program are {}", list(names)),
         count => {
-            format!("looked among the {count} loops linked into this program; `saoms components` lists them")
+            format!(
+                "looked among the {count} loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin"
+            )
         }
     })
 }
