@@ -44,6 +44,7 @@ mod topics;
 mod traffic;
 mod unfold;
 mod unique;
+mod value_type;
 mod values;
 mod variable;
 mod wires;

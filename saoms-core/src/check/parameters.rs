@@ -6,9 +6,9 @@ use std::ops::Range;
 use super::fleet::{Fleet, Unit};
 use super::instance::Instance;
 use super::options::Options;
-use super::raw::{Raw, raw};
+use super::raw::{Piece, Raw, raw};
 use super::report::{Report, list};
-use super::{Setting, Variable};
+use super::{Setting, Variable, value_type};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
@@ -33,6 +33,8 @@ struct Parameter<'a> {
     property: &'a Property,
     given: Option<Given<'a>>,
     is_used: bool,
+    /// Whether what a component gives was held to its type.
+    is_judged: bool,
 }
 
 /// What counts in place of the value that a composite gives its property itself.
@@ -94,6 +96,7 @@ impl<'a> Parameters<'a> {
                 named.and_then(|named| options.variables.iter().find(|one| one.name == named.as_str()));
             parameter.given = variable.map(Given::Variable);
         }
+        parameters.judge_outside(fleet, report);
         for (unit, names) in fleet.names.iter().enumerate() {
             for name in names.iter().flat_map(|names| names.used()) {
                 if let Some(parameter) = parameters.units[unit].by_name.get_mut(name.as_str()) {
@@ -102,6 +105,23 @@ impl<'a> Parameters<'a> {
             }
         }
         parameters
+    }
+
+    /// Holds what comes from the command line and the environment to the types of the properties.
+    fn judge_outside(&self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+        for (unit, declared) in fleet.units.iter().zip(&self.units) {
+            for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
+                let parameter = declared.by_name.get(property.name.as_str());
+                let value = match parameter.and_then(|parameter| parameter.given) {
+                    Some(Given::Setting(setting)) => &setting.value,
+                    Some(Given::Variable(variable)) => &variable.value,
+                    _ => continue,
+                };
+                if parameter.is_some_and(|parameter| std::ptr::eq(parameter.property, property)) {
+                    value_type::given(property, value, report);
+                }
+            }
+        }
     }
 
     /// The places of the units of composites that run by themselves.
@@ -207,10 +227,19 @@ impl<'a> Parameters<'a> {
         };
         parameter.is_used = true;
         let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
+        let is_judged = std::mem::replace(&mut parameter.is_judged, true);
         let mut whole = match given {
             Some(Given::Setting(setting)) => Raw::one(&setting.value),
             Some(Given::Variable(variable)) => Raw::one(&variable.value),
-            Some(Given::Component(outside, property)) => self.values(outside, property, report)?.raw,
+            Some(Given::Component(outside, outer)) => {
+                let raw = self.values(outside, outer, report)?.raw;
+                for piece in raw.0.iter().filter(|_| !is_judged) {
+                    if let Piece::Text(text) = piece {
+                        value_type::given(property, text, report);
+                    }
+                }
+                raw
+            }
             None => Raw(Vec::new()),
         };
         if whole.0.is_empty() {
@@ -284,7 +313,10 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
             );
             continue;
         }
-        all.by_name.insert(&property.name, Parameter { composite, property, given: None, is_used: false });
+        all.by_name.insert(
+            &property.name,
+            Parameter { composite, property, given: None, is_used: false, is_judged: false },
+        );
     }
     all
 }

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use super::fleet::Fleet;
 use super::global;
 use super::report::Report;
-use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use super::value_type;
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Binding, Part, Property, Reference, Service, Version};
 use crate::source::{Location, Text};
 
@@ -14,8 +15,9 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for composite in fleet.units.iter().flat_map(|unit| &unit.composites) {
         for property in &composite.properties {
             type_and_element(property, "ASM60040", report);
-            value_type(property, report);
             global::check(property, &composite.document, &codes::COMPOSITE_VALUE_TYPE, report);
+            value_type::named(property, &composite.document, report);
+            value_type::own(property, report);
         }
         composite
             .services
@@ -31,6 +33,7 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         for property in &component.properties {
             type_and_element(property, "ASM50035", report);
             global::check(property, &member.composite.document, &codes::VALUE_TYPE, report);
+            value_type::named(property, &member.composite.document, report);
         }
         component.services.iter().for_each(|one| service(one, member.composite.version, report));
         component.references.iter().for_each(|one| reference(one, member.composite.version, report));
@@ -89,53 +92,5 @@ fn type_and_element(property: &Property, rule: &'static str, report: &mut Report
         let message = format!("the property {} has both a `type` and an `element`", quoted(&property.name));
         let one = Diagnostic::new(&codes::TYPE_AND_ELEMENT, at(element, property.tag()), message);
         report.push(one.rule(rule).label(at(of, property.tag()), "the other one").help("remove one of them"));
-    }
-}
-
-/// The types of XML Schema whose values are checked: the name, what is expected, and whether a text is one.
-type SimpleType = (&'static str, &'static str, fn(&str) -> bool);
-
-const SIMPLE_TYPES: &[SimpleType] = &[
-    ("boolean", "`true` or `false`", |text| matches!(text, "true" | "false" | "1" | "0")),
-    ("int", "a whole number of 32 bits", |text| whole(text).is_some_and(|it| i32::try_from(it).is_ok())),
-    ("integer", "a whole number", |text| is_digits(text.trim_start_matches(['+', '-']))),
-    ("long", "a whole number of 64 bits", |text| whole(text).is_some_and(|it| i64::try_from(it).is_ok())),
-    ("short", "a whole number of 16 bits", |text| whole(text).is_some_and(|it| i16::try_from(it).is_ok())),
-    ("byte", "a whole number of 8 bits", |text| whole(text).is_some_and(|it| i8::try_from(it).is_ok())),
-    ("nonNegativeInteger", "a whole number, not negative", |text| is_digits(text.trim_start_matches('+'))),
-    ("double", "a number", is_float),
-    ("float", "a number", is_float),
-    ("decimal", "a decimal number", |text| is_float(text) && !text.contains(['e', 'E', 'N', 'I'])),
-];
-
-fn whole(text: &str) -> Option<i128> {
-    text.parse().ok()
-}
-
-fn is_digits(text: &str) -> bool {
-    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-fn is_float(text: &str) -> bool {
-    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
-    matches!(text, "INF" | "-INF" | "NaN") || text.chars().all(is_number) && text.parse::<f64>().is_ok()
-}
-
-/// Checks the values of a composite's property against its type, where that is a simple one of XML Schema.
-fn value_type(property: &Property, report: &mut Report<'_>) {
-    let Some(of) = property.r#type() else { return };
-    let local = of.rsplit(':').next().unwrap_or(of);
-    let Some((_, expected, is_one)) = SIMPLE_TYPES.iter().find(|(name, ..)| *name == local) else { return };
-    let wrong = |code: &'static Code, value: &Text| {
-        let message = format!(
-            "the property {} is of the type {}: found {}, expected {expected}",
-            quoted(&property.name),
-            quoted(of),
-            quoted(value)
-        );
-        Diagnostic::new(code, value.location, message).label(of.location, "the type")
-    };
-    for value in property.simple_values().filter(|value| !value.is_empty() && !is_one(value)) {
-        report.push(wrong(&codes::COMPOSITE_VALUE_TYPE, value).help("change the value, or the type"));
     }
 }

@@ -114,6 +114,7 @@ codes! {
     OVERRIDES = "S2047" Error "overrides": "A table of overrides is malformed, or is about replicas that do not exist.";
     SEVERITY = "S2048" Error "severity": "A severity is set of a code that does not exist, or to none.";
     SEVERITY_UNUSED = "S2049" Warning "severity-unused": "A composite lowers a severity, and there is nothing that it changes.";
+    UNKNOWN_TYPE = "S2050" Error "unknown-type": "A property has a type that XML Schema does not have.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";
@@ -174,6 +175,7 @@ pub fn is_judgement(code: &Code) -> bool {
         &BINDING_REPEATED,
         &SERVICE_BINDING_URI,
         &COMPOSITE_VALUE_TYPE,
+        &UNKNOWN_TYPE,
         &COMPONENT_TYPE_REPEATED,
         &COMPONENT_TYPE_MISSING,
         &NOT_UNIQUE,

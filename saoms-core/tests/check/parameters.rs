@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::properties::robot;
-use crate::support::{faults, faults_of, fleet, outcome};
+use crate::support::{faults, faults_of, fleet, outcome, part};
 
 #[test]
 fn sources_lead_to_composite_properties() {
@@ -179,4 +179,54 @@ fn values_are_the_elements_that_properties_are_typed_by() {
 {}"#,
         robot(r#"<property name="charger" element="p:place" xmlns:p="urn:x"><y xmlns="">4</y></property>"#)
     )));
+}
+
+/// Wherever a value comes from, it is held to the type of the property.
+#[test]
+fn values_from_outside_are_of_the_type_of_the_property() {
+    let inside = robot(r#"<property name="speed" source="$speed"/>"#);
+    let typed = format!(
+        "<property name=\"speed\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">1</property>\n{inside}"
+    );
+    expect![""].assert_eq(&faults_of(&[&fleet(&typed)], &["speed=2"]));
+    expect![[r#"
+        --set:1:7-10 error S2042: the property `speed` is of the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
+          2:30-37 the type
+          help: change the value, or the type
+    "#]]
+    .assert_eq(&faults_of(&[&fleet(&typed)], &["speed=1.5"]));
+    let outer = part(
+        "outer",
+        "",
+        "<property name=\"slow\">0.5</property><component name=\"A\"><implementation.composite name=\"t:inner\"/><property name=\"speed\">1.5</property></component>
+<component name=\"B\"><implementation.composite name=\"t:inner\"/><property name=\"speed\" source=\"$slow\"/></component>",
+    );
+    expect![[r#"
+        2:23-26 error S2042: the property `speed` is of the type `xsd:int`: found `0.5`, expected a whole number of 32 bits
+          inner:2:30-37 the type
+          help: change the value, or the type
+        2:122-125 error S2042: the property `speed` is of the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
+          inner:2:30-37 the type
+          help: change the value, or the type
+        inner:3:88-89 error S3013: components `A/R` and `B/R` have the same `ID` `R`
+          inner:3:88-89 the first
+          help: every robot needs its own
+    "#]]
+    .assert_eq(&outcome(&[&outer, &part("inner", "", &typed)], &[]));
+}
+
+#[test]
+fn types_that_xml_schema_does_not_have_are_told_with_the_nearest() {
+    let property = |of: &str| {
+        let property = format!(
+            "<property name=\"speed\" type=\"{of}\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\" xmlns:own=\"urn:own\">1</property>"
+        );
+        faults(&format!("{property}\n{}", robot(r#"<property name="speed" source="$speed"/>"#)))
+    };
+    expect![[r#"
+        2:30-37 error S2050: XML Schema has no type `itn`
+          fix: replace `xsd:itn` with `xsd:int` [2:30-37 "xsd:int"]
+    "#]]
+    .assert_eq(&property("xsd:itn"));
+    assert_eq!(property("own:itn") + &property("xsd:unsignedByte"), "");
 }
