@@ -9,11 +9,7 @@ use crate::diagnostic::quoted;
 /// # Errors
 /// A name has no value, or it comes to something else.
 pub fn integer(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<i64, Fault> {
-    match value(expression, lookup)? {
-        Value::Integer(number) => Ok(number),
-        other => Err(Problem::new(format!("here is {other}, and a whole number is expected"))
-            .at(expression.at.clone())),
-    }
+    number(value(expression, lookup)?, expression)
 }
 
 /// Whether an expression is true.
@@ -21,15 +17,43 @@ pub fn integer(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<i64, 
 /// # Errors
 /// A name has no value, or it comes to something else.
 pub fn boolean(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<bool, Fault> {
-    match value(expression, lookup)? {
-        Value::Boolean(value) => Ok(value),
-        other => Err(Problem::new(format!("here is {other}, and a condition is expected"))
-            .help("compare it with something, as in `robots > 10`")
-            .at(expression.at.clone())),
+    condition(value(expression, lookup)?, expression)
+}
+
+fn number(value: Value, of: &Expression) -> Result<i64, Fault> {
+    match value {
+        Value::Integer(number) => Ok(number),
+        other => {
+            Err(Problem::new(format!("here is {other}, and a whole number is expected")).at(of.at.clone()))
+        }
     }
 }
 
+fn condition(value: Value, of: &Expression) -> Result<bool, Fault> {
+    match value {
+        Value::Boolean(value) => Ok(value),
+        other => Err(Problem::new(format!("here is {other}, and a condition is expected"))
+            .help("compare it with something, as in `robots > 10`")
+            .at(of.at.clone())),
+    }
+}
+
+/// Chains such as `1 + 2 + 3` lean to the left: they are followed in a loop, so that only parentheses and signs cost the stack a frame.
 fn value(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Fault> {
+    let mut chain = Vec::new();
+    let mut first = expression;
+    while let Node::Two(left, operator, right) = &first.node {
+        chain.push((first, *operator, &**right));
+        first = left;
+    }
+    let mut left = (single(first, lookup)?, first);
+    for (whole, operator, right) in chain.into_iter().rev() {
+        left = (two(whole, left, operator, right, lookup)?, whole);
+    }
+    Ok(left.0)
+}
+
+fn single(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Fault> {
     match &expression.node {
         Node::Value(value) => Ok(value.clone()),
         Node::Name(name) => lookup(name).map_err(|problem| problem.at(expression.at.clone())),
@@ -38,46 +62,69 @@ fn value(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Faul
             let number = integer(inner, lookup)?;
             number.checked_neg().map(Value::Integer).ok_or_else(|| overflow(expression))
         }
-        Node::Two(left, operator @ ("and" | "or"), right) => {
-            let decides = *operator == "or";
-            let left = boolean(left, lookup)?;
+        Node::Two(..) => value(expression, lookup),
+    }
+}
+
+/// What an operator makes of the value on its left, given with its expression, and of what is on its right.
+fn two(
+    whole: &Expression,
+    (left, of): (Value, &Expression),
+    operator: &str,
+    right: &Expression,
+    lookup: &mut Lookup<'_>,
+) -> Result<Value, Fault> {
+    match operator {
+        "and" | "or" => {
+            let decides = operator == "or";
+            let left = condition(left, of)?;
             // The right side is looked at in any case: what is wrong with it is wrong. But the left one may keep numbers from it.
             match boolean(right, lookup) {
                 Err(fault) if left == decides && fault.problem.is_arithmetic => Ok(Value::Boolean(left)),
                 right => Ok(Value::Boolean(if decides { left | right? } else { left & right? })),
             }
         }
-        Node::Two(left, operator @ ("==" | "!="), right) => {
-            let (one, other) = (value(left, lookup)?, value(right, lookup)?);
-            if std::mem::discriminant(&one) != std::mem::discriminant(&other) {
-                let message = format!("{one} cannot be compared with {other}");
+        "==" | "!=" => {
+            let other = value(right, lookup)?;
+            if std::mem::discriminant(&left) != std::mem::discriminant(&other) {
+                let message = format!("{left} cannot be compared with {other}");
                 return Err(Problem::new(message)
                     .help("texts stand between two `'`, numbers and `true` and `false` do not")
-                    .at(expression.at.clone()));
+                    .at(whole.at.clone()));
             }
-            Ok(Value::Boolean((one == other) == (*operator == "==")))
+            Ok(Value::Boolean((left == other) == (operator == "==")))
         }
-        Node::Two(left, operator, right) => {
-            let (one, other) = (integer(left, lookup)?, integer(right, lookup)?);
-            let number = match *operator {
-                "<" => return Ok(Value::Boolean(one < other)),
-                "<=" => return Ok(Value::Boolean(one <= other)),
-                ">" => return Ok(Value::Boolean(one > other)),
-                ">=" => return Ok(Value::Boolean(one >= other)),
-                "/" | "%" if other == 0 => {
-                    let message = format!("{} is divided by zero", quoted(&one.to_string()));
-                    let problem = Problem { is_arithmetic: true, ..Problem::new(message) };
-                    return Err(problem.at(right.at.clone()));
-                }
-                "+" => one.checked_add(other),
-                "-" => one.checked_sub(other),
-                "*" => one.checked_mul(other),
-                "/" => one.checked_div_euclid(other),
-                _ => one.checked_rem_euclid(other),
-            };
-            number.map(Value::Integer).ok_or_else(|| overflow(expression))
+        _ => {
+            let (one, other) = (number(left, of)?, integer(right, lookup)?);
+            calculated(whole, one, operator, other, right)
         }
     }
+}
+
+fn calculated(
+    whole: &Expression,
+    one: i64,
+    operator: &str,
+    other: i64,
+    right: &Expression,
+) -> Result<Value, Fault> {
+    let number = match operator {
+        "<" => return Ok(Value::Boolean(one < other)),
+        "<=" => return Ok(Value::Boolean(one <= other)),
+        ">" => return Ok(Value::Boolean(one > other)),
+        ">=" => return Ok(Value::Boolean(one >= other)),
+        "/" | "%" if other == 0 => {
+            let message = format!("{} is divided by zero", quoted(&one.to_string()));
+            let problem = Problem { is_arithmetic: true, ..Problem::new(message) };
+            return Err(problem.at(right.at.clone()));
+        }
+        "+" => one.checked_add(other),
+        "-" => one.checked_sub(other),
+        "*" => one.checked_mul(other),
+        "/" => one.checked_div_euclid(other),
+        _ => one.checked_rem_euclid(other),
+    };
+    number.map(Value::Integer).ok_or_else(|| overflow(whole))
 }
 
 fn overflow(expression: &Expression) -> Fault {

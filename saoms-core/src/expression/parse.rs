@@ -8,7 +8,7 @@ use crate::diagnostic::quoted;
 
 /// Operators of an expression: it is evaluated by recursion that is at most so deep.
 const MOST_OPERATORS: usize = 200;
-/// Parentheses and signs inside each other: reading one takes a recursion for each kind of operators.
+/// Parentheses and signs inside each other: they are read and evaluated by recursion.
 const MOST_NESTED: usize = 30;
 
 /// An expression with its bytes.
@@ -96,20 +96,21 @@ impl Parser<'_> {
         }
     }
 
-    fn level(&mut self, level: usize) -> Result<Expression, Fault> {
-        let Some(operators) = LEVELS.get(level) else { return self.operand() };
-        if level == COMPARISON && self.sign() == "not" {
-            return self.prefix(level, Node::Not);
-        }
-        let mut left = self.level(level + 1)?;
-        let mut count = 0;
-        while let Some(operator) = operators.iter().copied().find(|one| *one == self.sign()) {
-            count += 1;
-            if level == COMPARISON && count > 1 {
+    /// What operators of this level and those that bind more make. They are climbed in a loop, so that parentheses cost the stack no frame for
+    /// each level: <https://en.wikipedia.org/wiki/Operator-precedence_parser#Precedence_climbing_method>.
+    fn level(&mut self, lowest: usize) -> Result<Expression, Fault> {
+        let mut left = match self.sign() {
+            "not" if lowest <= COMPARISON => self.prefix(COMPARISON, Node::Not)?,
+            _ => self.operand()?,
+        };
+        let mut is_comparison = false;
+        while let Some((level, operator)) = self.operator(lowest) {
+            if is_comparison && level == COMPARISON {
                 let at = self.tokens[self.next].1.clone();
                 let problem = Problem::new("two comparisons in a row");
                 return Err(problem.help("join them with `and`").at(at));
             }
+            is_comparison = level == COMPARISON;
             self.next += 1;
             let right = self.level(level + 1)?;
             let at = left.at.start..right.at.end;
@@ -120,6 +121,14 @@ impl Parser<'_> {
             left = Expression { at, node: Node::Two(Box::new(left), operator, Box::new(right)) };
         }
         Ok(left)
+    }
+
+    /// The operator that comes next, with its level, where that is at least `lowest`.
+    fn operator(&self, lowest: usize) -> Option<(usize, &'static str)> {
+        let sign = self.sign();
+        let levels = LEVELS.iter().enumerate().skip(lowest);
+        let mut all = levels.flat_map(|(level, operators)| operators.iter().map(move |one| (level, *one)));
+        all.find(|(_, one)| *one == sign)
     }
 
     /// `not` or `-`, and what follows it.

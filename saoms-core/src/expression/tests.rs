@@ -106,15 +106,22 @@ fn texts_get_numbers_in_place_of_expressions() {
     assert_eq!(names("${index * row}"), ["index", "row"]);
 }
 
+/// A quarter of what threads have, so that no build comes near the end of it.
+const STACK: usize = 512 * 1024;
+
 #[test]
 fn depth_is_a_fault_and_no_crash() {
-    for text in ["(".repeat(100_000), "-".repeat(100_000), "not ".repeat(100_000), "1+".repeat(100_000)] {
-        assert!(parse(&text).is_err());
-    }
-    let chain = |inner: String| format!("({inner}{})", "+1".repeat(90));
-    assert!(parse(&(0..90).fold("1".to_owned(), |inner, _| chain(inner))).is_err());
-    assert_eq!(of(&format!("{}1{}", "(".repeat(30), ")".repeat(30))), "1");
-    assert_eq!(of(&vec!["1"; 90].join(" + ")), "90");
+    let deep = || {
+        for text in ["(".repeat(100_000), "-".repeat(100_000), "not ".repeat(100_000), "1+".repeat(100_000)] {
+            assert!(parse(&text).is_err());
+        }
+        let chain = |inner: String| format!("({inner}{})", "+1".repeat(90));
+        assert!(parse(&(0..90).fold("1".to_owned(), |inner, _| chain(inner))).is_err());
+        assert_eq!(of(&format!("{}1{}", "(".repeat(30), ")".repeat(30))), "1");
+        assert_eq!(of(&vec!["1"; 201].join(" + ")), "201");
+    };
+    let thread = std::thread::Builder::new().stack_size(STACK).spawn(deep).unwrap();
+    thread.join().unwrap();
 }
 
 proptest! {
