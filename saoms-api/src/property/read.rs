@@ -16,7 +16,10 @@ pub fn property<T: PropertyField>(
     let given = values.iter().find(|(given, _)| given == name).map(|(_, value)| value);
     let value = match (given, default) {
         (Some(value), _) => value,
-        (None, Some(default)) => &PropertyValue::Text(default.to_owned()),
+        // That the rule allows it was seen to when it was compiled and registered.
+        (None, Some(default)) => {
+            return T::from_value(&PropertyValue::Text(default.to_owned())).map_err(failure);
+        }
         (None, None) => {
             let missing =
                 || Failure::new(format!("property `{name}` is missing: expected {}", rule.expected()));
