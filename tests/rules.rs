@@ -273,6 +273,10 @@ fn scenarios_of_which_nothing_comes_are_told() {
     );
     assert_eq!(with(&luggage, &[MASTER, KEEPER, SLEEPER]), [sleep]);
     assert_eq!(with(&landing, &[MASTER, SLEEPER]), [sleep], "nobody listens to landings");
+    assert_eq!(
+        with(&landing, &[MASTER, robot]),
+        ["warning S5008 nobody reacts to the landings and take-offs of this scenario"]
+    );
     assert!(with(&landing, &[MASTER, KEEPER, SLEEPER]).is_empty());
     assert!(with(&luggage, &[MASTER, SLEEPER, robot]).is_empty());
     let safe = ("Robot2", "saoms.Robot", &[("asleep", "true")][..], false);

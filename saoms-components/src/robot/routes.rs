@@ -113,6 +113,11 @@ impl Routes {
         self.obstacles.iter().any(|(_, obstacle)| *obstacle == block)
     }
 
+    /// Whether another robot charges on the block.
+    pub fn is_charger(&self, block: Block) -> bool {
+        self.area.as_ref().is_some_and(|area| area.chargers.contains(block) && !area.chargers.is_free(block))
+    }
+
     /// How often other ways became possible or necessary.
     pub fn changes(&self) -> u32 {
         self.changes

@@ -4,6 +4,7 @@ use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
 use super::robots::{Known, may_be_others, robots};
 use crate::environment::{Environment, Happening, Scenario};
+use crate::master::MasterRobot;
 use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
 use crate::robot::{Policy, Robot};
 
@@ -29,7 +30,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         scenarios.map(|(index, properties)| (index, Happenings::of(&properties.scenario))).collect();
     let is_awaked = scenarios.iter().any(|(_, has)| has.airplanes);
     let judged = scenarios.iter().filter_map(|(index, has)| {
-        let (message, help) = judge(fleet, has, is_awaked)?;
+        let (message, help) = judge(fleet, has, is_awaked).or_else(|| airplanes(fleet, has))?;
         Some(Finding::new(Place::property("scenario").in_component(*index), message).help(help))
     });
     judged.collect()
@@ -79,6 +80,14 @@ fn judge(fleet: &FleetView<'_>, has: &Happenings, is_awaked: bool) -> Option<(&'
     let help =
         "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are awaked";
     (!is_awaked).then_some((message, help))
+}
+
+/// Airplanes for which nobody does anything.
+fn airplanes(fleet: &FleetView<'_>, has: &Happenings) -> Option<(&'static str, &'static str)> {
+    (has.airplanes && fleet.all::<MasterRobot>().next().is_none()).then_some((
+        "nobody reacts to the landings and take-offs of this scenario",
+        "add a `saoms.MasterRobot`, which awakes robots for them",
+    ))
 }
 
 /// Whether somebody else than a robot publishes on a topic.

@@ -27,6 +27,8 @@ pub struct Lists {
     pub peers: Peers,
     /// The chargers of the other robots, also of those that are not active any more, by number.
     pub chargers: Vec<(u32, Block)>,
+    /// Where there are chargers, also where nobody charges any more.
+    pub charging_places: Vec<Block>,
     /// Robots that cannot move any more, until it is known where they are.
     pub lost: Vec<u32>,
 }
@@ -41,6 +43,7 @@ impl Lists {
             helps: Helps::new(number),
             peers: Peers::new(number),
             chargers: Vec::new(),
+            charging_places: Vec::new(),
             lost: Vec::new(),
         }
     }
@@ -65,9 +68,17 @@ impl Lists {
         self.active.iter().any(|robot| !robot.asleep)
     }
 
+    /// Takes in that there is a charger.
+    pub fn learn_charger(&mut self, charger: Block) {
+        if !self.charging_places.contains(&charger) {
+            self.charging_places.push(charger);
+        }
+    }
+
     /// Takes in that a robot is active, or no longer is.
     pub fn hear_robot(&mut self, robot: &RobotList) {
         self.helps.hear_robot(robot);
+        self.learn_charger(robot.charger);
         if robot.robot == self.number {
             return;
         }

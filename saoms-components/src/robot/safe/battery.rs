@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
+use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{RobotKnowledge, Trouble};
@@ -20,6 +20,10 @@ pub struct BatteryMS {
     in_charge: bool,
     /// How often other ways had become necessary when it looked at the way to its charger.
     changes: u32,
+    /// Why it went to its charger: what becomes of it on the way follows from that.
+    turned: Cause,
+    /// Its own charger, while it charges at another one.
+    own: Option<Block>,
 }
 
 /// What the battery allows now.
@@ -38,6 +42,13 @@ pub enum BatterySymptom {
     Empty,
     /// No way leads to the charger any more, and another one can be reached.
     CutOff {
+        /// The charger.
+        charger: Block,
+        /// The other one.
+        other: Block,
+    },
+    /// The battery does not last for the way to the charger any more, and a free one is closer.
+    OutOfReach {
         /// The charger.
         charger: Block,
         /// The other one.
@@ -68,6 +79,8 @@ pub enum BatteryDecision {
     Leave,
     /// Charge at another charger from now on.
     Use(Block),
+    /// Charge at another charger this time.
+    Borrow(Block),
     /// Be in charge, or no longer.
     BeInCharge(bool),
 }
@@ -82,6 +95,11 @@ impl Recordable for BatterySymptom {
                 home
             ),
             BatterySymptom::Empty => record!("has an empty battery"),
+            BatterySymptom::OutOfReach { charger, other } => record!(
+                "its charger at {charger} is out of reach by now, and the one at {other} is free",
+                charger,
+                other
+            ),
             BatterySymptom::CutOff { charger, other } => {
                 record!(
                     "no way leads to its charger at {charger} any more, but one to {other}",
@@ -107,6 +125,7 @@ impl Recordable for BatteryDecision {
             BatteryDecision::Stop => record!("stays where it is"),
             BatteryDecision::Leave => record!("has enough for what it has to do"),
             BatteryDecision::Use(other) => record!("charges at {other} from now on", other),
+            BatteryDecision::Borrow(other) => record!("charges at {other} this time", other),
             BatteryDecision::BeInCharge(true) => record!("is in charge"),
             BatteryDecision::BeInCharge(false) => record!("is in charge no more"),
         }
@@ -133,7 +152,7 @@ impl Loop for BatteryMS {
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Option<BatterySymptom>, Failure> {
         if knowledge.trouble.is_some() {
             return Ok(None);
@@ -149,10 +168,19 @@ impl Loop for BatteryMS {
         let battery = knowledge.battery.percent();
         let must_charge = knowledge.energy.must_charge();
         let symptom = if knowledge.is_at_charger() {
-            (must_charge && knowledge.may_leave()).then_some(BatterySymptom::Charged { battery })
+            let lasts = self.own.is_none_or(|own| knowledge.lasts_to(own));
+            (must_charge && lasts && knowledge.may_leave()).then_some(BatterySymptom::Charged { battery })
         } else if knowledge.battery.is_empty() {
+            context.because(self.turned);
             Some(BatterySymptom::Empty)
-        } else if must_charge || knowledge.goes_on() {
+        } else if must_charge {
+            let charger = knowledge.charge_block;
+            let other = knowledge.charger_in_reach();
+            other.map(|other| {
+                context.because(self.turned);
+                BatterySymptom::OutOfReach { charger, other }
+            })
+        } else if knowledge.goes_on() {
             None
         } else {
             let (left, home) = (knowledge.battery.executions_left(), knowledge.home(knowledge.next));
@@ -174,6 +202,7 @@ impl Loop for BatteryMS {
             BatterySymptom::Empty => BatteryDecision::Stop,
             BatterySymptom::Charged { .. } => BatteryDecision::Leave,
             BatterySymptom::CutOff { other, .. } => BatteryDecision::Use(other),
+            BatterySymptom::OutOfReach { other, .. } => BatteryDecision::Borrow(other),
             BatterySymptom::Charge { begins, .. } => BatteryDecision::BeInCharge(begins),
         }))
     }
@@ -189,6 +218,7 @@ impl Loop for BatteryMS {
         match decision {
             BatteryDecision::BeInCharge(_) => {}
             BatteryDecision::Charge => {
+                self.turned = context.cause();
                 knowledge.energy.turn_back();
                 let (name, battery) = (&knowledge.name, &knowledge.battery);
                 context.console(format_args!("{name} has low battery and is going under charge..."));
@@ -200,12 +230,21 @@ impl Loop for BatteryMS {
                 let block = knowledge.block;
                 context.log(Level::Error, format_args!("is stranded at {block}: its battery is empty"));
             }
-            BatteryDecision::Leave => knowledge.energy.may_go(),
+            BatteryDecision::Leave => {
+                knowledge.energy.may_go();
+                if let Some(own) = self.own.take().filter(|own| !knowledge.routes.is_obstacle(*own)) {
+                    knowledge.use_charger(own);
+                }
+            }
             BatteryDecision::Use(other) => {
-                knowledge.charge_block = other;
-                let others = knowledge.lists.chargers.iter().map(|(_, charger)| *charger);
-                knowledge.routes.use_charger(other, others);
+                self.own = None;
+                knowledge.use_charger(other);
                 context.info(format_args!("charges at {other} from now on"));
+            }
+            BatteryDecision::Borrow(other) => {
+                self.own = self.own.or(Some(knowledge.charge_block));
+                knowledge.use_charger(other);
+                context.info(format_args!("charges at {other} this time: its own is out of reach"));
             }
         }
         Ok(())
@@ -213,6 +252,26 @@ impl Loop for BatteryMS {
 }
 
 impl RobotKnowledge {
+    fn use_charger(&mut self, charger: Block) {
+        self.charge_block = charger;
+        let others = self.lists.chargers.iter().map(|(_, charger)| *charger);
+        self.routes.use_charger(charger, others);
+    }
+
+    /// Where the battery does not last for the way to the charger any more: the closest other one that is closer and that nobody holds.
+    fn charger_in_reach(&mut self) -> Option<Block> {
+        let home = self.home(self.next);
+        if self.battery.executions_left() > home || self.next != self.block {
+            return None;
+        }
+        let RobotKnowledge { lists, routes, next, .. } = self;
+        let is_free = |charger: &Block| !routes.is_obstacle(*charger) && lists.peers.on(*charger).is_none();
+        let free: Vec<Block> = lists.charging_places.iter().copied().filter(is_free).collect();
+        let ways = free.into_iter().map(|charger| (routes.between(*next, charger), charger));
+        let (_, closest) = ways.min()?;
+        (self.home_to(closest) < home).then_some(closest)
+    }
+
     /// Another charger, where no way leads to the own one any more: the closest of those that nobody uses any more, else the closest at all, where
     /// robots charge one after the other.
     fn other_charger(&mut self) -> Option<Block> {

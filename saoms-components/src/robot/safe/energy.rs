@@ -209,6 +209,17 @@ impl RobotKnowledge {
     pub(super) fn home(&mut self, from: Block) -> u32 {
         self.energy.pace.job(self.routes.between(from, self.charge_block), 0)
     }
+
+    /// Whether the battery lasts for the way to another charger with the usual reserve, or is full.
+    pub(super) fn lasts_to(&mut self, charger: Block) -> bool {
+        let needs = self.home_to(charger).saturating_add(self.usual_reserve());
+        self.battery.is_full() || self.battery.executions_left() >= needs
+    }
+
+    /// Executions from where the robot goes on to another charger.
+    pub(super) fn home_to(&mut self, charger: Block) -> u32 {
+        self.energy.pace.job(self.routes.between(self.next, charger), 0)
+    }
 }
 
 /// Whether a full battery of so many executions lasts for so many moves from the charger, collecting or depositing there, and the way back, where

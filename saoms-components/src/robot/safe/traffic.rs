@@ -157,7 +157,9 @@ impl Traffic {
                 let rank = if makes_way {
                     // Straight ahead is where the asking robot is likely to want to go next.
                     let ahead = if ahead == Some(block) { 2 * MOVE } else { 0 };
-                    (standing as u32, cost.saturating_add(ahead))
+                    // Others may have to reach theirs in time.
+                    let charger = if routes.is_charger(block) { 2 * MOVE } else { 0 };
+                    (standing as u32, cost.saturating_add(ahead).saturating_add(charger))
                 } else {
                     (cost.saturating_add(standing.delay()), 0)
                 };
