@@ -1,7 +1,9 @@
 //! Another name for a component, or for another part of a composite, everywhere.
 
+use saoms_core::model::SAOMS_NAMESPACE;
+
 use super::scene::Scene;
-use super::symbol::{Occurrence, Place, Symbol, at, is_replica, places};
+use super::symbol::{Occurrence, Place, Symbol, at, group, is_replica, places};
 
 /// The name at a byte that can be changed; why not, where there is none.
 pub(super) fn prepare(scene: &Scene, byte: usize) -> Result<Place, String> {
@@ -28,6 +30,16 @@ pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Plac
     let Some(old) = old else {
         return Err("what is named here is not defined in any file near this one".to_owned());
     };
+    if matches!(found.symbol, Symbol::Component { .. }) && group(&old).is_some() && group(name).is_none() {
+        return Err(format!(
+            "`{old}` stands for replicas: the new name has to hold an expression, as the same one, or all would have one name"
+        ));
+    }
+    if let Symbol::Component { file, name: of } = &found.symbol
+        && let Some(table) = table_of_names(scene, *file, of)
+    {
+        return Err(format!("`{table}` names the replicas in its column `name`, which would not follow"));
+    }
     if old != name {
         taken(scene, &found.symbol, name)?;
     }
@@ -102,14 +114,32 @@ fn taken(scene: &Scene, symbol: &Symbol, name: &str) -> Result<(), String> {
     if is_taken { Err(format!("`{name}` is taken")) } else { Ok(()) }
 }
 
-/// The name of a replica under another pattern.
+/// The table beside a replicated component, where it tells the replicas by their names.
+fn table_of_names(scene: &Scene, file: usize, component: &str) -> Option<String> {
+    let (of, component) = scene.component(file, component)?;
+    let file = &scene.files[of];
+    let element = component.name.element;
+    let own = file.tree.prefix_of(&file.text, element, SAOMS_NAMESPACE)?;
+    let table = &file.text[file.tree.value(&file.text, element, &format!("{own}:overrides"))?];
+    let text = std::fs::read_to_string(file.path.parent()?.join(table)).ok()?;
+    let first = text.trim_start_matches('\u{feff}').split([',', '\n']).next()?.trim();
+    (first.trim_matches('"') == "name").then(|| table.to_owned())
+}
+
+/// The name of a replica, or that of all, under another pattern. Under one with other expressions nobody knows it.
 fn replica(pattern: &str, written: &str, new: &str) -> Option<String> {
+    if group(pattern).is_some_and(|group| group == written) {
+        return group(new);
+    }
     let split = |pattern: &str| -> Option<(usize, usize)> {
         let start = pattern.find("${")?;
-        Some((start, start + pattern[start..].find('}')? + 1))
+        let end = start + pattern[start..].find('}')? + 1;
+        (!pattern[end..].contains("${")).then_some((start, end))
     };
-    let (start, end) = split(pattern)?;
+    let ((start, end), (from, to)) = (split(pattern)?, split(new)?);
+    if pattern[start..end] != new[from..to] {
+        return None;
+    }
     let index = written.get(start..written.len().checked_sub(pattern.len() - end)?)?;
-    let (from, to) = split(new)?;
     Some(format!("{}{index}{}", &new[..from], &new[to..]))
 }

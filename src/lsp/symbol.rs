@@ -158,7 +158,7 @@ impl Found<'_> {
 
 impl Scene {
     /// The file and the name under which a component is written that a file names: that of its replicas, where it is one of them.
-    fn named(&self, file: usize, name: &str) -> (usize, String) {
+    pub(super) fn named(&self, file: usize, name: &str) -> (usize, String) {
         if let Some((of, _)) = self.component(file, name) {
             return (of, name.to_owned());
         }
@@ -192,10 +192,40 @@ impl Scene {
     }
 }
 
-/// Whether a name is one of those that a name with expressions, as `Robot${index:03}`, stands for.
+/// Whether a name is one of those that a name with expressions, as `Robot${index:03}`, stands for, or `Robot*`, all of them.
 pub(super) fn is_replica(pattern: &str, name: &str) -> bool {
-    let Some((before, rest)) = pattern.split_once("${") else { return false };
-    let Some((_, after)) = rest.split_once('}') else { return false };
-    let inside = name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after));
-    inside.is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()))
+    match pieces(pattern).split_first() {
+        Some((first, rest)) if !rest.is_empty() => {
+            group(pattern).as_deref() == Some(name)
+                || name.strip_prefix(first).is_some_and(|name| has_numbers(name, rest))
+        }
+        _ => false,
+    }
+}
+
+/// What names all replicas of a name with expressions: that with `*` in their places. `None` where it has none.
+pub(super) fn group(pattern: &str) -> Option<String> {
+    let pieces = pieces(pattern);
+    (pieces.len() > 1).then(|| pieces.join("*"))
+}
+
+/// What is around the expressions of a name.
+fn pieces(pattern: &str) -> Vec<&str> {
+    let (mut all, mut rest) = (Vec::new(), pattern);
+    while let Some((before, (_, after))) =
+        rest.split_once("${").and_then(|(before, inside)| Some((before, inside.split_once('}')?)))
+    {
+        all.push(before);
+        rest = after;
+    }
+    all.push(rest);
+    all
+}
+
+/// Whether a name is a number before each of these pieces, and nothing else.
+fn has_numbers(name: &str, pieces: &[&str]) -> bool {
+    let Some((first, rest)) = pieces.split_first() else { return name.is_empty() };
+    let digits = name.bytes().take_while(u8::is_ascii_digit).count();
+    // A piece may begin with digits, too.
+    (1..=digits).any(|end| name[end..].strip_prefix(first).is_some_and(|name| has_numbers(name, rest)))
 }

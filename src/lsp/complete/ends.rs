@@ -7,6 +7,7 @@ use lsp_types::CompletionItemKind;
 use super::{Proposal, names};
 use crate::lsp::outline::{Component, Implementation};
 use crate::lsp::scene::Scene;
+use crate::lsp::symbol::group;
 
 /// What can stand at a place of a target, a source or a promotion.
 pub(super) fn complete(
@@ -28,7 +29,9 @@ pub(super) fn complete(
             return Vec::new();
         }
         let end = text[at..word.end].find('/').map_or(word.end, |found| at + found);
-        let Some(of) = scene.component(0, name) else { return Vec::new() };
+        // Replicas have the parts of what they are replicas of.
+        let (file, name) = scene.named(0, name);
+        let Some(of) = scene.component(file, &name) else { return Vec::new() };
         return match wants_references {
             true => names::references_of(scene, of, &(start..end)),
             false => names::services_of(scene, of, &(start..end)),
@@ -54,6 +57,11 @@ pub(super) fn complete(
             Some(Implementation::Class(name) | Implementation::Composite(name)) => name.text.as_str(),
             None => "",
         };
+        if let Some(all_of_them) = group(&component.name.text) {
+            let one = Proposal::new(all_of_them, CompletionItemKind::VARIABLE, &(word.start..end));
+            // A replica that names its own group means the others.
+            all.push(one.detail(format!("all replicas: {shown}")).rank(if fits { 4 } else { 8 }));
+        }
         let one = Proposal::new(&component.name.text, CompletionItemKind::VARIABLE, &(word.start..end));
         all.push(one.detail(shown).rank(rank));
     }
@@ -82,7 +90,8 @@ fn interface(scene: &Scene, element: usize, attribute: &str) -> Option<String> {
         ("wire", "target") => {
             let source = &file.text[file.tree.value(&file.text, element, "source")?];
             let (component, reference) = source.split_once('/')?;
-            (scene.component(0, component)?.1, reference.to_owned())
+            let (file, component) = scene.named(0, component);
+            (scene.component(file, &component)?.1, reference.to_owned())
         }
         _ => return None,
     };

@@ -152,6 +152,13 @@ fn ends_are_components_and_their_parts() {
         ["A", "World", "R"]
     );
     assert_eq!(ends(&format!("{ROBOT}<reference name=\"world\" target=\"|\"/></component>")), ["World", "R"]);
+    let worlds = "<component name=\"W${index}\" s:count=\"2\"><implementation.rust class=\"saoms.World\"/></component>";
+    let all = ends(&format!("{worlds}{ROBOT}<reference name=\"world\" target=\"|\"/></component>"));
+    assert!(["W*", "W${index}"].iter().all(|one| all.contains(&(*one).to_owned())), "{all:?}");
+    for name in ["W*", "W2", "W${index}"] {
+        let of = ends(&format!("{worlds}{ROBOT}<reference name=\"world\" target=\"{name}/|\"/></component>"));
+        assert_eq!(of.len(), 2, "{name}");
+    }
     let services = ends(&format!("{ROBOT}<reference name=\"world\" target=\"World/|\"/></component>"));
     assert!(services.contains(&"TaskInterface".to_owned()) && services.len() == 2, "{services:?}");
     assert_eq!(ends(&format!("{ROBOT}<reference name=\"world\" target=\"World/|")).len(), 2, "unclosed");

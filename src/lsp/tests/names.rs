@@ -152,7 +152,42 @@ fn other_names_of_a_composite_are_renamed_too() {
             r#"<component name="Cart${index:03}" s:count="2"/><wire source="Cart001/r" target="Cart${index:03}"/>"#
         )]
     );
-    assert!(renamed(&replicas, &[], "Cart").unwrap_err().contains("`R001` is one of the replicas"));
+    assert!(renamed(&replicas, &[], "Cart").unwrap_err().contains("stands for replicas"));
+    // `R001` would be `Cart01`, or another one.
+    let other = renamed(&replicas, &[], "Cart${index:02}").unwrap_err();
+    assert!(other.contains("`R001` is one of the replicas"), "{other}");
+}
+
+#[test]
+fn what_names_all_replicas_leads_to_them_and_is_renamed() {
+    let text = |name: &str, target: &str, other: &str| {
+        composite(&format!(
+            r#"<component name="{name}" s:count="2"/><wire source="{target}/r" target="A"/><wire source="{other}/r" target="{target}/s"/>"#
+        ))
+    };
+    let marked = text("R${index:03}", "R*", "B").replacen("R*", "R*|", 1);
+    assert_eq!(defined(&marked, &[]), ["fleet.composite:2:18 R${index:03}"]);
+    let expected = text("Cart${index}", "Cart*", "B");
+    assert_eq!(renamed(&marked, &[], "Cart${index}").unwrap(), [expected], "no single replica is named");
+    assert!(renamed(&marked, &[], "Cart").unwrap_err().contains("stands for replicas"));
+    let two = text("R${row}x${index}", "R*x*", "R1x22").replacen("R*x*", "R*x|*", 1);
+    assert_eq!(defined(&two, &[]), ["fleet.composite:2:18 R${row}x${index}"]);
+    let refused = renamed(&two, &[], "C${row}x${index}").unwrap_err();
+    assert!(refused.contains("`R1x22` is one of the replicas"), "{refused}");
+}
+
+#[test]
+fn replicas_that_a_table_names_keep_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("r.csv");
+    for (column, is_refused) in [("name", true), ("index", false)] {
+        std::fs::write(&table, format!("{column},battery\nR1,60\n")).unwrap();
+        let text = composite(&format!(
+            r#"<component name="R|${{index}}" s:count="2" s:overrides="{}"/>"#,
+            table.display()
+        ));
+        assert_eq!(renamed(&text, &[], "C${index}").is_err(), is_refused, "{column}");
+    }
 }
 
 #[test]
