@@ -58,6 +58,11 @@ impl Traffic {
 }
 
 impl Topic {
+    /// Who uses it: writers, then readers.
+    pub fn ends(&self) -> impl Iterator<Item = &End> {
+        self.writers.iter().chain(&self.readers)
+    }
+
     /// How many messages come between two executions of a reader if each part of each writer sends one in each execution; `None` for a passive reader.
     pub fn burst(&self, reader: &End) -> Option<u64> {
         let period = reader.period?.as_nanos();

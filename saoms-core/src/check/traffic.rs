@@ -33,6 +33,9 @@ pub(super) fn check(assembly: &Assembly, places: &[Place], report: &mut Report<'
         }
     }
     for topic in &traffic.topics {
+        if let Some(meant) = all.left(topic, &traffic) {
+            all.alone(topic, meant, report);
+        }
         if lone.contains_key(topic.name.as_str()) {
             all.lone(topic, report);
         } else {
@@ -84,6 +87,42 @@ impl All<'_> {
         let candidates: Vec<&Topic> = traffic.topics.iter().filter(fits).collect();
         let name = nearest(&lone.name, candidates.iter().map(|other| other.name.as_str()))?;
         candidates.into_iter().find(|other| other.name == name)
+    }
+
+    /// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with nearly its name,
+    /// and used by several others.
+    fn left<'t>(&self, topic: &Topic, traffic: &'t Traffic) -> Option<&'t Topic> {
+        let only = topic.writers.first()?.component;
+        let is_alone = !topic.readers.is_empty() && topic.ends().all(|end| end.component == only);
+        let fits = |other: &&Topic| {
+            let mut others = other.ends().map(|end| end.component).filter(|other| *other != only);
+            let first = others.next();
+            let is_shared = others.any(|other| Some(other) != first);
+            is_shared
+                && other.name != topic.name
+                && other.message == topic.message
+                && other.kind == topic.kind
+        };
+        let candidates: Vec<&Topic> = traffic.topics.iter().filter(|_| is_alone).filter(fits).collect();
+        let name = nearest(&topic.name, candidates.iter().map(|other| other.name.as_str()))?;
+        candidates.into_iter().find(|other| other.name == name)
+    }
+
+    fn alone(&self, topic: &Topic, meant: &Topic, report: &mut Report<'_>) {
+        let (Some(end), Some(other)) = (topic.writers.first(), meant.ends().next()) else { return };
+        let message = format!(
+            "component {} hears nobody but itself on topic {}: others use {}",
+            quoted(&self.assembly.components[end.component].path),
+            quoted(&topic.name),
+            quoted(&meant.name)
+        );
+        let one = Diagnostic::new(&codes::TOPIC_NEAR, self.at(end, topic), message)
+            .label(self.at(other, meant), format!("uses {}", quoted(&meant.name)));
+        report.push(
+            one.help(
+                "`topicRename` gives topics other names: remove a pair from it, or correct its new name",
+            ),
+        );
     }
 
     fn near(&self, lone: &Topic, meant: &Topic, report: &mut Report<'_>) {

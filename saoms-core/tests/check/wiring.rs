@@ -86,6 +86,30 @@ fn names_that_are_nearly_the_same_are_told_together() {
     ])));
 }
 
+/// A class at both ends of a topic has both ends wherever a slip takes it.
+#[test]
+fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
+    let number = |number: &str| format!("<property name=\"number\">{number}</property>");
+    let found = |new: &str| {
+        let first = format!("{}{}", number("1"), rename(&format!("POSTOPIC,{new}")));
+        let (second, third) = (number("2"), number("3"));
+        let all = [
+            ("A", "Robot", &*first),
+            ("B", "Robot", &*second),
+            ("C", "Robot", &*third),
+            ("D", "Dispatcher", ""),
+        ];
+        found(&fleet(&all))
+    };
+    expect![[r#"
+        2:210-219 warning S4012: component `A` hears nobody but itself on topic `postopics`: others use `POSTOPIC`
+          3:18-19 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]]
+    .assert_eq(&found("postopics"));
+    expect![""].assert_eq(&found("elsewhere"));
+}
+
 #[test]
 fn queues_have_room_for_what_can_come_between_two_executions() {
     let slow = |queue: &str| format!("{}<property name=\"queue\">{queue}</property>", period("1001"));
