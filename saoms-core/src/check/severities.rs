@@ -89,6 +89,16 @@ impl Scope {
         }
     }
 
+    /// Whether the other one is of the same place.
+    fn is(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Element(one), Self::Element(other)) => one == other,
+            (Self::File(one), Self::File(other)) => one == other,
+            (Self::Fleet, Self::Fleet) | (Self::Option, Self::Option) => true,
+            _ => false,
+        }
+    }
+
     fn holds(self, at: Location) -> bool {
         match self {
             Self::Element(element) => element.file == at.file && element.span.contains(at.span),
@@ -108,7 +118,7 @@ impl Severities {
     ) -> Self {
         let known: Vec<&Code> =
             codes::ALL.iter().copied().chain(registry.rules().iter().map(|rule| rule.code())).collect();
-        let mut rules = Vec::new();
+        let mut rules: Vec<Rule> = Vec::new();
         let mut add = |code: &Text, level: Level, reason: Option<&Text>, scope: Scope| {
             if !known.iter().any(|known| known.id == code.as_str()) {
                 diagnostics.push(unknown(code, &known));
@@ -116,6 +126,18 @@ impl Severities {
             }
             let reason = reason.map(|reason| reason.as_str().to_owned());
             let set = SetBy { level, at: code.location, reason };
+            let said_before = rules.iter().find(|known: &&Rule| {
+                known.code == code.as_str()
+                    && known.scope.is(scope)
+                    // Files that are one fleet together may say the same.
+                    && (known.set.at.file == code.location.file
+                        || matches!(scope, Scope::Option)
+                        || known.set.level != level)
+            });
+            if let Some(known) = said_before {
+                diagnostics.push(twice(code, level, &known.set));
+                return;
+            }
             rules.push(Rule { code: code.as_str().to_owned(), set, scope, is_used: false });
         };
         let asked_for = contribution.asked_for().len();
@@ -176,6 +198,17 @@ impl Severities {
             diagnostics.push(one.help("remove it, or it hides what somebody adds later"));
         }
     }
+}
+
+fn twice(code: &Text, level: Level, first: &SetBy) -> Diagnostic {
+    let (one, other) = (level.name(), first.level.name());
+    let message = match one == other {
+        true => format!("the severity of {code} is set twice"),
+        false => format!("the severity of {code} is set to `{other}` and to `{one}`"),
+    };
+    Diagnostic::new(&codes::SEVERITY, code.location, message)
+        .label(first.at, "first here")
+        .help("keep one of them")
 }
 
 fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {

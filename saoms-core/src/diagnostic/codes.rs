@@ -112,7 +112,7 @@ codes! {
     EXPRESSION = "S2045" Error "expression": "An expression of a replica or a condition is malformed, or has no value.";
     REPLICAS = "S2046" Error "replicas": "What is said about the replicas of a component contradicts itself.";
     OVERRIDES = "S2047" Error "overrides": "A table of overrides is malformed, or is about replicas that do not exist.";
-    SEVERITY = "S2048" Error "severity": "A severity is set of a code that does not exist, or to none.";
+    SEVERITY = "S2048" Error "severity": "A severity is set of a code that does not exist, to none, or twice.";
     SEVERITY_UNUSED = "S2049" Warning "severity-unused": "A composite lowers a severity, and there is nothing that it changes.";
     UNKNOWN_TYPE = "S2050" Error "unknown-type": "A property has a type that XML Schema does not have.";
     // S30: classes and properties.
@@ -143,7 +143,7 @@ codes! {
     TOPIC_MISMATCH = "S4009" Error "topic-mismatch": "Two components use one topic for different messages, or in different ways.";
     TOPIC_UNREAD = "S4010" Note "topic-unread": "A topic is published that nobody reads. Told by `saoms check --wiring`.";
     TOPIC_UNWRITTEN = "S4011" Warning "topic-unwritten": "A topic is read that nobody publishes. Told by `saoms check --wiring`.";
-    TOPIC_NEAR = "S4012" Warning "topic-near": "A topic has one end alone, and there is another one with nearly its name. Told by `saoms check --wiring`.";
+    TOPIC_NEAR = "S4012" Warning "topic-near": "A topic has one end or one user alone, and there is another one with nearly its name. Told by `saoms check --wiring`.";
     QUEUE = "S4013" Warning "queue": "More messages can come between two executions of a reader than its queue takes. Told by `saoms check --wiring`.";
     READER_FASTER = "S4014" Note "reader-faster": "A topic is read more often than anybody publishes it. Told by `saoms check --wiring`.";
     // S45: the loops of components.

@@ -99,6 +99,28 @@ fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
 }
 
 #[test]
+fn a_severity_is_set_once_at_a_place() {
+    let both = severity("S4001", "allow") + "\n" + &severity("S4001", "error");
+    let within = of(&clocks(&both, ""), &[]);
+    let options = of(&clocks("", ""), &["S4001=note", "S4001=error"]);
+    assert!(!within.runs && !options.runs && !of(&clocks("", &both), &[]).runs);
+    expect![[r#"
+        4:23-28 error S2048: the severity of S4001 is set to `allow` and to `error`
+          3:155-160 first here
+          help: keep one of them
+        3:85-86 note S4001: components `A` and `B` share the ID `C`
+          2:85-86 the first
+          help: messages and reports name tasks by their ID
+        --severity:1:1-6 error S2048: the severity of S4001 is set to `note` and to `error`
+          --severity:1:1-6 first here
+          help: keep one of them
+    "#]]
+    .assert_eq(&(within.told + &options.told));
+    // What is inside another element may say something else.
+    assert!(of(&clocks(&severity("S4001", "allow"), &severity("S4001", "note")), &[]).runs);
+}
+
+#[test]
 fn reasons_are_in_the_output_for_machines() {
     let allowed = of(&clocks(&severity("S4001", "allow"), ""), &[]);
     let one = &allowed.json["diagnostics"][0];
