@@ -55,6 +55,9 @@ struct Planned<'a> {
     element: Option<&'a Loop>,
 }
 
+/// A place among the classes, and the loops as they are where the composite says nothing about them.
+type Known = (usize, Option<Arc<[LoopSpec]>>);
+
 /// Finds the loops of all components; `None` where something about them is wrong. The class of a component with loops becomes one that uses
 /// the topics and references of these as well.
 pub(super) fn resolve<'a>(
@@ -67,7 +70,7 @@ pub(super) fn resolve<'a>(
 ) -> Vec<Option<Resolved<'a>>> {
     let mut values = Values::default();
     // The class of each place together with these loops, and these as they are where the composite says nothing about them.
-    let mut known: HashMap<(usize, Vec<&str>), (usize, Option<Arc<[LoopSpec]>>)> = HashMap::new();
+    let mut known: HashMap<(usize, Vec<&str>), Known> = HashMap::new();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, checked) in checked.iter().enumerate() {
         let member = &fleet.members[place];
