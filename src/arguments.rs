@@ -100,7 +100,7 @@ pub(crate) enum Command {
 /// What describes a fleet.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct FleetArguments {
-    /// Composite files; several form one fleet
+    /// Composite files, not standard input; several form one fleet
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
 

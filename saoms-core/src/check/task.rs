@@ -7,7 +7,7 @@ use super::properties::Checked;
 use super::report::{Report, list};
 use super::{endpoint, rename};
 use crate::assembly::{Restart, TaskSettings};
-use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, Part};
 use crate::registry::TopicDeclaration;
 use crate::source::{Location, Text};
@@ -82,7 +82,6 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
                 format!("messages do not leave this program yet: {} is not connected to", quoted(url));
             report.push(
                 Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message)
-                    .severity(Severity::Warning)
                     .help("the topics are served inside the program: let it run the whole fleet"),
             );
         }

@@ -37,7 +37,7 @@ codes! {
     FILE_EMPTY = "S0005" Error "file-empty": "The file holds nothing, or nothing but white space.";
     FILE_BINARY = "S0006" Error "file-binary": "The file is no text.";
     FILE_ENCODING = "S0007" Error "file-encoding": "The file is not in UTF-8.";
-    TOO_MANY = "S0008" Warning "too-many": "Further diagnostics of one kind in one file are counted, not shown.";
+    TOO_MANY = "S0008" Warning "too-many": "Further diagnostics of one kind in one file are counted, not shown: as bad as those of that kind are.";
     // S01: XML 1.0 and its namespaces. The first of a file ends the reading of it.
     XML_SYNTAX = "S0101" Error "xml-syntax": "The file is not well-formed XML.";
     XML_TAG_MISMATCH = "S0102" Error "xml-tag-mismatch": "An end tag closes another element than the one that is open.";
@@ -118,7 +118,7 @@ codes! {
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";
-    NOT_SUPPORTED_YET = "S3003" Error "not-supported-yet": "A part of SCA or SAOMS that this version does not support yet.";
+    NOT_SUPPORTED_YET = "S3003" Warning "not-supported-yet": "A part of SCA or SAOMS that this version does not support yet.";
     UNKNOWN_PROPERTY = "S3004" Error "unknown-property" ("ASM50037"): "A component is given a property that its class does not have.";
     PROPERTY_REPEATED = "S3005" Error "property-repeated" ("ASM50031"): "A property is given twice.";
     PROPERTY_MISSING = "S3006" Error "property-missing" ("ASM40011"): "A property that needs a value has none.";

@@ -56,6 +56,14 @@ pub(super) fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnosti
             );
             diagnostics.push(one.help("a value that holds a comma stands between two `\"`"));
         }
+        if values.len() < properties.len() {
+            let columns = properties.len() + 1;
+            let message = format!("a line with {count} values, and there are {columns} columns");
+            let one = report(of.location, message);
+            diagnostics.push(one.help(
+                "a column that says nothing about a replica is an empty value: end the line with its comma",
+            ));
+        }
         values.resize(properties.len(), None);
         rows.push(Row { key: of, values });
     }

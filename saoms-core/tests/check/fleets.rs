@@ -242,6 +242,11 @@ fn tables_say_what_differs() {
     "#]]
     .assert_eq(&found("name,number\r\nR03,30\r\n\r\n"));
     expect![[r#"
+        robots.csv:3:1-2 error S2047: a line with 2 values, and there are 3 columns
+          help: a column that says nothing about a replica is an empty value: end the line with its comma
+    "#]]
+    .assert_eq(&found("index,colour,period\n2,red,\n3,blue\n"));
+    expect![[r#"
         robots.csv:1:1-1 error S2047: the table is empty
           help: its first line names the columns: `index` or `name`, and properties
     "#]]
