@@ -1,6 +1,6 @@
 //! Plugins at their best and at their worst: real libraries, built once from `tests/plugins`, loaded by the real command.
 
-#![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, outside test functions")]
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
 
 mod build;
 mod misbehaving;
