@@ -50,7 +50,7 @@ struct Known {
 }
 
 impl Reload {
-    /// Begins to watch. Only the thread of the signals does as little.
+    /// Begins to watch, on a thread of its own.
     pub(crate) fn start(arguments: &FleetArguments, assembly: &Watched, handle: Handle) -> Reload {
         let (end, ended) = channel();
         let known = |path: &PathBuf| {

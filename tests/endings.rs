@@ -79,6 +79,14 @@ fn sleepers_try_what_those_who_are_awake_refused() {
     }
 }
 
+#[test]
+fn a_robot_whose_charger_is_out_of_reach_charges_at_a_free_one() {
+    // With this seed a robot that goes to charge has to make way until its battery does not last for the way any more.
+    let run = Fleet::of_file("composites/scenario4.composite").run(1088, LIMIT);
+    assert!(run.log().contains("this time: its own is out of reach"), "{}", run.log());
+    assert_eq!((luggage(&run, "delivered"), &run.sections["stranded"]), (100, &serde_json::json!(0)));
+}
+
 /// A fleet in a small maze: breakdowns, slow hardware, sleepers, different periods.
 fn fleet(seed: u64) -> Fleet {
     let mut chance = Chance::new(seed);

@@ -53,8 +53,7 @@ impl RobotKnowledge {
         (self.variables.asleep, self.variables.in_charge) = (memory.asleep, memory.asleep);
         (self.relieved, self.is_loaded) = (memory.relieved, memory.is_loaded);
         if memory.charge_block != self.charge_block {
-            self.charge_block = memory.charge_block;
-            self.routes.use_charger(memory.charge_block, std::iter::empty());
+            self.use_charger(memory.charge_block);
         }
         // They have waited for some time; how long does not matter.
         let header = Header { sender: u32::MAX, sent: Time::START, cause: saoms_api::Cause::default() };

@@ -182,3 +182,41 @@ impl Help {
         self.situation.critical == critical
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use saoms_api::Cause;
+
+    use super::*;
+
+    fn header(sent: u64) -> Header {
+        Header { sender: 9, sent: Time::from_nanos(sent), cause: Cause::default() }
+    }
+
+    fn request(kind: CriticalKind) -> CriticalSituation {
+        CriticalSituation { critical: 2, kind, luggage: 7, ..CriticalSituation::default() }
+    }
+
+    fn response(stage: CriticalStage) -> CriticalSituation {
+        CriticalSituation { stage, healer: 3, ..request(CriticalKind::Idle) }
+    }
+
+    #[test]
+    fn who_stands_in_for_a_robot_leaves_its_job_open() {
+        for (kind, stage, open) in [
+            (CriticalKind::OnTheWay, CriticalStage::StandsIn, 1),
+            (CriticalKind::OnTheWay, CriticalStage::Taken, 0),
+            (CriticalKind::Idle, CriticalStage::StandsIn, 0),
+            (CriticalKind::Idle, CriticalStage::Taken, 0),
+        ] {
+            let mut helps = Helps::new(1);
+            helps.hear(&request(kind), header(1));
+            helps.hear(&response(stage), header(2));
+            assert_eq!(helps.open().len(), open, "{kind:?}, {stage:?}");
+            let mut late = Helps::new(1);
+            late.hear(&response(stage), header(2));
+            late.hear(&request(kind), header(1));
+            assert_eq!(late.open().len(), open, "{kind:?}, {stage:?}: the request arrives later");
+        }
+    }
+}

@@ -252,7 +252,8 @@ impl Loop for BatteryMS {
 }
 
 impl RobotKnowledge {
-    fn use_charger(&mut self, charger: Block) {
+    /// Charges at this charger from now on.
+    pub(in crate::robot) fn use_charger(&mut self, charger: Block) {
         self.charge_block = charger;
         let others = self.lists.chargers.iter().map(|(_, charger)| *charger);
         self.routes.use_charger(charger, others);

@@ -12,6 +12,7 @@ struct Marked;
 const MARK: u64 = 0x5A0_5A05_5A05_A05A;
 
 fn around(layout: Layout) -> (Layout, usize) {
+    // A layout that comes from the compiler is far from the largest there can be.
     let (layout, start) = Layout::new::<u64>().extend(layout).expect("a small layout");
     (layout, start)
 }
