@@ -1,3 +1,6 @@
+use std::any::{Any, TypeId};
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::time::Duration;
 
 use crate::property::values_of;
@@ -106,16 +109,39 @@ macro_rules! fleet_rules {
 }
 
 /// All components of a fleet, as rules see them.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct FleetView<'a> {
     components: &'a [ComponentView<'a>],
     missing: &'a [Option<Vec<&'a str>>],
+    facts: RefCell<Vec<(TypeId, Rc<dyn Any>)>>,
+}
+
+/// What several rules of a crate want to know about a fleet, found out once by [`FleetView::fact`].
+///
+/// ```
+/// use saoms_api::{Fact, FleetView};
+///
+/// struct Clocks(Vec<usize>);
+///
+/// impl Fact for Clocks {
+///     fn of(fleet: &FleetView<'_>) -> Clocks {
+///         let all = fleet.components().iter().enumerate();
+///         Clocks(all.filter(|(_, component)| component.class == "example.Clock").map(|(index, _)| index).collect())
+///     }
+/// }
+///
+/// let fleet = FleetView::new(&[]);
+/// assert!(fleet.fact::<Clocks>().0.is_empty());
+/// ```
+pub trait Fact: 'static {
+    /// Looks at the fleet.
+    fn of(fleet: &FleetView<'_>) -> Self;
 }
 
 impl<'a> FleetView<'a> {
     /// For hosts: a view of these components.
     pub fn new(components: &'a [ComponentView<'a>]) -> FleetView<'a> {
-        FleetView { components, missing: &[] }
+        FleetView { components, missing: &[], facts: RefCell::default() }
     }
 
     /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their classes and
@@ -142,11 +168,49 @@ impl<'a> FleetView<'a> {
         self.components
     }
 
+    /// The indices of the components of a class, and of those that extend it.
+    pub fn indices<C: Class>(&self) -> impl Iterator<Item = usize> + use<'a, C> {
+        self.kin::<C>().map(|(index, ..)| index)
+    }
+
     /// The components of a class, and of those that extend it, with their indices and properties.
     pub fn all<C: Class>(&self) -> impl Iterator<Item = (usize, C::Properties)> + use<'a, C> {
-        let components = self.components.iter().enumerate();
-        components.filter_map(|(index, component)| Some((index, component.properties::<C>()?)))
+        self.kin::<C>().filter_map(|(index, component, kinship)| Some((index, component.read::<C>(kinship)?)))
     }
+
+    fn kin<C: Class>(&self) -> impl Iterator<Item = (usize, &'a ComponentView<'a>, Kinship)> + use<'a, C> {
+        // Components of one class lend the same text of its declaration, so that few of these long texts are compared.
+        let mut last: Option<(&'a ComponentView<'a>, Kinship)> = None;
+        self.components.iter().enumerate().filter_map(move |(index, component)| {
+            let kinship = match last {
+                Some((known, kinship)) if std::ptr::eq(known.declaration, component.declaration) => kinship,
+                _ => component.kinship::<C>(),
+            };
+            last = Some((component, kinship));
+            (kinship != Kinship::None).then_some((index, component, kinship))
+        })
+    }
+
+    /// A fact about the fleet: the first rule that asks for it finds it out for all of its crate.
+    pub fn fact<F: Fact>(&self) -> Rc<F> {
+        let key = TypeId::of::<F>();
+        let known = self.facts.borrow().iter().find(|(of, _)| *of == key).map(|(_, fact)| Rc::clone(fact));
+        if let Some(Ok(known)) = known.map(Rc::downcast) {
+            return known;
+        }
+        // Facts may rest on others, so nothing is borrowed here.
+        let fact = Rc::new(F::of(self));
+        self.facts.borrow_mut().push((key, Rc::clone(&fact) as Rc<dyn Any>));
+        fact
+    }
+}
+
+/// What the class of a component has to do with another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kinship {
+    Same,
+    Extends,
+    None,
 }
 
 /// A component of a fleet, as rules see it.
@@ -177,11 +241,25 @@ pub struct ComponentView<'a> {
 impl ComponentView<'_> {
     /// Its properties, where it is of this class. Of a component whose class extends this one they are those that the two have in common.
     pub fn properties<C: Class>(&self) -> Option<C::Properties> {
-        if self.declaration == C::DECLARATION {
-            return C::Properties::from_values(self.values).ok();
+        self.read::<C>(self.kinship::<C>())
+    }
+
+    fn kinship<C: Class>(&self) -> Kinship {
+        match self.declaration == C::DECLARATION {
+            true => Kinship::Same,
+            false if self.extends.contains(&C::DECLARATION) => Kinship::Extends,
+            false => Kinship::None,
         }
-        let extends = self.extends.contains(&C::DECLARATION);
-        extends.then(|| C::Properties::from_values(&values_of(self.values, C::Properties::NAMES)).ok())?
+    }
+
+    fn read<C: Class>(&self, kinship: Kinship) -> Option<C::Properties> {
+        match kinship {
+            Kinship::Same => C::Properties::from_values(self.values).ok(),
+            Kinship::Extends => {
+                C::Properties::from_values(&values_of(self.values, C::Properties::NAMES)).ok()
+            }
+            Kinship::None => None,
+        }
     }
 
     /// The index of the component that this reference leads to.

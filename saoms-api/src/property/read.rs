@@ -1,5 +1,5 @@
 use super::PropertyField;
-use crate::declaration::{PropertyKind, Rule};
+use crate::declaration::{PropertyKind, Rule, parse_scalar};
 use crate::{Failure, Finding, Place, Properties, PropertyValue};
 
 /// Reads one property from the values of a composite.
@@ -18,7 +18,9 @@ pub fn property<T: PropertyField>(
         (Some(value), _) => value,
         // That the rule allows it was seen to when it was compiled and registered.
         (None, Some(default)) => {
-            return T::from_value(&PropertyValue::Text(default.to_owned())).map_err(failure);
+            let read = parse_scalar(rule.kind, default).and_then(T::from_scalar);
+            let otherwise = || T::from_value(&PropertyValue::Text(default.to_owned()));
+            return read.unwrap_or_else(otherwise).map_err(failure);
         }
         (None, None) => {
             let missing =
@@ -26,6 +28,11 @@ pub fn property<T: PropertyField>(
             return T::absent().ok_or_else(missing);
         }
     };
+    if let (PropertyValue::Text(text), true) = (value, rule.kind.is_scalar())
+        && let Some(read) = T::from_scalar(rule.check(text).map_err(failure)?)
+    {
+        return read.map_err(failure);
+    }
     let value_read = T::from_value(value);
     // The rule of the property is narrower than that of its type, so its message says more.
     accept(value, rule).map_err(failure)?;
@@ -79,13 +86,8 @@ pub fn complex<P: Properties>(value: &PropertyValue) -> Result<P, String> {
 /// The value is not one of them.
 pub fn chosen(value: &PropertyValue, allowed: &[&str]) -> Result<usize, String> {
     let rule = Rule { allowed, ..Rule::of(PropertyKind::Enumeration) };
-    let found = match value {
-        PropertyValue::Text(text) => {
-            rule.check(text)?;
-            text.trim()
-        }
-        PropertyValue::Many(_) | PropertyValue::Complex(_) => "",
-    };
+    let PropertyValue::Text(text) = value else { return Err(format!("expected {}", rule.expected())) };
+    let found = text.trim();
     let place = allowed.iter().position(|allowed| *allowed == found);
-    place.ok_or_else(|| format!("expected {}", rule.expected()))
+    place.ok_or_else(|| rule.check(text).err().unwrap_or_else(|| format!("expected {}", rule.expected())))
 }

@@ -1,5 +1,5 @@
 use crate::PropertyValue;
-use crate::declaration::{PropertyKind, Rule, Text};
+use crate::declaration::{PropertyKind, Rule, Scalar, Text};
 use crate::time::read_duration;
 
 /// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `Duration`, enums (derive it), other
@@ -16,6 +16,11 @@ pub trait PropertyField: Sized {
     /// # Errors
     /// What was found and what was expected.
     fn from_value(value: &PropertyValue) -> Result<Self, String>;
+
+    /// The same from the text of a scalar that was read and checked already; `None` where the type is not made of such.
+    fn from_scalar(_: Scalar) -> Option<Result<Self, String>> {
+        None
+    }
 
     /// The value of a property that the composite does not give; `None` where it has to.
     fn absent() -> Option<Self> {

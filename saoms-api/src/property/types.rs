@@ -21,9 +21,14 @@ macro_rules! scalars {
 
             fn from_value(value: &PropertyValue) -> Result<Self, String> {
                 const RULE: Rule<'static> = <$type as PropertyField>::TYPE.rule;
-                match scalar(value, &RULE)? {
-                    Scalar::$variant($value) => $result,
-                    _ => Err(format!("expected {}", RULE.expected())),
+                let read = Self::from_scalar(scalar(value, &RULE)?);
+                read.unwrap_or_else(|| Err(format!("expected {}", RULE.expected())))
+            }
+
+            fn from_scalar(scalar: Scalar) -> Option<Result<Self, String>> {
+                match scalar {
+                    Scalar::$variant($value) => Some($result),
+                    _ => None,
                 }
             }
         })*
@@ -67,6 +72,10 @@ impl<T: PropertyField> PropertyField for Option<T> {
 
     fn from_value(value: &PropertyValue) -> Result<Self, String> {
         T::from_value(value).map(Some)
+    }
+
+    fn from_scalar(scalar: Scalar) -> Option<Result<Self, String>> {
+        T::from_scalar(scalar).map(|read| read.map(Some))
     }
 
     fn absent() -> Option<Self> {

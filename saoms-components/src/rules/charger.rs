@@ -21,7 +21,7 @@ pub(super) static RULE: FleetRule = FleetRule {
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let areas = areas(fleet);
     let mut findings = Vec::new();
-    for robot in robots(fleet) {
+    for robot in robots(fleet).iter() {
         let Some(area) = areas.iter().find(|area| Some(area.index) == robot.world) else { continue };
         let Some(problem) = area.problem(robot.charger) else { continue };
         let message = format!("the charger of robot {} is at {}, {problem}", robot.number, robot.charger);

@@ -23,7 +23,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let mut first: HashMap<u32, &Known> = HashMap::new();
     let mut findings = Vec::new();
-    for robot in &robots {
+    for robot in robots.iter() {
         let Some(other) = first.get(&robot.number) else {
             first.insert(robot.number, robot);
             continue;

@@ -1,6 +1,9 @@
 //! The robots of a fleet, as rules look at them.
 
-use saoms_api::{FleetView, Place};
+use std::ops::Deref;
+use std::rc::Rc;
+
+use saoms_api::{Fact, FleetView, Place};
 
 use crate::grid::Block;
 use crate::messages::ROBOT_LIST;
@@ -18,24 +21,51 @@ pub(super) struct Known {
 }
 
 /// All robots in document order.
-pub(super) fn robots(fleet: &FleetView<'_>) -> Vec<Known> {
-    let robots = fleet.all::<Robot>().filter_map(|(index, properties)| {
-        let number = properties.number().ok()?;
-        let charger = properties.charge_block(number).ok()?;
-        let world = fleet.components()[index].target("world");
-        Some(Known { index, number, charger, world, properties })
-    });
-    robots.collect()
+pub(super) fn robots(fleet: &FleetView<'_>) -> Rc<Robots> {
+    fleet.fact()
 }
 
 /// Whether there are robots of other classes, or may be some in other programs.
 pub(super) fn may_be_others(fleet: &FleetView<'_>) -> bool {
-    let own: Vec<usize> = fleet.all::<Robot>().map(|(index, _)| index).collect();
+    robots(fleet).may_be_others
+}
+
+/// What rules know about all robots.
+pub(super) struct Robots {
+    known: Vec<Known>,
+    may_be_others: bool,
+}
+
+impl Deref for Robots {
+    type Target = [Known];
+
+    fn deref(&self) -> &[Known] {
+        &self.known
+    }
+}
+
+impl Fact for Robots {
+    fn of(fleet: &FleetView<'_>) -> Robots {
+        let known = fleet.all::<Robot>().filter_map(|(index, properties)| {
+            let number = properties.number().ok()?;
+            let charger = properties.charge_block(number).ok()?;
+            let world = fleet.components()[index].target("world");
+            Some(Known { index, number, charger, world, properties })
+        });
+        Robots {
+            known: known.collect(),
+            may_be_others: fleet.components().iter().any(|component| component.has_broker)
+                || publishes_beside_robots(fleet, ROBOT_LIST.name()),
+        }
+    }
+}
+
+/// Whether somebody else than a robot publishes on a topic.
+pub(super) fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> bool {
+    let mut robots = fleet.indices::<Robot>().peekable();
     let mut components = fleet.components().iter().enumerate();
-    components.any(|(index, component)| {
-        component.has_broker
-            || (component.publishes.contains(&ROBOT_LIST.name()) && own.binary_search(&index).is_err())
-    })
+    components
+        .any(|(index, component)| robots.next_if_eq(&index).is_none() && component.publishes.contains(&topic))
 }
 
 impl Known {

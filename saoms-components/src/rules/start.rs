@@ -29,7 +29,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let mut first: HashMap<(Option<usize>, Block), &Known> = HashMap::new();
     let mut findings = Vec::new();
-    for robot in &robots {
+    for robot in robots.iter() {
         let key = (robot.world, robot.charger);
         let Some(other) = first.get(&key) else {
             first.insert(key, robot);

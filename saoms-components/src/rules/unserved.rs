@@ -2,11 +2,11 @@
 
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
-use super::robots::{Known, may_be_others, robots};
+use super::robots::{Known, may_be_others, publishes_beside_robots, robots};
 use crate::environment::{Environment, Happening, Scenario};
 use crate::master::MasterRobot;
 use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
-use crate::robot::{Policy, Robot};
+use crate::robot::Policy;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -88,11 +88,4 @@ fn airplanes(fleet: &FleetView<'_>, has: &Happenings) -> Option<(&'static str, &
         "nobody reacts to the landings and take-offs of this scenario",
         "add a `saoms.MasterRobot`, which awakes robots for them",
     ))
-}
-
-/// Whether somebody else than a robot publishes on a topic.
-fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> bool {
-    let robots: Vec<usize> = fleet.all::<Robot>().map(|(index, _)| index).collect();
-    let mut components = fleet.components().iter().enumerate();
-    components.any(|(index, component)| component.publishes.contains(&topic) && !robots.contains(&index))
 }
