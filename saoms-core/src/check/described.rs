@@ -2,12 +2,19 @@
 
 use std::collections::HashMap;
 
+use saoms_api::PropertyValue;
+
 use super::classes::ClassIndex;
-use super::contracts::narrows;
-use super::fleet::{Fleet, Kind, Member};
+use super::contracts::{narrows, of_class as of_class_reference};
+use super::fleet::{Fleet, Member};
+use super::given;
+use super::global;
+use super::properties::Given;
 use super::report::Report;
+use super::value_type;
+use super::written::type_and_element;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
-use crate::model::{ComponentType, Multiplicity, Part, Version};
+use crate::model::{Component, ComponentType, Multiplicity, Part, Reference, Version};
 use crate::source::{Location, Text};
 
 impl<'a> Fleet<'a> {
@@ -20,6 +27,12 @@ impl<'a> Fleet<'a> {
 
 pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
     for described in fleet.contribution.component_types() {
+        for property in &described.properties {
+            type_and_element(property, "ASM40010", report);
+            global::check(property, &described.document, &codes::COMPOSITE_VALUE_TYPE, report);
+            value_type::named(property, &described.document, report);
+            value_type::own(property, report);
+        }
         repeated(
             described.services.iter().map(|one| &one.name),
             "service",
@@ -46,9 +59,14 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
         report.about(member);
         if let Some(described) = fleet.component_type(place) {
             match fleet.class_of(place, classes) {
-                Some(class) => of_class(described, class, report),
-                None if member.kind == Kind::Given => given(member, described, report),
-                None => {}
+                Some(class) => {
+                    of_class(described, class, report);
+                    used(member, described, class, report);
+                }
+                None => {
+                    let known = fleet.known(place);
+                    known.into_iter().for_each(|known| given::contracts(member.component, known, report));
+                }
             }
         } else if let Some(implementation) = &member.component.implementation
             && fleet.contribution.lacks_component_type(implementation.origin)
@@ -116,9 +134,37 @@ fn of_class(described: &ComponentType, class: &ClassIndex<'_>, report: &mut Repo
     }
 }
 
-/// Checks a component whose implementation is known by its component type alone.
-fn given(member: &Member<'_>, described: &ComponentType, report: &mut Report<'_>) {
-    let component = member.component;
+/// Checks a component of a class against what the file says more narrowly than the class.
+fn used(member: &Member<'_>, described: &ComponentType, class: &ClassIndex<'_>, report: &mut Report<'_>) {
+    supplied(member.component, described, report);
+    for reference in member.component.references.iter() {
+        multiplicity(reference, described, report);
+    }
+    let whose = format!("class {}", quoted(class.class.name()));
+    for own in &described.references {
+        if let Some(declared) = class.references.iter().find(|one| one.name == own.name.as_str()) {
+            narrows(own, of_class_reference(declared), &whose, report);
+        }
+    }
+}
+
+/// Checks what a component gives for a property of its class against the type that the file says.
+pub(super) fn value(described: &ComponentType, name: &str, given: &Given, report: &mut Report<'_>) {
+    let Some(declared) = described.properties.iter().find(|one| one.name == *name) else { return };
+    let values = match &given.value {
+        PropertyValue::Many(values) => &values[..],
+        one => std::slice::from_ref(one),
+    };
+    let places = std::iter::once(&given.place).chain(&given.more);
+    for (value, place) in values.iter().zip(places) {
+        if let PropertyValue::Text(text) = value {
+            value_type::holds(declared, &Text::new(text.as_str().into(), *place), &codes::VALUE_TYPE, report);
+        }
+    }
+}
+
+/// Reports the properties that a component has to give, and does not: those that the file says must be supplied and gives no value.
+pub(super) fn supplied(component: &Component, described: &ComponentType, report: &mut Report<'_>) {
     for property in &described.properties {
         let must = property.must_supply().is_some_and(|must| must.value) && !property.has_value();
         if must && component.property(&property.name).is_none() {
@@ -134,11 +180,12 @@ fn given(member: &Member<'_>, described: &ComponentType, report: &mut Report<'_>
             );
         }
     }
-    for reference in &component.references {
-        let own = described.references.iter().find(|own| own.name == *reference.name.value);
-        if let Some(own) = own {
-            let own = own.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value);
-            narrows(reference, own, "the component type", report);
-        }
+}
+
+/// Checks that the multiplicity that a component gives its reference narrows that of the file.
+pub(super) fn multiplicity(reference: &Reference, described: &ComponentType, report: &mut Report<'_>) {
+    if let Some(own) = described.references.iter().find(|own| own.name == *reference.name.value) {
+        let own = own.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value);
+        narrows(reference, own, "the component type", report);
     }
 }

@@ -17,6 +17,7 @@ mod described;
 mod endpoint;
 mod findings;
 mod fleet;
+mod given;
 mod global;
 mod instance;
 mod loops;
@@ -198,6 +199,7 @@ fn properties<'a>(
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
+        parameters.types(member, report);
         if let Kind::Class(index) = member.kind {
             all.push(Some(properties::check(
                 &Giver::component(member, fleet.component_type(place)),
@@ -211,12 +213,7 @@ fn properties<'a>(
         properties::repeated(member.component, report);
         match fleet.inner(place) {
             Some(inner) => properties::of_composite(member, inner, report),
-            // Nothing says what its properties should be, but where they come from can be looked at.
-            None => {
-                for source in member.component.properties.iter().filter_map(|property| property.source()) {
-                    let _ = parameters.resolve(member.unit, source, report);
-                }
-            }
+            None => given::properties(member, fleet.known(place), parameters, report),
         }
         all.push(None);
     }

@@ -16,6 +16,31 @@ pub(super) enum Offer {
     Missing,
 }
 
+/// Whether services or references are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Service,
+    Reference,
+}
+
+impl Side {
+    /// As people say it.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Service => "service",
+            Self::Reference => "reference",
+        }
+    }
+
+    /// The rule of SCA that says that what is promoted has to be there.
+    pub(super) const fn rule(self) -> &'static str {
+        match self {
+            Self::Service => "ASM60004",
+            Self::Reference => "ASM60007",
+        }
+    }
+}
+
 impl<'a> Fleet<'a> {
     /// The names of the services of a component; `None` where any may be there.
     pub(super) fn service_names<'n>(

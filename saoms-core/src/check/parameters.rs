@@ -3,12 +3,13 @@
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use super::fleet::{Fleet, Unit};
+use super::fleet::{Fleet, Member, Unit};
 use super::instance::Instance;
 use super::options::Options;
 use super::raw::{Piece, Raw, raw};
 use super::report::{Report, list};
-use super::{Setting, Variable, value_type};
+use super::value_type::{self, Match, Typed};
+use super::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
@@ -191,6 +192,25 @@ impl<'a> Parameters<'a> {
     ) -> Result<Found<'a>, ()> {
         let found = self.values(place, property, report)?;
         Ok(Found { raw: found.raw.inside_elements_of(property), ..found })
+    }
+
+    /// Checks that the properties of a component that say a type take their values from properties of types that fit.
+    pub(super) fn types(&self, member: &Member<'a>, report: &mut Report<'_>) {
+        for property in &member.component.properties {
+            if let Some(source) = property.source()
+                && let Some(from) = self.declaration(member.unit, source)
+            {
+                let own = Typed { property, document: &member.composite.document };
+                value_type::matches(own, from, Match::Source(source.location), report);
+            }
+        }
+    }
+
+    /// The declaration of the composite property that a `source` names as a whole.
+    pub(super) fn declaration(&self, unit: usize, source: &str) -> Option<Typed<'a>> {
+        let (name, None) = expression(source)? else { return None };
+        let found = self.units[unit].by_name.get(name)?;
+        Some(Typed { property: found.property, document: &found.composite.document })
     }
 
     /// What `source` stands for in this unit. Faults are reported.

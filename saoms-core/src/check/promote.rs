@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::classes::ClassIndex;
 use super::contracts::of_class;
 use super::fleet::{Fleet, Unit};
+use super::offer::Side;
 use super::report::{Report, list};
 use super::target::{Uri, spread};
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -21,29 +22,6 @@ pub(super) struct Promoted<'f> {
     pub(super) outermost: HashSet<Place<'f>>,
     /// By composites that implement components: to these references of theirs.
     pub(super) to: HashMap<Place<'f>, Vec<Place<'f>>>,
-}
-
-/// Whether services or references are meant.
-#[derive(Clone, Copy, PartialEq)]
-enum Side {
-    Service,
-    Reference,
-}
-
-impl Side {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Service => "service",
-            Self::Reference => "reference",
-        }
-    }
-
-    const fn rule(self) -> &'static str {
-        match self {
-            Self::Service => "ASM60004",
-            Self::Reference => "ASM60007",
-        }
-    }
 }
 
 /// Checks that what composites promote exists, and that their services and references have names of their own.
@@ -173,8 +151,16 @@ fn find<'f>(
     let uri = Uri::of(text, 2, report)?;
     let member = uri.member(text, unit.scope, fleet, Some(side.rule()), report)?;
     let names = match side {
-        Side::Service => fleet.service_names(member, classes)?,
-        Side::Reference => fleet.reference_names(member, classes)?,
+        Side::Service => fleet.service_names(member, classes),
+        Side::Reference => fleet.reference_names(member, classes),
+    };
+    let Some(names) = names else {
+        if let Some((name, at)) = uri.part {
+            let at = report.part(text, at);
+            let code = (&codes::UNKNOWN_PROMOTED, Some(side.rule()));
+            fleet.unknown_name(member, side, code, (name, at), report);
+        }
+        return None;
     };
     let (what, component) = (side.name(), quoted(uri.component));
     let only = match side {

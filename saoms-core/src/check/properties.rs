@@ -4,11 +4,13 @@ use std::collections::HashMap;
 
 use saoms_api::PropertyValue;
 
+use super::described;
 use super::fleet::{Member, Unit};
 use super::parameters::{Found, Parameters, Place};
 use super::raw::{Piece, Raw, raw};
 use super::report::Report;
 use super::slots::{Slot, Slots};
+use super::value_type::{self, Match, Typed};
 use super::values::{Path, Use, Values};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
@@ -167,6 +169,9 @@ pub(super) fn check<'a>(
             Ok(value) => given[place] = value.map(Box::new),
             Err(()) => is_sound = false,
         }
+        if let (Some(described), Some(given)) = (giver.described, &given[place]) {
+            described::value(described, &property.name, given, report);
+        }
     }
     for (default, document) in giver.defaults() {
         let Some(place) = slots.place(&default.name).filter(|place| first[*place].is_none()) else {
@@ -292,22 +297,27 @@ fn report_missing(
     );
 }
 
-/// Checks that what a component gives the composite that implements it are properties of that, each once.
+/// Checks that what a component gives the composite that implements it are properties of that, of types that fit.
 pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'_>) {
-    let names = || {
-        let properties = inner.composites.iter().flat_map(|composite| &composite.properties);
-        properties.map(|property| property.name.as_str()).filter(|name| !name.is_empty())
+    let declared = || {
+        let composites = inner.composites.iter();
+        composites.flat_map(|one| one.properties.iter().map(|property| (property, &*one.document)))
     };
     for property in member.component.properties.iter().filter(|property| !property.name.is_empty()) {
-        if names().all(|name| name != property.name.as_str()) {
-            let (name, at) = (&property.name, property.name.location);
-            let of = quoted(&inner.main().name);
-            let message = format!("composite {of} has no property {}", quoted(name));
-            let known: Vec<&str> = names().collect();
-            let known = ("its properties are", known.iter().copied());
-            let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
-            report.push(one);
+        if let Some((declared, document)) = declared().find(|(one, _)| one.name == *property.name.value) {
+            let own = Typed { property, document: &member.composite.document };
+            let declared = Typed { property: declared, document };
+            value_type::matches(own, declared, Match::Declaration, report);
+            continue;
         }
+        let (name, at) = (&property.name, property.name.location);
+        let of = quoted(&inner.main().name);
+        let message = format!("composite {of} has no property {}", quoted(name));
+        let known: Vec<&str> =
+            declared().map(|(one, _)| one.name.as_str()).filter(|name| !name.is_empty()).collect();
+        let known = ("its properties are", known.iter().copied());
+        let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
+        report.push(one);
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::classes::ClassIndex;
 use super::fleet::Fleet;
-use super::offer::Offer;
+use super::offer::{Offer, Side};
 use super::report::{Report, escaped, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::InterfaceDeclaration;
@@ -147,7 +147,12 @@ pub(super) fn target(
     };
     let provider = match fleet.offer(member, name, classes) {
         Offer::Service(provider) => provider,
-        Offer::Open => return Target::Open,
+        Offer::Open => {
+            let at = report.part(text, at);
+            let code = (&codes::UNKNOWN_TARGET_SERVICE, None);
+            fleet.unknown_name(member, Side::Service, code, (name, at), report);
+            return Target::Open;
+        }
         Offer::Missing => {
             let at = report.part(text, at);
             let message = format!("component {} has no service {}", quoted(&component.name), quoted(name));

@@ -1,9 +1,9 @@
 //! The types of XML Schema that properties name.
 
 use super::report::{Report, replacing};
-use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
 use crate::model::{Part, Property};
-use crate::source::Text;
+use crate::source::{Location, Text};
 use crate::xml::Document;
 
 const XML_SCHEMA: &str = "http://www.w3.org/2001/XMLSchema";
@@ -62,17 +62,53 @@ const BUILT_IN: &[&str] = &[
     "dateTimeStamp",
 ];
 
+/// Which type of XML Schema is made of which other one.
+const DERIVED: &[(&str, &str)] = &[
+    ("integer", "decimal"),
+    ("long", "integer"),
+    ("int", "long"),
+    ("short", "int"),
+    ("byte", "short"),
+    ("nonNegativeInteger", "integer"),
+    ("positiveInteger", "nonNegativeInteger"),
+    ("unsignedLong", "nonNegativeInteger"),
+    ("unsignedInt", "unsignedLong"),
+    ("unsignedShort", "unsignedInt"),
+    ("unsignedByte", "unsignedShort"),
+    ("nonPositiveInteger", "integer"),
+    ("negativeInteger", "nonPositiveInteger"),
+    ("normalizedString", "string"),
+    ("token", "normalizedString"),
+    ("language", "token"),
+    ("NMTOKEN", "token"),
+    ("Name", "token"),
+    ("NCName", "Name"),
+    ("ID", "NCName"),
+    ("IDREF", "NCName"),
+    ("ENTITY", "NCName"),
+    ("dateTimeStamp", "dateTime"),
+    ("yearMonthDuration", "duration"),
+    ("dayTimeDuration", "duration"),
+];
+
 /// The types of XML Schema whose values are checked: the name, what is expected, and whether a text is one.
 type SimpleType = (&'static str, &'static str, fn(&str) -> bool);
 
 const SIMPLE_TYPES: &[SimpleType] = &[
     ("boolean", "`true` or `false`", |text| matches!(text, "true" | "false" | "1" | "0")),
-    ("int", "a whole number of 32 bits", |text| whole(text).is_some_and(|it| i32::try_from(it).is_ok())),
-    ("integer", "a whole number", |text| is_digits(text.trim_start_matches(['+', '-']))),
-    ("long", "a whole number of 64 bits", |text| whole(text).is_some_and(|it| i64::try_from(it).is_ok())),
-    ("short", "a whole number of 16 bits", |text| whole(text).is_some_and(|it| i16::try_from(it).is_ok())),
-    ("byte", "a whole number of 8 bits", |text| whole(text).is_some_and(|it| i8::try_from(it).is_ok())),
-    ("nonNegativeInteger", "a whole number, not negative", |text| is_digits(text.trim_start_matches('+'))),
+    ("int", "a whole number of 32 bits", |text| fits::<i32>(text)),
+    ("integer", "a whole number", |text| is_digits(text.strip_prefix(['+', '-']).unwrap_or(text))),
+    ("long", "a whole number of 64 bits", |text| fits::<i64>(text)),
+    ("short", "a whole number of 16 bits", |text| fits::<i16>(text)),
+    ("byte", "a whole number of 8 bits", |text| fits::<i8>(text)),
+    ("nonNegativeInteger", "a whole number, not negative", |text| whole(text).is_some_and(|it| it >= 0)),
+    ("positiveInteger", "a whole number above 0", |text| whole(text).is_some_and(|it| it > 0)),
+    ("nonPositiveInteger", "a whole number, not above 0", |text| whole(text).is_some_and(|it| it <= 0)),
+    ("negativeInteger", "a whole number below 0", |text| whole(text).is_some_and(|it| it < 0)),
+    ("unsignedLong", "a whole number of 64 bits, not negative", |text| fits::<u64>(text)),
+    ("unsignedInt", "a whole number of 32 bits, not negative", |text| fits::<u32>(text)),
+    ("unsignedShort", "a whole number of 16 bits, not negative", |text| fits::<u16>(text)),
+    ("unsignedByte", "a whole number of 8 bits, not negative", |text| fits::<u8>(text)),
     ("double", "a number", is_float),
     ("float", "a number", is_float),
     ("decimal", "a decimal number", |text| is_float(text) && !text.contains(['e', 'E', 'N', 'I'])),
@@ -80,6 +116,10 @@ const SIMPLE_TYPES: &[SimpleType] = &[
 
 fn whole(text: &str) -> Option<i128> {
     text.parse().ok()
+}
+
+fn fits<T: TryFrom<i128>>(text: &str) -> bool {
+    whole(text).is_some_and(|it| T::try_from(it).is_ok())
 }
 
 fn is_digits(text: &str) -> bool {
@@ -98,11 +138,15 @@ pub(super) fn own(property: &Property, report: &mut Report<'_>) {
 
 /// The same for a value that somebody else gives the property.
 pub(super) fn given(property: &Property, value: &Text, report: &mut Report<'_>) {
-    let Some(of) = property.r#type() else { return };
-    let local = of.rsplit(':').next().unwrap_or(of);
-    let Some((_, expected, is_one)) = SIMPLE_TYPES.iter().find(|(name, ..)| *name == local) else { return };
+    holds(property, value, &codes::COMPOSITE_VALUE_TYPE, report);
+}
+
+/// Whether a value is of the type of a property; where it is not, that is reported with this code.
+pub(super) fn holds(property: &Property, value: &Text, code: &'static Code, report: &mut Report<'_>) -> bool {
+    let Some(of) = property.r#type() else { return true };
+    let Some((_, expected, is_one)) = simple_type(of) else { return true };
     if value.is_empty() || is_one(value) {
-        return;
+        return true;
     }
     let message = format!(
         "the property {} is of the type {}: found {}, expected {expected}",
@@ -110,9 +154,97 @@ pub(super) fn given(property: &Property, value: &Text, report: &mut Report<'_>) 
         quoted(of),
         quoted(value)
     );
-    let one =
-        Diagnostic::new(&codes::COMPOSITE_VALUE_TYPE, value.location, message).label(of.location, "the type");
+    let one = Diagnostic::new(code, value.location, message).label(of.location, "the type");
     report.push(one.help("change the value, or the type"));
+    false
+}
+
+/// The type of a property, where it is one of XML Schema that has no elements inside.
+pub(super) fn simple(property: &Property) -> Option<&Text> {
+    property.r#type().filter(|of| simple_type(of).is_some())
+}
+
+fn simple_type(of: &str) -> Option<&'static SimpleType> {
+    let local = local(of);
+    SIMPLE_TYPES.iter().find(|(name, ..)| *name == local)
+}
+
+fn local(of: &str) -> &str {
+    of.rsplit(':').next().unwrap_or(of)
+}
+
+/// A property that may have a type, and the document that says what the prefixes in it mean.
+#[derive(Clone, Copy)]
+pub(super) struct Typed<'a> {
+    pub(super) property: &'a Property,
+    pub(super) document: &'a Document,
+}
+
+impl Typed<'_> {
+    fn namespace(&self, of: &str) -> Option<String> {
+        let prefix = of.split_once(':').map_or("", |(prefix, _)| prefix);
+        let element = self.document.element(self.property.origin().element);
+        element.resolve_prefix(prefix).map(|namespace| namespace.into_owned())
+    }
+}
+
+/// What the other one of two properties is to the one at hand.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Match {
+    /// Its declaration.
+    Declaration,
+    /// Where its value comes from, by what is written here.
+    Source(Location),
+}
+
+/// Whether two properties of which one gives the other its values can have one type: the same, or one that is made of the other. Where they cannot,
+/// that is reported.
+pub(super) fn matches(own: Typed<'_>, other: Typed<'_>, how: Match, report: &mut Report<'_>) -> bool {
+    let of = |typed: &Typed<'_>| typed.property.r#type().filter(|of| !of.is_empty()).cloned();
+    let (Some(here), Some(there)) = (of(&own), of(&other)) else { return true };
+    let (here, there) = (&here, &there);
+    let (name, meant) = (local(here), local(there));
+    let is_same = match (own.namespace(here).as_deref(), other.namespace(there).as_deref()) {
+        (Some(XML_SCHEMA), Some(XML_SCHEMA)) => derives(name, meant) || derives(meant, name),
+        // What types of users are made of is in their schemas.
+        (Some(one), Some(another)) if one != another => [one, another].contains(&XML_SCHEMA),
+        _ => name == meant,
+    };
+    if !is_same {
+        let (at, what, help, rule) = match how {
+            Match::Declaration => {
+                let help = "leave `type` out: that of the declaration holds";
+                (here.location, "where it is declared", help, "ASM50036")
+            }
+            Match::Source(at) => (at, "where its value comes from", "give both one type", "ASM50038"),
+        };
+        let message = format!(
+            "the property {} is of the type {}, and of {} {what}",
+            quoted(&own.property.name),
+            quoted(here),
+            quoted(there)
+        );
+        let mut one = Diagnostic::new(&codes::VALUE_TYPE, at, message).rule(rule);
+        if at != here.location {
+            one = one.label(here.location, "its type");
+        }
+        report.push(one.label(there.location, what).help(help));
+    }
+    is_same
+}
+
+/// Whether a type of XML Schema is another one, or made of it.
+fn derives(name: &str, from: &str) -> bool {
+    let mut name = name;
+    loop {
+        if name == from {
+            return true;
+        }
+        match DERIVED.iter().find(|(derived, _)| *derived == name) {
+            Some((_, base)) => name = base,
+            None => return matches!(from, "anyType" | "anySimpleType" | "anyAtomicType"),
+        }
+    }
 }
 
 /// Reports a type in the namespace of XML Schema that is not there.

@@ -11,6 +11,8 @@ use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
 use super::fleet::{Fleet, Kind};
+use super::given;
+use super::offer::Side;
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
 use super::target::{Provider, Target, Uri, parts, spread, target};
@@ -53,12 +55,15 @@ pub(super) fn check(
 ) -> Wiring {
     let wires = wires(fleet, classes, report);
     let mut all = Wires { fleet, classes, promoted, wires, autowire: Autowire::default() };
+    let sources = given::promoted(fleet);
     let mut circles = Circles::new(fleet.members.len());
     let mut wiring = Wiring::with_capacity(fleet.members.len());
     for member in 0..fleet.members.len() {
         report.about(&fleet.members[member]);
         let Some(class) = fleet.class_of(member, classes) else {
             all.given(member, report);
+            let is_wired = |name| all.wires.contains_key(&(member, name));
+            given::unwired(member, fleet, &sources, is_wired, report);
             wiring.push(Vec::new());
             continue;
         };
@@ -95,6 +100,10 @@ fn wires<'f>(
             let is_replacing = wire.replace.as_ref().is_some_and(|replace| replace.value);
             for one in spread(source, scope, fleet) {
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
+                    // Both ends can be wrong.
+                    for to in spread(to, scope, fleet) {
+                        target(&to, scope, None, fleet, classes, report);
+                    }
                     continue;
                 };
                 all.entry((member, name)).or_default().push(Wire { target: to, scope, is_replacing });
@@ -118,6 +127,16 @@ fn source_of<'f>(
     let member = uri.member(source, scope, fleet, None, report)?;
     let named = parts(written).1.unwrap_or_default();
     let Some(names) = fleet.reference_names(member, classes) else {
+        if let Some((name, at)) = &uri.part {
+            let at = report.part(source, at.clone());
+            fleet.unknown_name(
+                member,
+                Side::Reference,
+                (&codes::UNKNOWN_WIRE_SOURCE, None),
+                (name, at),
+                report,
+            );
+        }
         return (fleet.members[member].kind == Kind::Given).then_some((member, named));
     };
     let component = quoted(uri.component);

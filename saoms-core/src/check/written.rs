@@ -87,7 +87,7 @@ fn bindings(what: &str, name: &Text, bindings: &[Binding], report: &mut Report<'
     }
 }
 
-fn type_and_element(property: &Property, rule: &'static str, report: &mut Report<'_>) {
+pub(super) fn type_and_element(property: &Property, rule: &'static str, report: &mut Report<'_>) {
     if let (Some(of), Some(element)) = (property.r#type(), property.element()) {
         let message = format!("the property {} has both a `type` and an `element`", quoted(&property.name));
         let one = Diagnostic::new(&codes::TYPE_AND_ELEMENT, at(element, property.tag()), message);

@@ -69,8 +69,8 @@ codes! {
     COMPONENT_REPEATED = "S2002" Error "component-repeated" ("ASM50001"): "Two components have one name.";
     COMPOSITE_PART_REPEATED = "S2003" Error "composite-part-repeated": "A composite has two properties, services or references of one name.";
     CONTRACT_REPEATED = "S2004" Error "contract-repeated": "A component has two services or references of one name.";
-    UNKNOWN_SERVICE = "S2005" Error "unknown-service" ("ASM50003"): "A component has a service that its class does not have.";
-    UNKNOWN_REFERENCE = "S2006" Error "unknown-reference" ("ASM50008"): "A component has a reference that its class does not have.";
+    UNKNOWN_SERVICE = "S2005" Error "unknown-service" ("ASM50003"): "A component has a service that its class, composite or component type does not have.";
+    UNKNOWN_REFERENCE = "S2006" Error "unknown-reference" ("ASM50008"): "A component has a reference that its class, composite or component type does not have.";
     INTERFACE_DIFFERS = "S2007" Error "interface-differs": "The interface of a service or a reference is not that of the class.";
     MULTIPLICITY_WIDER = "S2008" Error "multiplicity-wider" ("ASM50009"): "The multiplicity of a reference allows what the class does not.";
     BINDING_NOT_SERVED = "S2009" Warning "binding-not-served": "A service or a reference has a binding that is not served.";
@@ -119,7 +119,7 @@ codes! {
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";
     NOT_SUPPORTED_YET = "S3003" Warning "not-supported-yet": "A part of SCA or SAOMS that this version does not support yet.";
-    UNKNOWN_PROPERTY = "S3004" Error "unknown-property" ("ASM50037"): "A component is given a property that its class does not have.";
+    UNKNOWN_PROPERTY = "S3004" Error "unknown-property" ("ASM50037"): "A component is given a property that its class, composite or component type does not have.";
     PROPERTY_REPEATED = "S3005" Error "property-repeated" ("ASM50031"): "A property is given twice.";
     PROPERTY_MISSING = "S3006" Error "property-missing" ("ASM40011"): "A property that needs a value has none.";
     VALUE_TYPE = "S3007" Error "value-type": "A value is of the wrong type.";

@@ -4,6 +4,7 @@
 
 mod assemblies;
 mod classes;
+mod component_types;
 mod corpus;
 mod expanded;
 mod files;

@@ -308,3 +308,33 @@ fn what_is_taken_as_given_has_no_fault_of_its_own() {
     "#]]
     .assert_eq(&found);
 }
+
+#[test]
+fn types_of_a_property_and_of_what_gives_its_value_fit() {
+    let xsd = "xmlns:x=\"http://www.w3.org/2001/XMLSchema\"";
+    let inner = part("hall", xsd, r#"<property name="size" type="x:int"/>"#);
+    let fleet = |of: &str, source: &str| {
+        let inside = format!(
+            "<property name=\"all\" type=\"{source}\">4</property>\n<component name=\"H\"><implementation.composite name=\"t:hall\"/><property name=\"size\" type=\"{of}\" source=\"$all\"/></component>"
+        );
+        faults_only(&outcome(&[&part("fleet", xsd, &inside), &inner], &[]))
+    };
+    assert_eq!(fleet("x:short", "x:integer"), "");
+    expect![[r#"
+        3:90-99 error S3007: the property `size` is of the type `x:boolean`, and of `x:int` where it is declared
+          hall:2:29-34 where it is declared
+          help: leave `type` out: that of the declaration holds
+        3:109-113 error S3007: the property `size` is of the type `x:boolean`, and of `x:string` where its value comes from
+          3:90-99 its type
+          2:28-36 where its value comes from
+          help: give both one type
+    "#]].assert_eq(&fleet("x:boolean", "x:string"));
+}
+
+/// Without the warnings about properties that nothing uses.
+fn faults_only(found: &str) -> String {
+    found
+        .split_inclusive('\n')
+        .filter(|line| !line.contains("used by no") && !line.contains("takes its value with"))
+        .collect()
+}

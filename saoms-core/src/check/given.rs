@@ -1,0 +1,260 @@
+//! Components of which nothing is known here but what a file beside their implementation says.
+
+use std::collections::HashSet;
+
+use super::described;
+use super::fleet::{Fleet, Kind, Member, Unit};
+use super::offer::Side;
+use super::parameters::{Found, Parameters, Place};
+use super::raw::Piece;
+use super::report::{Report, list};
+use super::target::parts;
+use super::value_type::{self, Match, Typed};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::model::{Component, ComponentType, ImplementationKind, Multiplicity, Part, Property, Reference};
+use crate::source::{Location, Text};
+
+/// What a file says of a component that is taken as given.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub(super) described: &'a ComponentType,
+    /// Whether that is all there is to know. A script or a bundle has what its file says; a class has what it says itself besides.
+    is_whole: bool,
+}
+
+impl<'a> Fleet<'a> {
+    /// What a file says of a component that is taken as given; `None` where there is none, and for all other components.
+    pub(super) fn known(&self, member: usize) -> Option<Known<'a>> {
+        if self.members[member].kind != Kind::Given {
+            return None;
+        }
+        let kind = &self.members[member].component.implementation.as_ref()?.kind;
+        let is_whole =
+            matches!(kind, ImplementationKind::Other { kind, .. } if kind == "script" || kind == "osgi");
+        Some(Known { described: self.component_type(member)?, is_whole })
+    }
+
+    /// Reports the name of a service or reference that such a component does not have, as far as anybody knows.
+    pub(super) fn unknown_name(
+        &self,
+        member: usize,
+        side: Side,
+        (code, rule): (&'static Code, Option<&'static str>),
+        (name, at): (&str, Location),
+        report: &mut Report<'_>,
+    ) {
+        let Some(known) = self.known(member) else { return };
+        let component = self.members[member].component;
+        // Those that the component has itself are held against the file where they are written.
+        let is_own = match side {
+            Side::Service => component.service(name).is_some(),
+            Side::Reference => component.reference(name).is_some(),
+        };
+        if !is_own {
+            let names: Vec<&str> = known.names(side).collect();
+            known.lacks((code, rule), side.name(), (&component.name, name, at), &names, report);
+        }
+    }
+}
+
+impl<'a> Known<'a> {
+    fn names(&self, side: Side) -> impl Iterator<Item = &'a str> + use<'a> {
+        let (services, references) = match side {
+            Side::Service => (&self.described.services[..], &[][..]),
+            Side::Reference => (&[][..], &self.described.references[..]),
+        };
+        let services = services.iter().map(|one| &one.name);
+        services.chain(references.iter().map(|one| &one.name)).map(|name| name.as_str())
+    }
+
+    /// Reports a name that is not among those that the file has: where the class may have it all the same as a warning, or a note if nothing is
+    /// near it. A file that has nothing of the kind says nothing about a class.
+    fn lacks(
+        &self,
+        (code, rule): (&'static Code, Option<&'static str>),
+        what: &str,
+        (component, name, at): (&Text, &str, Location),
+        names: &[&str],
+        report: &mut Report<'_>,
+    ) {
+        if name.is_empty() || names.contains(&name) || names.is_empty() && !self.is_whole {
+            return;
+        }
+        let message = format!("component {} has no {what} {}", quoted(component), quoted(name));
+        let all = if what == "property" { "properties".to_owned() } else { format!("{what}s") };
+        let known = (&*format!("its {all} are"), names.iter().copied());
+        let mut one = report.unknown(code, at, message, name, known);
+        one = one.label(self.described.tag(), "what it has is described here");
+        if !self.is_whole {
+            let severity = if one.suggestions.is_empty() { Severity::Note } else { Severity::Warning };
+            one = one
+                .severity(severity)
+                .help(format!("if its class has it, add the {what} to the description"));
+        }
+        if let Some(rule) = rule {
+            one = one.rule(rule);
+        }
+        report.push(one);
+    }
+}
+
+/// Checks the services and references that a component writes against what is known of it.
+pub(super) fn contracts(component: &Component, known: Known<'_>, report: &mut Report<'_>) {
+    let names: Vec<&str> = known.names(Side::Service).collect();
+    for name in component.services.iter().map(|one| &one.name) {
+        let wrong = (&component.name, name.as_str(), name.location);
+        known.lacks((&codes::UNKNOWN_SERVICE, None), "service", wrong, &names, report);
+    }
+    let names: Vec<&str> = known.names(Side::Reference).collect();
+    for reference in &component.references {
+        let name = &reference.name;
+        let wrong = (&component.name, name.as_str(), name.location);
+        known.lacks((&codes::UNKNOWN_REFERENCE, None), "reference", wrong, &names, report);
+        described::multiplicity(reference, known.described, report);
+    }
+}
+
+/// The components whose references composites promote, by their scopes, where there are any that this is asked of.
+pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> HashSet<(usize, &'a str)> {
+    if fleet.contribution.component_types().is_empty() {
+        return HashSet::new();
+    }
+    let of_unit = |unit: &Unit<'a>| {
+        let scope = unit.scope;
+        let all = unit.references().flat_map(Reference::promote);
+        all.map(|uri| (scope, parts(uri).0)).collect::<Vec<_>>()
+    };
+    fleet.units.iter().flat_map(of_unit).collect()
+}
+
+/// Reports the references that a file says need a target, and have none: whoever runs the component may still find one.
+pub(super) fn unwired<'f>(
+    place: usize,
+    fleet: &'f Fleet<'_>,
+    promoted: &HashSet<(usize, &str)>,
+    is_wired: impl Fn(&'f str) -> bool,
+    report: &mut Report<'_>,
+) {
+    let Some(known) = fleet.known(place) else { return };
+    let member = &fleet.members[place];
+    let component = member.component;
+    if promoted.contains(&(member.scope, component.name.as_str())) || is_wired("") {
+        return;
+    }
+    let default = component.autowire.map_or(member.autowire, |said| said.value);
+    for declared in
+        known.described.references.iter().filter(|one| !one.name.is_empty() && !is_wired(&one.name))
+    {
+        let own = component.reference(&declared.name);
+        let both = [own, Some(declared)];
+        let mut both = both.into_iter().flatten();
+        let has_end = both.clone().any(|one| {
+            !one.targets.is_empty()
+                || !one.bindings.is_empty()
+                || one.wired_by_impl().is_some_and(|wired| wired.value)
+        });
+        let autowire = both.clone().find_map(Reference::autowire).map_or(default, |said| said.value);
+        let multiplicity =
+            both.find_map(|one| one.multiplicity).map_or(Multiplicity::One, |given| given.value);
+        if has_end || autowire || !multiplicity.is_required() {
+            continue;
+        }
+        let (name, of) = (quoted(&declared.name), quoted(&component.name));
+        let message = format!("reference {name} of component {of} leads to no service");
+        let at = own.map_or(component.name.location, |own| own.name.location);
+        let rule = if multiplicity.is_many() { "ASM50041" } else { "ASM50040" };
+        let one = Diagnostic::new(&codes::UNWIRED, at, message).severity(Severity::Warning).rule(rule);
+        let one = one.label(declared.name.location, "it needs a target by this description");
+        report.push(one.help(format!("add `<reference name=\"{}\" target=\"...\"/>`", declared.name)));
+    }
+}
+
+/// Checks the properties of a component that has no class here: where they come from, and what a file says of them.
+pub(super) fn properties<'a>(
+    member: &Member<'a>,
+    known: Option<Known<'a>>,
+    parameters: &mut Parameters<'a>,
+    report: &mut Report<'_>,
+) {
+    let component = member.component;
+    let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
+    for property in component.properties.iter().filter(|property| !property.name.is_empty()) {
+        let found = parameters.taken(place, property, report);
+        let source = property.source().filter(|_| property.r#type().is_none());
+        let source = source.and_then(|source| Some((source, parameters.declaration(member.unit, source)?)));
+        let own = Typed { property, document: &member.composite.document };
+        let Some(known) = known else {
+            fits(own, None, &found, report);
+            continue;
+        };
+        let all = &known.described.properties;
+        let Some(declared) = all.iter().find(|declared| declared.name == *property.name.value) else {
+            let names: Vec<&str> = all.iter().map(|one| one.name.as_str()).collect();
+            let wrong = (&component.name, property.name.as_str(), property.name.location);
+            known.lacks((&codes::UNKNOWN_PROPERTY, None), "property", wrong, &names, report);
+            continue;
+        };
+        let typed = Typed { property: declared, document: &known.described.document };
+        if let Some((source, from)) = source
+            && !value_type::matches(typed, from, Match::Source(source.location), report)
+        {
+            continue;
+        }
+        fits(own, Some(typed), &found, report);
+    }
+    if let Some(known) = known {
+        described::supplied(component, known.described, report);
+    }
+}
+
+/// Whether what a component gives for a property is what it is declared to be.
+fn fits(own: Typed<'_>, declared: Option<Typed<'_>>, found: &Result<Found<'_>, ()>, report: &mut Report<'_>) {
+    let Ok(found) = found else { return };
+    if let Some(declared) = declared
+        && !(many(own.property, declared.property, found, report)
+            && value_type::matches(own, declared, Match::Declaration, report))
+    {
+        return;
+    }
+    let typed: Vec<&Property> = [Some(own), declared].into_iter().flatten().map(|one| one.property).collect();
+    for piece in &found.raw.0 {
+        match piece {
+            Piece::Text(text) => {
+                let _ = typed.iter().all(|typed| value_type::holds(typed, text, &codes::VALUE_TYPE, report));
+            }
+            Piece::Elements(elements, _) => {
+                let simple = typed.iter().find_map(|typed| value_type::simple(typed));
+                if let (Some(of), Some(first)) = (simple, elements.first()) {
+                    let message = format!(
+                        "the property {} is of the type {}, and has elements inside: {}",
+                        quoted(&own.property.name),
+                        quoted(of),
+                        list(elements.iter().map(|one| one.name()))
+                    );
+                    let one = Diagnostic::new(&codes::VALUE_TYPE, first.name_location(), message);
+                    report.push(one.label(of.location, "the type"));
+                }
+            }
+        }
+    }
+}
+
+/// Whether a component gives as many values as it can.
+fn many(own: &Property, declared: &Property, found: &Found<'_>, report: &mut Report<'_>) -> bool {
+    if declared.many().is_some_and(|many| many.value) {
+        return true;
+    }
+    let name = quoted(&own.name);
+    if let Some(many) = own.many().filter(|many| many.value) {
+        let message = format!("the property {name} takes one value, and is said here to take several");
+        let one = Diagnostic::new(&codes::MANY_VALUES, many.location, message);
+        report.push(one.label(declared.name.location, "declared here, without `many=\"true\"`"));
+        return false;
+    }
+    let [first, second, ..] = &found.raw.0[..] else { return true };
+    let message = format!("the property {name} takes one value, and here are {}", found.raw.0.len());
+    let one = Diagnostic::new(&codes::MANY_VALUES, second.location(), message);
+    let one = one.label(first.location(), "the first");
+    report.push(one.label(declared.name.location, "declared here, without `many=\"true\"`"));
+    false
+}

@@ -1,0 +1,218 @@
+//! What files beside implementations say of components.
+
+use std::fs;
+
+use expect_test::expect;
+use saoms_core::check::{Options, check};
+use saoms_core::diagnostic::Diagnostics;
+use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
+use saoms_core::model::Contribution;
+use saoms_core::source::Sources;
+
+use crate::classes::registry;
+use crate::properties::robot;
+use crate::support::{fleet, shown};
+
+const DESCRIPTION: &str = "<property name='speed' type='xsd:int'>5</property>
+<property name='names' many='true'/>
+<property name='must' type='xsd:string' mustSupply='true'/>
+<service name='tick'/>
+<reference name='clock'/>
+<reference name='lamps' multiplicity='0..n'/>";
+
+/// What is wrong with a composite that has files beside it, where classes are taken as given or not.
+fn found(inside: &str, types: &[(&str, &str)], assume_classes: bool) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, inside) in types {
+        let text = format!(
+            "<componentType xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' xmlns:xsd='http://www.w3.org/2001/XMLSchema'>\n{inside}</componentType>"
+        );
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let path = folder.path().join("fleet.composite");
+    let text =
+        fleet(inside).replacen('>', " xmlns:t='urn:t' xmlns:xsd='http://www.w3.org/2001/XMLSchema'>", 1);
+    fs::write(&path, text).unwrap();
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
+    let mut composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    read_values(&mut composite, MAX_SIZE, &mut sources, &mut diagnostics);
+    let mut all = Contribution::of(vec![composite]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let options = Options { assume_classes, ..Options::default() };
+    check(&all, &registry(), &options, &sources, &mut diagnostics);
+    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+    found.replace(&format!("{}/", folder.path().display()), "")
+}
+
+/// A component of a script that is described as above.
+fn script(inside: &str) -> String {
+    let inside =
+        format!("<component name='S'><t:implementation.script script='run.py'/>\n{inside}</component>");
+    found(&inside, &[("run.componentType", DESCRIPTION)], true)
+}
+
+/// The same of a class that nobody here knows.
+fn class(inside: &str) -> String {
+    let inside = format!("<component name='S'><implementation.java class='a.Run'/>\n{inside}</component>");
+    found(&inside, &[("Run.componentType", DESCRIPTION)], true)
+}
+
+const RIGHT: &str = "<property name='must' value='it'/><reference name='clock' target='S/tick'/>";
+
+#[test]
+fn a_right_use_has_no_faults() {
+    let right = format!(
+        "{RIGHT}<property name='names'><value>a</value><value>b</value></property><property name='speed' type='xsd:long'>7</property><service name='tick'/><reference name='lamps' target='S/tick S'/>"
+    );
+    assert_eq!(script(&right), "");
+    assert_eq!(class(&right), "");
+}
+
+#[test]
+fn a_script_has_what_its_file_says_and_nothing_else() {
+    let wrong = format!(
+        "{RIGHT}\n<property name='sped'>1</property>\n<service name='tock'/>\n<reference name='lamp' target='S/tik'/></component>
+<component name='T'><implementation.java class='a.T'/><reference name='r' target='S/tik S/tock S/other'/></component>
+<wire source='S/clok' target='S/tik'/>
+<service name='p' promote='S/tik'/>
+<reference name='q' promote='S/lamsp'/>
+<component name='U'><implementation.java class='a.U'/>"
+    );
+    expect![[r#"
+        4:17-21 error S3004: component `S` has no property `sped`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `sped` with `speed` [4:17-21 "speed"]
+        5:16-20 error S2005: component `S` has no service `tock`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tock` with `tick` [5:16-20 "tick"]
+        6:18-22 error S2006: component `S` has no reference `lamp`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `lamp` with `lamps` [6:18-22 "lamps"]
+        6:34-37 error S2012: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [6:34-37 "tick"]
+        7:85-88 error S2012: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [7:85-88 "tick"]
+        7:98-103 error S2012: component `S` has no service `other`
+          run.componentType:1:2-15 what it has is described here
+          help: its services are `tick`
+        8:17-21 error S2016: component `S` has no reference `clok`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `clok` with `clock` [8:17-21 "clock"]
+        8:33-36 error S2012: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [8:33-36 "tick"]
+        9:30-33 error S2021: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [9:30-33 "tick"]
+        10:32-37 error S2021: component `S` has no reference `lamsp`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `lamsp` with `lamps` [10:32-37 "lamps"]
+    "#]]
+    .assert_eq(&script(&wrong));
+}
+
+/// Its file is added to what it says itself, which nobody here can see.
+#[test]
+fn a_class_may_have_more_than_its_file_says() {
+    let wrong = format!("{RIGHT}\n<property name='sped'>1</property>\n<service name='another'/>");
+    expect![[r#"
+        4:17-21 warning S3004: component `S` has no property `sped`
+          run.componentType:1:2-15 what it has is described here
+          help: if its class has it, add the property to the description
+          fix: replace `sped` with `speed` [4:17-21 "speed"]
+        5:16-23 note S2005: component `S` has no service `another`
+          run.componentType:1:2-15 what it has is described here
+          help: its services are `tick`
+          help: if its class has it, add the service to the description
+    "#]]
+    .assert_eq(&class(&wrong).replace("Run.", "run."));
+    let one = |inside| {
+        let component =
+            format!("<component name='S'><implementation.java class='a.Run'/>{inside}</component>");
+        found(&component, &[("Run.componentType", "<service name='tick'/>")], true)
+    };
+    assert_eq!(one("<property name='sped'>1</property><reference name='r' target='S/tick'/>"), "");
+}
+
+#[test]
+fn values_are_what_the_file_asks_for() {
+    let wrong = format!(
+        "{RIGHT}\n<property name='speed'>fast</property></component>
+<property name='many' type='xsd:string'>7</property>
+<component name='T'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed' source='$many'/></component>
+<component name='U'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed'><value>1</value><value>2</value></property></component>
+<component name='V'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed' many='true' value='1'/></component>
+<component name='W'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed' type='xsd:string' value='1'/></component>
+<component name='X'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed'><a xmlns=''>1</a></property></component>
+<component name='Y'><t:implementation.script script='run.py'/>"
+    );
+    expect![[r#"
+        4:24-28 error S3007: the property `speed` is of the type `xsd:int`: found `fast`, expected a whole number of 32 bits
+          run.componentType:2:30-37 the type
+          help: change the value, or the type
+        6:169-174 error S3007: the property `speed` is of the type `xsd:int`, and of `xsd:string` where its value comes from
+          run.componentType:2:30-37 its type
+          5:29-39 where its value comes from
+          help: give both one type
+        7:184-185 error S3011: the property `speed` takes one value, and here are 2
+          7:168-169 the first
+          run.componentType:2:17-22 declared here, without `many="true"`
+        8:167-171 error S3011: the property `speed` takes one value, and is said here to take several
+          run.componentType:2:17-22 declared here, without `many="true"`
+        9:167-177 error S3007: the property `speed` is of the type `xsd:string`, and of `xsd:int` where it is declared
+          run.componentType:2:30-37 where it is declared
+          help: leave `type` out: that of the declaration holds
+        10:162-163 error S3007: the property `speed` is of the type `xsd:int`, and has elements inside: `a`
+          run.componentType:2:30-37 the type
+        11:18-19 error S3006: component `Y` lacks the property `must`
+          run.componentType:4:17-21 declared here, without a value
+          help: add `<property name="must">...</property>`
+        11:18-19 warning S2018: reference `clock` of component `Y` leads to no service
+          run.componentType:6:18-23 it needs a target by this description
+          help: add `<reference name="clock" target="..."/>`
+    "#]]
+    .assert_eq(&script(&wrong));
+}
+
+#[test]
+fn what_a_class_has_is_narrowed_by_its_file() {
+    let types = [(
+        "Robot001.componentType",
+        "<property name='number' type='xsd:int' mustSupply='true'/>\n<property name='speed' type='xsd:int'/>\n<property name='spede'/>\n<property name='grace'>soon</property>",
+    )];
+    expect![[r#"
+        2:18-19 error S3006: component `R` lacks the property `number`
+          Robot001.componentType:2:17-23 declared here, without a value
+          help: add `<property name="number">...</property>`
+        3:24-27 error S3007: the property `speed` is of the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
+          Robot001.componentType:3:30-37 the type
+          help: change the value, or the type
+        Robot001.componentType:4:17-22 error S3004: class `example.Robot001` has no property `spede`
+          fix: replace `spede` with `speed` [Robot001.componentType:4:17-22 "speed"]
+        Robot001.componentType:5:24-28 error S3007: property `grace`: `soon` is not a duration: expected a duration (in ms, or with a unit: ns, us, ms, s, min, h)
+          2:18-19 used here as `grace`
+          help: the default is `10ms`
+    "#]].assert_eq(&found(&robot("<property name='speed'>1.5</property>"), &types, false));
+}
+
+#[test]
+fn references_that_the_file_says_need_a_target_are_told() {
+    expect![[r#"
+        2:18-19 warning S2018: reference `clock` of component `S` leads to no service
+          run.componentType:6:18-23 it needs a target by this description
+          help: add `<reference name="clock" target="..."/>`
+    "#]]
+    .assert_eq(&script("<property name='must' value='it'/>"));
+    let wired = |more: &str, attributes: &str| {
+        let inside = format!(
+            "<component name='S' {attributes}><t:implementation.script script='run.py'/><property name='must' value='it'/></component>{more}"
+        );
+        found(&inside, &[("run.componentType", DESCRIPTION)], true)
+    };
+    assert_eq!(wired("<wire source='S/clock' target='S/tick'/>", ""), "");
+    assert_eq!(wired("<reference name='r' promote='S/clock'/>", ""), "");
+    assert_eq!(wired("", "autowire='true'"), "");
+}
