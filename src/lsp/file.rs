@@ -9,7 +9,7 @@ use super::outline::Outline;
 use super::position::Lines;
 use super::syntax::{Tree, scan};
 
-/// The text of a composite and what is known of it.
+/// The text of a composite, or of a file beside one, and what is known of it.
 #[derive(Debug)]
 pub(super) struct File {
     pub(super) path: PathBuf,
@@ -26,6 +26,12 @@ impl File {
         let tree = scan(&text);
         let kinds = tree.kinds(&text);
         let outline = Outline::of(&text, &tree, &kinds);
+        Self { path, lines: Lines::new(&text), tree, kinds, outline, text }
+    }
+
+    /// A file beside composites, which holds values.
+    pub(super) fn beside(path: PathBuf, text: Arc<str>) -> Self {
+        let (tree, kinds, outline) = (Tree::default(), Vec::new(), Outline::default());
         Self { path, lines: Lines::new(&text), tree, kinds, outline, text }
     }
 }

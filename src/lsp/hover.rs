@@ -109,6 +109,9 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             let class = loop_class(scene, component, one)?;
             Some(describe::looping(scene.registry.get_loop(&class)?))
         }
+        Symbol::Index { component, .. } => {
+            Some(format!("**index**, what the replicas of `{component}` are counted by"))
+        }
         Symbol::Class { name } => match (scene.registry.get(name), scene.registry.get_loop(name)) {
             (Some(class), _) => Some(describe::class(class)),
             (None, one) => Some(describe::looping(one?)),

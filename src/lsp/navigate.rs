@@ -21,7 +21,10 @@ pub(super) fn definition(scene: &Scene, byte: usize) -> Vec<Goal> {
     let mut defined = defined(scene, &found.symbol);
     if defined.is_empty() {
         // A service of a class is where its component is.
-        if let Symbol::Part { file, component, .. } | Symbol::Loop { file, component, .. } = &found.symbol {
+        if let Symbol::Part { file, component, .. }
+        | Symbol::Loop { file, component, .. }
+        | Symbol::Index { file, component } = &found.symbol
+        {
             let owner = Symbol::Component { file: *file, name: component.clone() };
             defined = self::defined(scene, &owner);
         }

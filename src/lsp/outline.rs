@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
-use saoms_core::load::vocabulary::{COMPONENT, COMPOSITE, INCLUDE, Kind, LOOP, WIRE};
+use saoms_core::expression::inside;
+use saoms_core::load::vocabulary::{COMPONENT, COMPOSITE, Holds, INCLUDE, Kind, LOOP, WIRE, own_attributes};
+use saoms_core::model::SAOMS_NAMESPACE;
 
+use super::expressions::{INDEX, names, names_in_template, texts};
 use super::syntax::{Tree, words};
 
 /// The parts of a composite.
@@ -23,6 +26,10 @@ pub(super) struct Outline {
     pub(super) ends: Vec<End>,
     /// Every `$name`, without the `$`.
     pub(super) sources: Vec<Named>,
+    /// Every name in an expression.
+    pub(super) uses: Vec<Use>,
+    /// The files beside the composite that hold values.
+    pub(super) beside: Vec<Named>,
     /// The libraries that classes are said to be in.
     pub(super) libraries: Vec<String>,
 }
@@ -36,10 +43,23 @@ pub(super) struct Named {
     pub(super) at: Range<usize>,
 }
 
+/// A name in an expression.
+#[derive(Clone, Debug)]
+pub(super) struct Use {
+    pub(super) name: Named,
+    /// The place of the replicated component whose index it is.
+    pub(super) index_of: Option<usize>,
+}
+
 /// A component.
 #[derive(Clone, Debug)]
 pub(super) struct Component {
     pub(super) name: Named,
+    pub(super) is_replicated: bool,
+    /// The table that says how its replicas differ.
+    pub(super) table: Option<Named>,
+    /// The files that its properties have their values from.
+    pub(super) files: Vec<Named>,
     pub(super) implementation: Option<Implementation>,
     pub(super) properties: Vec<Named>,
     pub(super) services: Vec<Named>,
@@ -88,7 +108,50 @@ impl Outline {
             let parent = tree.elements[element].parent.and_then(|parent| kinds[parent]);
             outline.add(Reader { text, tree, element }, kind, parent);
         }
+        for place in 0..outline.components.len() {
+            outline.templates(text, tree, place);
+        }
         outline
+    }
+
+    /// The names in `${...}` of a component that is replicated.
+    fn templates(&mut self, text: &str, tree: &Tree, place: usize) {
+        let Component { name, is_replicated: true, .. } = &self.components[place] else { return };
+        let element = name.element;
+        let ranges = texts(tree, text, element).into_iter();
+        for at in ranges.flat_map(|range| names_in_template(text, range)) {
+            self.add_use(Reader { text, tree, element }.at(at), Some(place));
+        }
+    }
+
+    fn add_use(&mut self, name: Named, within: Option<usize>) {
+        let index_of = within.filter(|_| name.text == INDEX);
+        self.uses.push(Use { name, index_of });
+    }
+
+    /// What the attributes of our namespace say.
+    fn own(&mut self, of: &Reader<'_>, kind: &'static Kind) {
+        let (mut table, mut is_replicated, mut expressions) = (None, false, Vec::new());
+        for (known, at) in own_attributes(kind).filter_map(|known| Some((known, of.own(known.name)?))) {
+            is_replicated |= matches!(known.name, "count" | "from" | "overrides");
+            match known.holds {
+                Holds::Number => expressions.push((at, false)),
+                Holds::Condition => expressions.push((at, true)),
+                Holds::Uri => table = Some(of.at(at)),
+                _ => {}
+            }
+        }
+        let place = is_replicated.then(|| self.components.len().saturating_sub(1));
+        for (at, is_condition) in expressions {
+            for name in names(of.text, at) {
+                // How many there are is said before there is an index.
+                self.add_use(of.at(name), place.filter(|_| is_condition));
+            }
+        }
+        self.beside.extend(table.clone());
+        if let Some(component) = self.components.last_mut().filter(|_| is_replicated) {
+            (component.is_replicated, component.table) = (true, table);
+        }
     }
 
     fn add(&mut self, of: Reader<'_>, kind: &'static Kind, parent: Option<&'static Kind>) {
@@ -99,6 +162,9 @@ impl Outline {
         } else if is(&COMPONENT) {
             self.components.push(Component {
                 name: of.named("name").unwrap_or_else(|| of.nameless()),
+                is_replicated: false,
+                table: None,
+                files: Vec::new(),
                 implementation: None,
                 properties: Vec::new(),
                 services: Vec::new(),
@@ -115,6 +181,7 @@ impl Outline {
         } else {
             self.inside(&of, kind, parent);
         }
+        self.own(&of, kind);
     }
 
     /// A property, a service or a reference of the composite.
@@ -148,11 +215,22 @@ impl Outline {
             && let Some(source) = of.named("source")
             && let Some(rest) = source.text.strip_prefix('$')
         {
-            let name = rest.split('/').next().unwrap_or(rest);
+            // A `/` in an expression divides.
+            let expressions = inside(rest);
+            let is_end = |at: &usize| !expressions.iter().any(|one| one.contains(at));
+            let end = rest.match_indices('/').map(|(at, _)| at).find(is_end).unwrap_or(rest.len());
+            let name = &rest[..end];
             let at = source.at.start + 1..source.at.start + 1 + name.len();
             self.sources.push(Named { element: source.element, text: name.to_owned(), at });
         }
         self.libraries.extend(of.named("library").map(|one| one.text));
+        if kind.name == "property"
+            && let Some(file) = of.named("file")
+            && let Some(component) = self.components.last_mut()
+        {
+            component.files.push(file.clone());
+            self.beside.push(file);
+        }
         let in_component = parent.is_some_and(|parent| std::ptr::eq(parent, &COMPONENT));
         let Some(component) = self.components.last_mut().filter(|_| in_component) else { return };
         let named = of.named("name");
@@ -188,6 +266,24 @@ impl<'t> Reader<'t> {
     fn named(&self, attribute: &str) -> Option<Named> {
         let at = self.tree.value(self.text, self.element, attribute)?;
         (!at.is_empty()).then(|| self.at(at))
+    }
+
+    /// The value of an attribute of our namespace.
+    fn own(&self, attribute: &str) -> Option<Range<usize>> {
+        let attributes = &self.tree.elements[self.element].attributes;
+        let found = attributes.iter().find(|one| {
+            let written = self.text[one.name.clone()].split_once(':');
+            written.is_some_and(|(prefix, name)| name == attribute && self.is_own(prefix))
+        })?;
+        found.value.clone()
+    }
+
+    fn is_own(&self, prefix: &str) -> bool {
+        match self.tree.resolve(self.text, self.element, prefix) {
+            Some(namespace) => namespace == SAOMS_NAMESPACE,
+            // While the namespace is not there yet.
+            None => prefix == "saoms",
+        }
     }
 
     fn list(&self, attribute: &str) -> impl Iterator<Item = Named> + use<'t> {

@@ -1,14 +1,16 @@
 //! Another name for a component, or for another part of a composite, everywhere.
 
-use saoms_core::model::SAOMS_NAMESPACE;
+use saoms_core::expression::is_name;
 
+use super::complete::names::default_loops;
+use super::expressions::INDEX;
 use super::scene::Scene;
 use super::symbol::{Occurrence, Place, Symbol, at, group, is_replica, places};
 
 /// The name at a byte that can be changed; why not, where there is none.
 pub(super) fn prepare(scene: &Scene, byte: usize) -> Result<Place, String> {
     let found = at(scene, byte).ok_or("there is no name here")?;
-    if let Some(why) = refusal(&found.symbol) {
+    if let Some(why) = refusal(scene, &found.symbol) {
         return Err(why);
     }
     Ok(own(scene, &found))
@@ -17,7 +19,7 @@ pub(super) fn prepare(scene: &Scene, byte: usize) -> Result<Place, String> {
 /// The edits that give what is at a byte another name.
 pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Place, String)>, String> {
     let found = at(scene, byte).ok_or("there is no name here")?;
-    if let Some(why) = refusal(&found.symbol) {
+    if let Some(why) = refusal(scene, &found.symbol) {
         return Err(why);
     }
     if name.is_empty() || name.contains(|c: char| c.is_whitespace() || "/<>&\"'".contains(c)) {
@@ -35,13 +37,14 @@ pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Plac
             "`{old}` stands for replicas: the new name has to hold an expression, as the same one, or all would have one name"
         ));
     }
-    if let Symbol::Component { file, name: of } = &found.symbol
-        && let Some(table) = table_of_names(scene, *file, of)
-    {
-        return Err(format!("`{table}` names the replicas in its column `name`, which would not follow"));
+    if all.iter().any(|one| one.is_in_expression) && (!is_name(name) || name == INDEX) {
+        return Err(format!(
+            "`{old}` is used in expressions, where `{name}` is no name: letters, digits and `_`, and not `{INDEX}`"
+        ));
     }
     if old != name {
         taken(scene, &found.symbol, name)?;
+        named_among_others(scene, &found.symbol, &old)?;
     }
     all.iter()
         .map(|one| {
@@ -63,11 +66,19 @@ pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Plac
 }
 
 /// Why something cannot be given another name.
-fn refusal(symbol: &Symbol) -> Option<String> {
+fn refusal(scene: &Scene, symbol: &Symbol) -> Option<String> {
     match symbol {
         Symbol::Class { name } => Some(format!("the class `{name}` has its name from its author")),
         Symbol::Part { name, .. } => Some(format!("`{name}` has its name from the class of the component")),
-        Symbol::Loop { name, .. } => Some(format!("the loop `{name}` may have its name from the class")),
+        Symbol::Loop { file, component, name } => {
+            let (_, component) = scene.component(*file, component)?;
+            let is_added = scene.class(component).is_some()
+                && !default_loops(scene, component)
+                    .iter()
+                    .any(|(short, class)| short == name || class == name);
+            (!is_added).then(|| format!("the loop `{name}` has its name from the class"))
+        }
+        Symbol::Index { .. } => Some(format!("`{INDEX}` is what replicas are counted by")),
         _ => None,
     }
 }
@@ -109,21 +120,30 @@ fn taken(scene: &Scene, symbol: &Symbol, name: &str) -> Result<(), String> {
                 other.namespace == *namespace && other.name.as_ref().is_some_and(|known| known.text == name)
             })
         }
+        Symbol::Loop { file, component, .. } => {
+            let (_, component) = scene.component(*file, component).ok_or("there is no such component")?;
+            let mut given = component.loops.iter().map(|one| &one.name.text);
+            given.any(|known| known == name)
+                || default_loops(scene, component).iter().any(|(short, class)| short == name || class == name)
+        }
         _ => false,
     };
     if is_taken { Err(format!("`{name}` is taken")) } else { Ok(()) }
 }
 
-/// The table beside a replicated component, where it tells the replicas by their names.
-fn table_of_names(scene: &Scene, file: usize, component: &str) -> Option<String> {
-    let (of, component) = scene.component(file, component)?;
-    let file = &scene.files[of];
-    let element = component.name.element;
-    let own = file.tree.prefix_of(&file.text, element, SAOMS_NAMESPACE)?;
-    let table = &file.text[file.tree.value(&file.text, element, &format!("{own}:overrides"))?];
-    let text = std::fs::read_to_string(file.path.parent()?.join(table)).ok()?;
-    let first = text.trim_start_matches('\u{feff}').split([',', '\n']).next()?.trim();
-    (first.trim_matches('"') == "name").then(|| table.to_owned())
+/// Refuses where an expression names this one along with others, as `$start${index}` names `start1`.
+fn named_among_others(scene: &Scene, symbol: &Symbol, old: &str) -> Result<(), String> {
+    let (Symbol::Component { file, .. } | Symbol::Parameter { file, .. }) = symbol else { return Ok(()) };
+    let is_component = matches!(symbol, Symbol::Component { .. });
+    let written = scene.unit_of(*file).iter().flat_map(|of| {
+        let outline = &scene.files[*of].outline;
+        let ends = outline.ends.iter().filter(|_| is_component).map(|end| &end.component);
+        ends.chain(outline.sources.iter().filter(|_| !is_component))
+    });
+    match written.map(|one| &one.text).find(|text| group(old).is_none() && is_replica(text, old)) {
+        Some(other) => Err(format!("`{other}` names it along with others, and would not any more")),
+        None => Ok(()),
+    }
 }
 
 /// The name of a replica, or that of all, under another pattern. Under one with other expressions nobody knows it.

@@ -1,16 +1,18 @@
 //! A file together with all that it has to do with: what every question of an editor is answered from.
 
 use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use saoms_core::model::Version;
 use saoms_core::registry::{Class, Registry};
+use saoms_core::source::identity;
 
 use super::file::File;
 use super::outline::{Component, Implementation, Named};
 use super::syntax::local;
 
-/// A file and those around it. Files are named by their places; that of the file itself is 0.
+/// A file and those around it: composites, then the files beside them that hold values. Files are named by their places; that of the file itself is 0.
 #[derive(Debug)]
 pub(super) struct Scene {
     pub(super) files: Vec<Arc<File>>,
@@ -21,6 +23,8 @@ pub(super) struct Scene {
     includes: Vec<Vec<usize>>,
     /// By the places of files, as far as somebody asked.
     units: Vec<OnceLock<Unit>>,
+    /// The files that hold values, by the paths that composites write.
+    beside: HashMap<PathBuf, usize>,
 }
 
 /// The files whose components, wires and properties form one composite.
@@ -29,6 +33,8 @@ struct Unit {
     files: Vec<usize>,
     /// Each component by its name: its file, and its place in it.
     components: HashMap<String, (usize, usize)>,
+    /// Those whose names have expressions.
+    patterns: Vec<(usize, usize)>,
 }
 
 impl Scene {
@@ -41,9 +47,15 @@ impl Scene {
             }
         }
         let units = files.iter().map(|_| OnceLock::new()).collect();
-        let mut scene = Self { files, registry, by_name, includes: Vec::new(), units };
+        let beside = beside(&files);
+        let mut scene = Self { files, registry, by_name, includes: Vec::new(), units, beside };
         scene.includes = (0..scene.files.len()).map(|file| scene.included(file)).collect();
         scene
+    }
+
+    /// The file of values that a composite calls so.
+    pub(super) fn beside(&self, file: usize, name: &Named) -> Option<usize> {
+        self.beside.get(&self.files[file].path.parent()?.join(&name.text)).copied()
     }
 
     /// The file that is asked about.
@@ -58,13 +70,14 @@ impl Scene {
             };
             let outer = reached(vec![file], includers);
             let files = reached(outer, |place| self.includes[place].clone());
-            let mut components = HashMap::new();
+            let (mut components, mut patterns) = (HashMap::new(), Vec::new());
             for &file in &files {
                 for (place, component) in self.files[file].outline.components.iter().enumerate() {
                     components.entry(component.name.text.clone()).or_insert((file, place));
+                    patterns.extend(component.name.text.contains("${").then_some((file, place)));
                 }
             }
-            Unit { files, components }
+            Unit { files, components, patterns }
         })
     }
 
@@ -137,13 +150,20 @@ impl Scene {
         Some((file, &self.files[file].outline.components[place]))
     }
 
+    /// The components of a composite, in all its files, whose names have expressions.
+    pub(super) fn patterns(&self, file: usize) -> impl Iterator<Item = (usize, &Component)> {
+        let all = self.unit(file).patterns.iter();
+        all.map(|&(file, place)| (file, &self.files[file].outline.components[place]))
+    }
+
     /// The component of the file that an element is, or is in.
     pub(super) fn component_around(&self, element: usize) -> Option<&Component> {
         let file = self.file();
+        let components = &file.outline.components;
         let mut here = Some(element);
         while let Some(one) = here {
-            if let Some(found) = file.outline.components.iter().find(|known| known.name.element == one) {
-                return Some(found);
+            if let Ok(place) = components.binary_search_by_key(&one, |known| known.name.element) {
+                return Some(&components[place]);
             }
             here = file.tree.elements[one].parent;
         }
@@ -174,6 +194,21 @@ impl Scene {
             _ => Vec::new(),
         }
     }
+}
+
+/// The files of values by the paths that composites write for them.
+fn beside(files: &[Arc<File>]) -> HashMap<PathBuf, usize> {
+    let known: HashMap<&Path, usize> = files.iter().map(|file| file.path.as_path()).zip(0..).collect();
+    let written = files.iter().flat_map(|file| {
+        let folder = file.path.parent().unwrap_or(Path::new(""));
+        file.outline.beside.iter().map(|name| folder.join(&name.text))
+    });
+    let written: BTreeSet<PathBuf> = written.collect();
+    let found = written.into_iter().filter_map(|path| {
+        let place = *known.get(identity(&path).as_path())?;
+        Some((path, place))
+    });
+    found.collect()
 }
 
 /// What is reached from these, themselves first.

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::outline::{Component, Implementation, Named, Side};
+use super::occurrences::Found;
+use super::outline::Side;
 use super::scene::Scene;
 
 /// A file of a scene and bytes of it.
@@ -14,7 +15,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    fn of(file: usize, at: &Range<usize>) -> Self {
+    pub(super) fn of(file: usize, at: &Range<usize>) -> Self {
         Self { file, start: at.start, end: at.end }
     }
 }
@@ -36,6 +37,8 @@ pub(super) enum Symbol {
     Loop { file: usize, component: String, name: String },
     /// A class of components or of loops.
     Class { name: String },
+    /// What the replicas of a component are counted by.
+    Index { file: usize, component: String },
 }
 
 /// A place that names something.
@@ -44,116 +47,22 @@ pub(super) struct Occurrence {
     pub(super) symbol: Symbol,
     pub(super) at: Place,
     pub(super) is_definition: bool,
+    /// Whether it is a name in an expression.
+    pub(super) is_in_expression: bool,
 }
 
 /// The symbol whose name a byte of the first file touches, and where the name is.
 pub(super) fn at(scene: &Scene, at: usize) -> Option<Occurrence> {
-    occurrences(scene, 0).into_iter().find(|one| one.at.start <= at && at <= one.at.end)
+    Found::of(scene, 0, Some(at)).into_iter().next()
 }
 
 /// Every place where a symbol is named, those that define it first.
 pub(super) fn places(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
-    let all = (0..scene.files.len()).flat_map(|file| occurrences(scene, file));
+    let all = (0..scene.files.len()).flat_map(|file| Found::of(scene, file, None));
     let mut found: Vec<Occurrence> = all.filter(|one| one.symbol == *symbol).collect();
     found.sort_by_key(|one| (!one.is_definition, one.at.clone()));
     found.dedup_by(|one, other| one.at == other.at);
     found
-}
-
-/// All names of a file that stand for something.
-pub(super) fn occurrences(scene: &Scene, file: usize) -> Vec<Occurrence> {
-    let mut all = Found { scene, file, all: Vec::new() };
-    let outline = &scene.files[file].outline;
-    if let Some(name) = &outline.name {
-        all.add(Symbol::Composite { file }, name, true);
-    }
-    for name in &outline.includes {
-        if let Some(to) = scene.composite(file, name) {
-            all.add(Symbol::Composite { file: to }, name, false);
-        }
-    }
-    for name in &outline.properties {
-        all.add(Symbol::Parameter { file, name: name.text.clone() }, name, true);
-    }
-    for (side, names) in [(Side::Service, &outline.services), (Side::Reference, &outline.references)] {
-        for name in names {
-            all.add(Symbol::Promoted { file, side, name: name.text.clone() }, name, true);
-        }
-    }
-    for source in &outline.sources {
-        let symbol = scene.parameter(file, &source.text);
-        all.add(symbol, source, false);
-    }
-    outline.components.iter().for_each(|component| all.component(component));
-    for end in &outline.ends {
-        let (of, name) = scene.named(file, &end.component.text);
-        all.add(Symbol::Component { file: of, name: name.clone() }, &end.component, false);
-        if let Some(part) = &end.part {
-            let symbol = scene.part(of, &name, end.side, &part.text);
-            all.add(symbol, part, false);
-        }
-    }
-    all.all
-}
-
-struct Found<'s> {
-    scene: &'s Scene,
-    file: usize,
-    all: Vec<Occurrence>,
-}
-
-impl Found<'_> {
-    fn add(&mut self, symbol: Symbol, name: &Named, is_definition: bool) {
-        if !name.text.is_empty() {
-            self.all.push(Occurrence { symbol, at: Place::of(self.file, &name.at), is_definition });
-        }
-    }
-
-    fn component(&mut self, component: &Component) {
-        let (scene, file) = (self.scene, self.file);
-        let of = component.name.text.clone();
-        self.add(Symbol::Component { file, name: of.clone() }, &component.name, true);
-        match &component.implementation {
-            Some(Implementation::Class(name)) => {
-                self.add(Symbol::Class { name: name.text.clone() }, name, false)
-            }
-            Some(Implementation::Composite(name)) => {
-                if let Some(to) = scene.composite(file, name) {
-                    self.add(Symbol::Composite { file: to }, name, false);
-                }
-            }
-            None => {}
-        }
-        // What is said about a part of a composite inside is said about what that declares.
-        let inside = scene.inside(file, component);
-        for name in &component.properties {
-            if let Some(&inner) = inside.first() {
-                self.add(scene.parameter(inner, &name.text), name, false);
-            }
-        }
-        for (side, names) in [(Side::Service, &component.services), (Side::Reference, &component.references)]
-        {
-            for name in names {
-                let symbol = scene.part(file, &of, side, &name.text);
-                let is_definition = matches!(symbol, Symbol::Part { .. });
-                self.add(symbol, name, is_definition);
-            }
-        }
-        for one in &component.loops {
-            self.add(
-                Symbol::Loop { file, component: of.clone(), name: one.name.text.clone() },
-                &one.name,
-                true,
-            );
-            for name in &one.others {
-                let symbol = Symbol::Loop { file, component: of.clone(), name: name.text.clone() };
-                self.add(symbol, name, false);
-            }
-            if let Some(class) = &one.class {
-                self.add(Symbol::Class { name: class.text.clone() }, class, false);
-            }
-        }
-    }
 }
 
 impl Scene {
@@ -162,21 +71,20 @@ impl Scene {
         if let Some((of, _)) = self.component(file, name) {
             return (of, name.to_owned());
         }
-        let all = |of: usize| self.files[of].outline.components.iter().map(move |one| (of, &one.name.text));
-        let mut all = self.unit_of(file).iter().flat_map(|of| all(*of));
+        let mut all = self.patterns(file).map(|(of, one)| (of, &one.name.text));
         let of_replicas = all.find(|(_, pattern)| is_replica(pattern, name));
         of_replicas.map_or_else(|| (file, name.to_owned()), |(of, pattern)| (of, pattern.clone()))
     }
 
     /// The property of a composite that a file is part of.
-    fn parameter(&self, file: usize, name: &str) -> Symbol {
+    pub(super) fn parameter(&self, file: usize, name: &str) -> Symbol {
         let has = |of: &&usize| self.files[**of].outline.properties.iter().any(|one| one.text == name);
         let file = self.unit_of(file).iter().find(has).copied().unwrap_or(file);
         Symbol::Parameter { file, name: name.to_owned() }
     }
 
     /// What the part of a component of a file stands for: of a composite inside, what that promotes.
-    fn part(&self, file: usize, component: &str, side: Side, name: &str) -> Symbol {
+    pub(super) fn part(&self, file: usize, component: &str, side: Side, name: &str) -> Symbol {
         let inside = self.component(file, component).map(|(of, known)| self.inside(of, known));
         let inside = inside.filter(|inside| !inside.is_empty());
         let Some(inside) = inside else {
@@ -192,11 +100,14 @@ impl Scene {
     }
 }
 
-/// Whether a name is one of those that a name with expressions, as `Robot${index:03}`, stands for, or `Robot*`, all of them.
+/// Whether a name is one of those that a name with expressions, as `Robot${index:03}`, stands for; or `Robot*`, all of them; or one with another
+/// expression.
 pub(super) fn is_replica(pattern: &str, name: &str) -> bool {
     match pieces(pattern).split_first() {
         Some((first, rest)) if !rest.is_empty() => {
-            group(pattern).as_deref() == Some(name)
+            let group = group(pattern);
+            group.as_deref() == Some(name)
+                || (name.contains("${") && self::group(name) == group)
                 || name.strip_prefix(first).is_some_and(|name| has_numbers(name, rest))
         }
         _ => false,

@@ -17,10 +17,13 @@ pub(super) fn scene(marked: &str, others: &[(&str, &str)]) -> (Scene, usize) {
     (scene_of(&text, others), at)
 }
 
-/// The scene of a text without a cursor.
+/// The scene of a text without a cursor. Other files that are no composites hold values.
 pub(super) fn scene_of(text: &str, others: &[(&str, &str)]) -> Scene {
     let all = [("fleet.composite", text)].into_iter().chain(others.iter().copied());
-    let files = all.map(|(name, text)| Arc::new(File::new(PathBuf::from("/fleet").join(name), text.into())));
+    let files = all.map(|(name, text)| {
+        let make = if name.ends_with(".composite") { File::new } else { File::beside };
+        Arc::new(make(PathBuf::from("/fleet").join(name), text.into()))
+    });
     Scene::new(files.collect(), Arc::clone(&REGISTRY))
 }
 

@@ -1,13 +1,13 @@
 //! The files of composites: those that are open as the editor has them, others as they are on disk.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
 use saoms_core::load::{MAX_SIZE, composites_near};
-use saoms_core::source::OpenTexts;
+use saoms_core::source::{OpenTexts, identity};
 
 use super::file::File;
 
@@ -37,7 +37,7 @@ impl Workspace {
     }
 
     /// A file; `None` where it cannot be read.
-    pub(super) fn file(&mut self, path: &Path) -> Option<Arc<File>> {
+    fn file(&mut self, path: &Path, make: fn(PathBuf, Arc<str>) -> File) -> Option<Arc<File>> {
         let open = self.open.get(path).cloned();
         let stamp = match open {
             Some(_) => None,
@@ -60,12 +60,12 @@ impl Workspace {
             None if stamp.is_some_and(|(_, size)| size > MAX_SIZE) => return None,
             None => fs::read_to_string(path).ok()?.into(),
         };
-        let file = Arc::new(File::new(path.to_owned(), text));
+        let file = Arc::new(make(path.to_owned(), text));
         self.files.insert(path.to_owned(), (stamp, Arc::clone(&file)));
         Some(file)
     }
 
-    /// The composites that one in this file can name, and it itself, first.
+    /// The composites that one in this file can name, and it itself, first; then the files that these take values from.
     pub(super) fn around(&mut self, path: &Path) -> Vec<Arc<File>> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let is_fresh = |(then, _): &(Instant, _)| then.elapsed() < FRESH;
@@ -74,7 +74,20 @@ impl Workspace {
             self.listings.insert(folder.clone(), (Instant::now(), found));
         }
         let listed = self.listings.get(&folder).map(|(_, found)| found.clone()).unwrap_or_default();
-        let others = listed.iter().filter(|other| *other != path);
-        [path].into_iter().chain(others.map(PathBuf::as_path)).filter_map(|one| self.file(one)).collect()
+        let others = listed.iter().filter(|other| *other != path).map(PathBuf::as_path);
+        let mut all: Vec<Arc<File>> =
+            [path].into_iter().chain(others).filter_map(|one| self.file(one, File::new)).collect();
+        let mut known: HashSet<PathBuf> = all.iter().map(|file| file.path.clone()).collect();
+        let written = all.iter().flat_map(|file| {
+            let folder = file.path.parent().unwrap_or(Path::new(""));
+            file.outline.beside.iter().map(move |name| folder.join(&name.text))
+        });
+        let written: BTreeSet<PathBuf> = written.collect();
+        for path in written.iter().map(|path| identity(path)) {
+            if known.insert(path.clone()) {
+                all.extend(self.file(&path, File::beside));
+            }
+        }
+        all
     }
 }

@@ -26,7 +26,8 @@ use std::ops::Range;
 
 pub use evaluate::{boolean, integer};
 pub use parse::{Expression, parse};
-pub use template::{has_expression, names, pattern, render};
+pub use template::{has_expression, inside, names, pattern, render};
+pub use token::{is_name, words};
 
 use crate::diagnostic::quoted;
 

@@ -59,6 +59,23 @@ pub fn names(text: &str) -> Vec<String> {
         .collect()
 }
 
+/// The bytes inside each `${` and `}` of a text. One that is not closed goes up to the end.
+pub fn inside(text: &str) -> Vec<Range<usize>> {
+    let mut all = Vec::new();
+    let mut at = 0;
+    while let Some(found) = text[at..].find("${") {
+        let start = at + found + 2;
+        if text[at..at + found].ends_with('$') {
+            at = start;
+            continue;
+        }
+        let end = end_of(&text[start..]).map_or(text.len(), |length| start + length);
+        all.push(start..end);
+        at = end;
+    }
+    all
+}
+
 fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, Fault>> {
     let mut at = 0;
     std::iter::from_fn(move || {

@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use super::{Problem, Value, boolean, integer, names, parse, pattern, render};
+use super::{Problem, Value, boolean, inside, integer, is_name, names, parse, pattern, render, words};
 
 fn lookup(name: &str) -> Result<Value, Problem> {
     match name {
@@ -106,6 +106,20 @@ fn texts_get_numbers_in_place_of_expressions() {
     assert_eq!(names("${index * row}"), ["index", "row"]);
 }
 
+#[test]
+fn names_are_found_in_what_is_half_written_too() {
+    let found = |text: &str| words(text).into_iter().map(|at| text[at].to_owned()).collect::<Vec<_>>();
+    assert_eq!(found("not robots > 2*(größe_1 and 'north' == site) or true"), ["robots", "größe_1", "site"]);
+    assert_eq!(found("robots > "), ["robots"]);
+    assert_eq!(found("robots == 'nor and site"), ["robots"]);
+    assert_eq!(found("$robots & 2x"), ["robots", "x"]);
+    assert_eq!(found("index:03x"), ["index"]);
+    let parts = |text: &str| inside(text).into_iter().map(|at| text[at].to_owned()).collect::<Vec<_>>();
+    assert_eq!(parts("R${index:03}-${'}' == x}$${y} ${z"), ["index:03", "'}' == x", "z"]);
+    assert_eq!(parts("${"), [""]);
+    assert!(is_name("größe_1") && !is_name("1x") && !is_name("a-b") && !is_name("and") && !is_name(""));
+}
+
 /// A quarter of what threads have, so that no build comes near the end of it.
 const STACK: usize = 512 * 1024;
 
@@ -134,6 +148,14 @@ proptest! {
             prop_assert!(text.get(fault.at).is_some());
         }
         pattern(&text);
+        for at in words(&text).into_iter().chain(inside(&text)) {
+            prop_assert!(text.get(at).is_some());
+        }
+        // What can be read has the names that are found in it.
+        if let Ok(expression) = parse(&text) {
+            let known: Vec<_> = expression.names().into_iter().map(|(_, at)| at).collect();
+            prop_assert_eq!(words(&text), known);
+        }
         names(&text);
     }
 

@@ -24,6 +24,42 @@ const SIGNS: [&str; 13] = ["==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/",
 /// Signs that others use: what they are here.
 const OTHERS: [(&str, &str); 4] = [("&&", "and"), ("||", "or"), ("=", "=="), ("!", "not ")];
 
+/// The words that are no names.
+const RESERVED: [&str; 5] = ["and", "or", "not", "true", "false"];
+
+fn is_first(c: char) -> bool {
+    c.is_alphabetic() || c == '_'
+}
+
+fn is_part(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// Whether a name can stand in an expression.
+pub fn is_name(name: &str) -> bool {
+    name.starts_with(is_first) && name.chars().all(is_part) && !RESERVED.contains(&name)
+}
+
+/// The bytes of each name in what is to be an expression, whether it can be read or not.
+pub fn words(text: &str) -> Vec<Range<usize>> {
+    let mut all = Vec::new();
+    let mut at = 0;
+    while let Some(first) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let length = match first {
+            ':' => break,
+            '\'' | '"' => rest[1..].find(first).map_or(rest.len(), |length| length + 2),
+            _ if is_first(first) => rest.find(|c| !is_part(c)).unwrap_or(rest.len()),
+            _ => first.len_utf8(),
+        };
+        if is_name(&rest[..length]) {
+            all.push(at..at + length);
+        }
+        at += length;
+    }
+    all
+}
+
 /// The tokens of `text[start..]` with their bytes, up to its end or to a `:`; and where that is.
 pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), Fault> {
     let mut all = Vec::new();
@@ -39,8 +75,8 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), F
         }
         let (token, length) = if first.is_ascii_digit() {
             number(rest, at)?
-        } else if first.is_alphabetic() || first == '_' {
-            let length = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        } else if is_first(first) {
+            let length = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
             (Token::Word(rest[..length].to_owned()), length)
         } else if first == '\'' || first == '"' {
             let Some(length) = rest[1..].find(first) else {

@@ -34,6 +34,7 @@ pub use component_type::load_component_type;
 pub use named::load_named;
 pub use read::{MAX_SIZE, read, read_from};
 pub use shelf::composites_near;
+pub use table::table;
 pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};

@@ -10,7 +10,7 @@ use crate::source::{FileId, Location, Sources, Span, Text};
 const KEYS: [&str; 2] = ["index", "name"];
 
 /// Reads a table. `None` with a fault, which is reported at its line and column; all of them are.
-pub(super) fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
+pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
     let before = diagnostics.errors();
     let lines = lines(file, sources.get(file).text(), diagnostics);
     let mut lines = lines.into_iter();

@@ -15,9 +15,10 @@ const WHOLE: &str = r#"<?xml version="1.0"?>
 <composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:s="urn:saoms:1" xmlns:f="urn:f" name="fleet" targetNamespace="urn:f">
   <include name="f:inner"/>
   <property name="period" type="s:x">100<![CDATA[ ]]></property>
-  <component name="R🤖${index:03}" s:count="2 * n" s:if='a &gt; b'>
+  <component name="R🤖${index:03}" s:count="2 * n" s:if='a &gt; b' s:overrides="t.csv">
     <implementation.rust class="saoms.Robot" library="x"/>
     <property name="period" source="$period/a/b"/>
+    <property name="x" file="v.txt">${period * n</property>
     <property name="topicRename" value="COLLISIONTOPIC,ä::B,c"/>
     <property name="scenario"><value>at 1s</value><value/></property>
     <reference name="world" target=" R🤖001/TaskInterface/b  W "><binding.sca uri="W/x"/></reference>
@@ -31,7 +32,8 @@ const WHOLE: &str = r#"<?xml version="1.0"?>
 
 /// Asks everything at a byte.
 fn ask_all(text: &str, at: usize) {
-    let scene = scene_of(text, &[("inner.composite", WHOLE)]);
+    let table = "name,🤖\nR🤖001,\"";
+    let scene = scene_of(text, &[("inner.composite", WHOLE), ("t.csv", table), ("v.txt", "ä${period}${")]);
     let file = scene.file();
     for one in complete(&scene, at) {
         // The range of what is replaced is in the text, and around the cursor.

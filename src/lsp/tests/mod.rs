@@ -1,6 +1,8 @@
 //! Names and what they stand for, text in and text out.
 
 mod broken;
+mod expressions;
 mod hover;
+mod marked;
 mod names;
 mod session;

@@ -1,42 +1,6 @@
-use crate::lsp::navigate::{Goal, definition, references};
-use crate::lsp::rename::{prepare, rename};
-use crate::lsp::scene::Scene;
-use crate::lsp::symbol::Place;
+use super::marked::{defined, found, renamed};
 use crate::lsp::symbols::symbols;
-use crate::lsp::testing::{composite, scene, scene_of};
-
-/// A file as `name:line:column text`, the column from 1 in bytes.
-fn shown(scene: &Scene, place: &Place) -> String {
-    let file = &scene.files[place.file];
-    let before = &file.text[..place.start];
-    let line = before.matches('\n').count() + 1;
-    let column = place.start - before.rfind('\n').map_or(0, |at| at + 1) + 1;
-    let name = file.path.file_name().unwrap().to_str().unwrap();
-    format!("{name}:{line}:{column} {}", &file.text[place.start..place.end])
-}
-
-/// Where the name at the cursor is defined.
-fn defined(marked: &str, others: &[(&str, &str)]) -> Vec<String> {
-    let (scene, at) = scene(marked, others);
-    let all = definition(&scene, at).into_iter().map(|goal| match goal {
-        Goal::Place(place) => shown(&scene, &place),
-        Goal::File(path) => path.display().to_string(),
-    });
-    all.collect()
-}
-
-/// All files after the name at the cursor was changed, or why it cannot be.
-fn renamed(marked: &str, others: &[(&str, &str)], name: &str) -> Result<Vec<String>, String> {
-    let (scene, at) = scene(marked, others);
-    prepare(&scene, at)?;
-    let mut edits = rename(&scene, at, name)?;
-    edits.sort_by(|one, other| other.0.cmp(&one.0));
-    let mut texts: Vec<String> = scene.files.iter().map(|file| file.text.to_string()).collect();
-    for (place, new) in edits {
-        texts[place.file].replace_range(place.start..place.end, &new);
-    }
-    Ok(texts)
-}
+use crate::lsp::testing::{composite, scene_of};
 
 const INNER: &str = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="inner" targetNamespace="urn:f">
   <property name="size">3</property>
@@ -97,9 +61,7 @@ fn references_are_all_that_mean_the_same() {
     // This one has an `L` of its own.
     let other = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="other" targetNamespace="urn:f"><component name="L"/><wire source="x" target="L"/></composite>"#;
     let found = |marked: &str, with_definition| {
-        let (scene, at) = scene(marked, &[("outer.composite", outer), ("other.composite", other)]);
-        let all = references(&scene, at, with_definition);
-        all.iter().map(|place| shown(&scene, place)).collect::<Vec<_>>()
+        found(marked, &[("outer.composite", outer), ("other.composite", other)], with_definition)
     };
     let marked = INNER.replace("name=\"L\"", "name=\"L|\"");
     assert_eq!(
@@ -174,20 +136,6 @@ fn what_names_all_replicas_leads_to_them_and_is_renamed() {
     assert_eq!(defined(&two, &[]), ["fleet.composite:2:18 R${row}x${index}"]);
     let refused = renamed(&two, &[], "C${row}x${index}").unwrap_err();
     assert!(refused.contains("`R1x22` is one of the replicas"), "{refused}");
-}
-
-#[test]
-fn replicas_that_a_table_names_keep_their_names() {
-    let folder = tempfile::tempdir().unwrap();
-    let table = folder.path().join("r.csv");
-    for (column, is_refused) in [("name", true), ("index", false)] {
-        std::fs::write(&table, format!("{column},battery\nR1,60\n")).unwrap();
-        let text = composite(&format!(
-            r#"<component name="R|${{index}}" s:count="2" s:overrides="{}"/>"#,
-            table.display()
-        ));
-        assert_eq!(renamed(&text, &[], "C${index}").is_err(), is_refused, "{column}");
-    }
 }
 
 #[test]
