@@ -10,7 +10,7 @@ use super::raw::{Piece, Raw, raw};
 use super::report::{Report, list};
 use super::value_type::{self, Match, Typed};
 use super::{Setting, Variable};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
 use crate::xml::Element;
@@ -277,6 +277,10 @@ impl<'a> Parameters<'a> {
             };
             return Ok(whole.inside_elements_of(typed));
         };
+        if whole.0.is_empty() {
+            // What has no value has no parts either.
+            return Ok(whole);
+        }
         let start = source.len() - path.len();
         walk(whole, path).map_err(|(step, message)| {
             let at = report.part(source, start + step.start..start + step.end);
@@ -300,7 +304,7 @@ impl<'a> Parameters<'a> {
                 let name = &property.name;
                 let must = property.must_supply().is_some_and(|must| must.value);
                 if must && !property.has_value() && parameter.given.is_none() {
-                    report.push(missing(name, owner));
+                    report.push(missing(name, owner, report.assumes));
                 }
                 let origin = property.origin;
                 let is_open = declared.has_wrong_source || fleet.scopes[unit.scope].is_faulty;
@@ -342,11 +346,18 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
 }
 
 /// A composite property that has to be given a value, by the component that the composite implements where there is one.
-fn missing(name: &Text, owner: Option<&Component>) -> Diagnostic {
+fn missing(name: &Text, owner: Option<&Component>, assumes: bool) -> Diagnostic {
     let Some(owner) = owner else {
         let message = format!("the property {} of the composite has to be given a value", quoted(name));
-        return Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, name.location, message)
+        let one = Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, name.location, message)
             .help(format!("write it in the file, or give `--set {name}=...`"));
+        // Where classes are taken as given, so is the component that this composite may implement.
+        return match assumes {
+            true => one
+                .severity(Severity::Warning)
+                .help("as an implementation, it takes the value that its component gives it"),
+            false => one,
+        };
     };
     let message = format!(
         "component {} has to give the property {} of its composite a value",

@@ -213,12 +213,45 @@ pub(super) fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -
     spans.into_iter().flatten().map(edit).collect()
 }
 
+/// The types of SCA's schemas, as they stand in `xsi:type`, and the elements that they mean.
+const TYPES: [(&str, &str); 9] = [
+    ("JavaInterface", "interface.java"),
+    ("WSDLPortType", "interface.wsdl"),
+    ("JavaImplementation", "implementation.java"),
+    ("SCAImplementation", "implementation.composite"),
+    ("SpringImplementation", "implementation.spring"),
+    ("SCABinding", "binding.sca"),
+    ("WebServiceBinding", "binding.ws"),
+    ("JMSBinding", "binding.jms"),
+    ("EJBSessionBeanBinding", "binding.ejb"),
+];
+
+/// The local name of an element; of a general `interface`, `implementation` or `binding` that of what its `xsi:type` makes of it, as modelling
+/// tools write them.
+pub(super) fn meant_name(element: Element<'_>) -> &str {
+    let name = element.local_name();
+    match name {
+        "interface" | "implementation" | "binding" => by_type(element).unwrap_or(name),
+        _ => name,
+    }
+}
+
+fn by_type(element: Element<'_>) -> Option<&'static str> {
+    let given = element.attribute_in("http://www.w3.org/2001/XMLSchema-instance", "type")?.trimmed();
+    let given = given.rsplit(':').next()?;
+    let of_schema = TYPES.iter().find(|(known, _)| *known == given).map(|(_, meant)| *meant);
+    let mut all = vocabulary::VARIANTS.iter().flat_map(|(_, variants)| *variants);
+    let meant = of_schema.or_else(|| all.find(|known| **known == given).copied())?;
+    (meant.split('.').next() == Some(element.local_name())).then_some(meant)
+}
+
 /// What follows `prefix` in the local name of an element.
 pub(super) fn variant(element: Element<'_>, prefix: &str) -> SmolStr {
-    element.local_name().strip_prefix(prefix).unwrap_or_default().into()
+    meant_name(element).strip_prefix(prefix).unwrap_or_default().into()
 }
 
 /// Whether SCA defines this variant of an implementation, an interface or a binding.
 pub(super) fn is_defined(element: Element<'_>) -> bool {
-    vocabulary::VARIANTS.iter().any(|(_, variants)| variants.contains(&element.local_name()))
+    let name = meant_name(element);
+    vocabulary::VARIANTS.iter().any(|(_, variants)| variants.contains(&name))
 }

@@ -1,7 +1,7 @@
 //! Components and their implementations.
 
 use super::Loader;
-use super::children::{Family, is_defined, variant};
+use super::children::{Family, is_defined, meant_name, variant};
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
@@ -36,7 +36,7 @@ impl Loader<'_> {
         let mut has_faulty = false;
         for child in element.children() {
             let family = self.family(child);
-            match (family, child.local_name()) {
+            match (family, meant_name(child)) {
                 (Family::Sca, "property") => {
                     let property = self.property(child, &COMPONENT_PROPERTY);
                     self.gathered.properties.push(property);
@@ -116,7 +116,7 @@ impl Loader<'_> {
 
     /// `None` for an implementation of SCA, or of SAOMS, that does not exist; it is reported.
     fn implementation(&mut self, element: Element<'_>, family: Family) -> Option<Implementation> {
-        let kind = match (family, element.local_name()) {
+        let kind = match (family, meant_name(element)) {
             (Family::Sca, "implementation.java") => {
                 self.parts_of(element, &IMPLEMENTATION_JAVA);
                 ImplementationKind::Java { class: self.required(element, "class") }

@@ -1,7 +1,7 @@
 //! Services and references, their interfaces, callbacks and bindings.
 
 use super::Loader;
-use super::children::{Family, is_defined, variant};
+use super::children::{Family, is_defined, meant_name, variant};
 use super::vocabulary::{
     BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST,
     INTERFACE_WSDL, Kind,
@@ -88,7 +88,7 @@ impl Loader<'_> {
         let mut contract = Contract::default();
         for child in element.children() {
             let family = self.family(child);
-            match (family, child.local_name()) {
+            match (family, meant_name(child)) {
                 (Family::Nobody, _) => {}
                 (Family::Sca, "callback") => match &contract.callback {
                     Some(first) => self.repeated(child, first.origin.tag, kind, "callback"),
@@ -132,7 +132,8 @@ impl Loader<'_> {
         }
         let mut names = ("interface", "callbackInterface");
         let mut required = false;
-        let kind = match (family, element.local_name()) {
+        let name = meant_name(element);
+        let kind = match (family, name) {
             (Family::Sca, "interface.java") => {
                 self.parts_of(element, &INTERFACE_JAVA);
                 required = true;
@@ -151,7 +152,7 @@ impl Loader<'_> {
             }
             (Family::Sca, "interface.c" | "interface.cpp") => {
                 names = ("header", "callbackHeader");
-                if element.local_name() == "interface.c" { InterfaceKind::C } else { InterfaceKind::Cpp }
+                if name == "interface.c" { InterfaceKind::C } else { InterfaceKind::Cpp }
             }
             (Family::Sca, "interface.partnerLinkType") => InterfaceKind::PartnerLinkType,
             _ => InterfaceKind::Other,
@@ -172,7 +173,7 @@ impl Loader<'_> {
 
     fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {
         // What other bindings hold is theirs.
-        if family == Family::Sca && element.local_name() == BINDING_SCA.name {
+        if family == Family::Sca && meant_name(element) == BINDING_SCA.name {
             self.parts_of(element, &BINDING_SCA);
         } else {
             self.extension(element, family);
@@ -193,7 +194,7 @@ impl Loader<'_> {
         let mut bindings = Vec::new();
         for child in element.children() {
             let family = self.family(child);
-            match (family, child.local_name()) {
+            match (family, meant_name(child)) {
                 (Family::Nobody, _) => {}
                 (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
                     bindings.push(self.binding(child, family));

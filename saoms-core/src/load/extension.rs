@@ -5,7 +5,7 @@
 //! schemas of Apache Tuscany for its own.
 
 use super::Loader;
-use super::children::Family;
+use super::children::{Family, meant_name};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::Version;
 use crate::xml::{Attribute, Element};
@@ -14,18 +14,28 @@ use crate::xml::{Attribute, Element};
 const TUSCANY: [&str; 2] =
     ["http://tuscany.apache.org/xmlns/sca/1.0", "http://tuscany.apache.org/xmlns/sca/1.1"];
 
-/// The attribute that an element has to have.
-const REQUIRED: &[(&str, &str)] = &[
-    ("implementation.bpel", "process"),
-    ("implementation.ejb", "ejb-link"),
-    ("implementation.jee", "archive"),
-    ("implementation.osgi", "bundleSymbolicName"),
-    ("implementation.resource", "location"),
-    ("implementation.script", "script"),
-    ("implementation.spring", "location"),
-    ("implementation.widget", "location"),
-    ("implementation.xquery", "location"),
+/// The attributes that an element has to have.
+const REQUIRED: &[(&str, &[&str])] = &[
+    ("binding.gdata", &["serviceType"]),
+    ("implementation.bpel", &["process"]),
+    ("implementation.c", &["module", "componentType"]),
+    ("implementation.cpp", &["library", "header"]),
+    ("implementation.ejb", &["ejb-link"]),
+    ("implementation.jee", &["archive"]),
+    ("implementation.node", &["uri", "composite"]),
+    ("implementation.notification", &["name"]),
+    ("implementation.osgi", &["bundleSymbolicName"]),
+    ("implementation.resource", &["location"]),
+    ("implementation.spring", &["location"]),
+    ("implementation.widget", &["location"]),
+    ("implementation.xquery", &["location"]),
 ];
+
+/// Where a description of the services and references of OSGi says whose they are.
+const OSGI_OWNERS: [&str; 4] = ["service", "reference", "serviceCallback", "referenceCallback"];
+
+/// What may be done about a resource of JMS that is not there.
+const JMS_CREATE: &[&str] = &["always", "never", "ifNotExist"];
 
 /// What `binding.jms` and its `response` can hold; a name that ends with a dot stands for all that start so.
 const JMS_CHILDREN: &[&str] = &[
@@ -70,17 +80,42 @@ impl Loader<'_> {
         if family != Family::Sca && !TUSCANY.contains(&element.namespace()) {
             return;
         }
-        let name = element.local_name();
-        if let Some((_, attribute)) = REQUIRED.iter().find(|(known, _)| *known == name) {
-            self.required(element, attribute);
+        let name = meant_name(element);
+        if let Some((_, attributes)) = REQUIRED.iter().find(|(known, _)| *known == name) {
+            for attribute in *attributes {
+                self.required(element, attribute);
+            }
         }
         match name {
             "implementation.bpel" => self.process(element),
             "interface.wsdl" => self.wsdl(element, "interface"),
             "binding.ws" => self.wsdl(element, "wsdlElement"),
-            "binding.ejb" => self.one_of(element, "session-type", &["stateful", "stateless"], true),
+            "binding.ejb" => {
+                self.one_of(element, "session-type", &["stateful", "stateless"], true);
+                self.one_of(element, "ejb-version", &["EJB2", "EJB3"], true);
+            }
             "binding.jms" => self.jms(element),
+            "implementation.osgi" => self.osgi(element),
+            // It may be written inside.
+            "implementation.script" if !element.has_text() && element.children().next().is_none() => {
+                self.required(element, "script");
+            }
             _ => {}
+        }
+    }
+
+    /// The properties by which services of OSGi are found or offered.
+    fn osgi(&mut self, element: Element<'_>) {
+        for child in element.children().filter(|child| child.local_name() == "properties") {
+            if TUSCANY.contains(&child.namespace())
+                && OSGI_OWNERS.iter().all(|one| child.attribute(one).is_none())
+            {
+                let message =
+                    format!("{} says of no service or reference what it is about", quoted(child.name()));
+                let one = Diagnostic::new(&codes::MISSING_ATTRIBUTE, child.name_location(), message);
+                let known: Vec<String> = OSGI_OWNERS.into_iter().map(quoted).collect();
+                self.report(one.help(format!("give it one of the attributes {}", known.join(", "))));
+            }
         }
     }
 
@@ -163,11 +198,18 @@ impl Loader<'_> {
             match name {
                 "destination" => {
                     self.one_of(child, "type", &["queue", "topic"], false);
+                    self.one_of(child, "create", JMS_CREATE, false);
                     self.usual_type(child);
                     self.named(child);
                 }
-                "connectionFactory" | "activationSpec" => self.named(child),
+                "connectionFactory" | "activationSpec" => {
+                    self.one_of(child, "create", JMS_CREATE, false);
+                    self.named(child);
+                }
+                "resourceAdapter" | "operationProperties" => _ = self.required(child, "name"),
                 "response" => self.jms_children(child),
+                "wireFormat.jmsDefault" => self.one_of(child, "sendFormat", &["text", "bytes"], true),
+                "wireFormat.jmsObject" => _ = self.boolean(child, "wrapSingle"),
                 "headers" => {
                     self.one_of(child, "JMSDeliveryMode", &["PERSISTENT", "NON_PERSISTENT"], false);
                     self.one_of(child, "deliveryMode", &["persistent", "nonpersistent"], false);

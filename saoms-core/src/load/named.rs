@@ -163,9 +163,9 @@ fn described(composite: &Composite) -> Vec<Described> {
         if paths.is_empty() {
             continue;
         }
-        // A bundle of OSGi says nothing about services by itself.
-        let is_needed =
-            matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi");
+        // A bundle of OSGi says nothing about services by itself. Its description is called as its file is, which only `bundle` tells.
+        let is_needed = matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi")
+            && implementation.origin.element(&composite.document).attribute("bundle").is_some();
         places.extend(class.map(|class| (class, all.len())));
         let package = class.and_then(|class| Some(class.rsplit_once('.')?.0.to_owned()));
         all.push(Described { origins: vec![implementation.origin], paths, package, is_needed });

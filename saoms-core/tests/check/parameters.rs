@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::properties::robot;
-use crate::support::{faults, faults_of, fleet, outcome, part};
+use crate::support::{faults, faults_of, fleet, nested, outcome, part, shown};
 
 #[test]
 fn sources_lead_to_composite_properties() {
@@ -229,4 +229,45 @@ fn types_that_xml_schema_does_not_have_are_told_with_the_nearest() {
     "#]]
     .assert_eq(&property("xsd:itn"));
     assert_eq!(property("own:itn") + &property("xsd:unsignedByte"), "");
+}
+
+#[test]
+fn what_is_given_no_value_has_no_parts_either() {
+    expect![""].assert_eq(&faults(&format!(
+        r#"<property name="where" element="x:place" xmlns:x="urn:x"/>
+{}"#,
+        robot(r#"<property name="charger" source="$where/x"/><property name="grace" source="$where/y">5ms</property>"#)
+    )));
+}
+
+/// Where classes are taken as given, a composite may be there for components of others.
+#[test]
+fn a_value_that_a_component_has_to_give_is_awaited_of_one_that_is_not_seen() {
+    let inside = r#"<property name="pace" mustSupply="true"/>
+<component name="R"><implementation.java class="other.R"/><property name="speed" source="$pace"/></component>"#;
+    let inner = part("inner", "", inside);
+    let outer = r#"<component name="A"><implementation.composite name="t:inner"/></component>"#;
+    let outer = part("outer", "", outer);
+    let found = |texts: &[&str], assume_classes| {
+        let (_, diagnostics, sources) = nested(texts, &[], assume_classes);
+        let found = diagnostics.iter().filter(|one| one.code.id == "S2025");
+        found.map(|one| shown(one, &sources)).collect::<String>()
+    };
+    expect![[r#"
+        2:17-21 warning S2025: the property `pace` of the composite has to be given a value
+          help: write it in the file, or give `--set pace=...`
+          help: as an implementation, it takes the value that its component gives it
+    "#]]
+    .assert_eq(&found(&[&inner], true));
+    expect![[r#"
+        2:17-21 error S2025: the property `pace` of the composite has to be given a value
+          help: write it in the file, or give `--set pace=...`
+    "#]]
+    .assert_eq(&found(&[&inner], false));
+    expect![[r#"
+        2:18-19 error S2025: component `A` has to give the property `pace` of its composite a value
+          inner:2:17-21 declared here, without a value
+          help: add `<property name="pace">...</property>`
+    "#]]
+    .assert_eq(&found(&[&outer, &inner], true));
 }
