@@ -137,7 +137,7 @@ impl Outline {
             match known.holds {
                 Holds::Number => expressions.push((at, false)),
                 Holds::Condition => expressions.push((at, true)),
-                Holds::Uri => table = Some(of.at(at)),
+                Holds::Table => table = Some(of.at(at)),
                 _ => {}
             }
         }

@@ -158,7 +158,12 @@ impl Scene {
 
     /// The component of the file that an element is, or is in.
     pub(super) fn component_around(&self, element: usize) -> Option<&Component> {
-        let file = self.file();
+        self.component_in(0, element)
+    }
+
+    /// The same of any file.
+    pub(super) fn component_in(&self, file: usize, element: usize) -> Option<&Component> {
+        let file = &self.files[file];
         let components = &file.outline.components;
         let mut here = Some(element);
         while let Some(one) = here {

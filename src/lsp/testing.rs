@@ -1,6 +1,6 @@
 //! What tests of the language server share: text with a cursor in, answers out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
 use saoms_core::registry::Registry;
@@ -25,6 +25,11 @@ pub(super) fn scene_of(text: &str, others: &[(&str, &str)]) -> Scene {
         Arc::new(make(PathBuf::from("/fleet").join(name), text.into()))
     });
     Scene::new(files.collect(), Arc::clone(&REGISTRY))
+}
+
+/// The scene of a text that is in a file on disk, or would be.
+pub(super) fn scene_at(path: &Path, text: &str) -> Scene {
+    Scene::new(vec![Arc::new(File::new(path.to_owned(), text.into()))], Arc::clone(&REGISTRY))
 }
 
 /// A composite of 1.1 with this inside.

@@ -2,65 +2,10 @@
 
 use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
+use crate::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
 use crate::model::{Part, Property};
 use crate::source::{Location, Text};
 use crate::xml::Document;
-
-const XML_SCHEMA: &str = "http://www.w3.org/2001/XMLSchema";
-
-/// The simple types that XML Schema 1.0 and 1.1 have, and their common ancestor.
-const BUILT_IN: &[&str] = &[
-    "anyType",
-    "anySimpleType",
-    "anyAtomicType",
-    "string",
-    "boolean",
-    "decimal",
-    "float",
-    "double",
-    "duration",
-    "dateTime",
-    "time",
-    "date",
-    "gYearMonth",
-    "gYear",
-    "gMonthDay",
-    "gDay",
-    "gMonth",
-    "hexBinary",
-    "base64Binary",
-    "anyURI",
-    "QName",
-    "NOTATION",
-    "normalizedString",
-    "token",
-    "language",
-    "NMTOKEN",
-    "NMTOKENS",
-    "Name",
-    "NCName",
-    "ID",
-    "IDREF",
-    "IDREFS",
-    "ENTITY",
-    "ENTITIES",
-    "integer",
-    "nonPositiveInteger",
-    "negativeInteger",
-    "long",
-    "int",
-    "short",
-    "byte",
-    "nonNegativeInteger",
-    "unsignedLong",
-    "unsignedInt",
-    "unsignedShort",
-    "unsignedByte",
-    "positiveInteger",
-    "yearMonthDuration",
-    "dayTimeDuration",
-    "dateTimeStamp",
-];
 
 /// Which type of XML Schema is made of which other one.
 const DERIVED: &[(&str, &str)] = &[
@@ -251,7 +196,7 @@ fn derives(name: &str, from: &str) -> bool {
 pub(super) fn named(property: &Property, document: &Document, report: &mut Report<'_>) {
     let Some(of) = property.r#type().filter(|of| !of.is_empty()) else { return };
     let (prefix, local) = of.split_once(':').unwrap_or(("", of));
-    if BUILT_IN.contains(&local) {
+    if BUILT_IN_TYPES.contains(&local) {
         return;
     }
     let element = document.element(property.origin().element);
@@ -260,7 +205,7 @@ pub(super) fn named(property: &Property, document: &Document, report: &mut Repor
     }
     let message = format!("XML Schema has no type {}", quoted(local));
     let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message);
-    report.push(match nearest(local, BUILT_IN.iter().copied()) {
+    report.push(match nearest(local, BUILT_IN_TYPES.iter().copied()) {
         Some(meant) => {
             let meant = if prefix.is_empty() { meant.to_owned() } else { format!("{prefix}:{meant}") };
             one.suggest(replacing(of, &meant), of.location, meant)

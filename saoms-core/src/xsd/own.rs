@@ -84,6 +84,12 @@ pub(super) fn type_of(holds: Holds, is_required: bool) -> &'static str {
         | Holds::End
         | Holds::Ends
         | Holds::Source
+        | Holds::Type
+        | Holds::Element
+        | Holds::File
+        | Holds::Table
+        | Holds::Library
+        | Holds::Namespace
         | Holds::Uri
         | Holds::Names
         | Holds::Number

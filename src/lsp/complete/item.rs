@@ -23,6 +23,8 @@ pub(in crate::lsp) struct Proposal {
     /// Those with a smaller number come first.
     rank: u8,
     pub(in crate::lsp) range: Range<usize>,
+    /// What is put in elsewhere as well.
+    also: Option<(usize, String)>,
 }
 
 /// What is put into the text.
@@ -45,6 +47,7 @@ impl Proposal {
             doc: String::new(),
             rank: 5,
             range: range.clone(),
+            also: None,
         }
     }
 
@@ -60,6 +63,12 @@ impl Proposal {
 
     pub(super) fn rank(mut self, rank: u8) -> Self {
         self.rank = rank;
+        self
+    }
+
+    /// Something that is put in elsewhere, outside of the range.
+    pub(super) fn also(mut self, at: usize, text: String) -> Self {
+        self.also = Some((at, text));
         self
     }
 
@@ -101,7 +110,8 @@ impl Proposal {
             Insert::Snippet(snippet, _) if knows_snippets => (snippet, InsertTextFormat::SNIPPET),
             Insert::Snippet(_, plain) | Insert::Plain(plain) => (plain, InsertTextFormat::PLAIN_TEXT),
         };
-        let range = file.lines.range(&file.text, self.range.clone());
+        let place = |range: Range<usize>| file.lines.range(&file.text, range);
+        let range = place(self.range.clone());
         // Editors hold what is typed already against it.
         let filter_text = new_text.starts_with('<').then(|| format!("<{}", self.label));
         CompletionItem {
@@ -115,6 +125,7 @@ impl Proposal {
             })),
             filter_text,
             insert_text_format: Some(format),
+            additional_text_edits: self.also.map(|(at, text)| vec![TextEdit::new(place(at..at), text)]),
             text_edit: Some(CompletionTextEdit::Edit(TextEdit { range, new_text })),
             ..CompletionItem::default()
         }

@@ -5,19 +5,25 @@ mod elements;
 mod ends;
 mod item;
 pub(super) mod names;
+mod paths;
 #[cfg(test)]
 mod tests;
 pub(super) mod topics;
+mod types;
 mod values;
 
 use std::ops::Range;
 
 use saoms_core::diagnostic::Level;
-use saoms_core::load::vocabulary::{COMPONENT_PROPERTY, Holds, own_attributes};
+use saoms_core::load::vocabulary::{
+    BINDING_SCA, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE,
+    Holds, own_attributes,
+};
 use saoms_core::model::Multiplicity;
 
 use lsp_types::CompletionItemKind;
 
+use super::expressions::template_before;
 use super::scene::Scene;
 use super::syntax::{Cursor, local};
 pub(super) use item::Proposal;
@@ -57,6 +63,10 @@ fn value_of(
     let of_sca = kind.attributes.iter().find(|known| known.name == name);
     let own = || own_attributes(kind).find(|known| name.contains(':') && known.name == local(name));
     let Some(known) = of_sca.or_else(own) else { return Vec::new() };
+    let is_of = |other| std::ptr::eq(kind, other);
+    if let Some(inside) = in_template(scene, element, &value, at) {
+        return inside;
+    }
     match known.holds {
         Holds::Boolean => names::words(&["true", "false"], &value),
         Holds::Level => names::words(&Level::ALL.map(Level::name), &value),
@@ -72,13 +82,46 @@ fn value_of(
         Holds::Composite => names::composites(scene, element, &value),
         Holds::End | Holds::Ends => ends::complete(scene, element, name, value, at),
         Holds::Source => names::sources(scene, &value),
-        Holds::Value if std::ptr::eq(kind, &COMPONENT_PROPERTY) => {
-            values::complete(scene, element, value, at)
-        }
+        Holds::Value if is_of(&COMPONENT_PROPERTY) => values::complete(scene, element, value, at),
+        Holds::Value => values::of_parameter(scene, element, value, at),
         // The expressions are over properties of the composite.
-        Holds::Number | Holds::Condition => names::parameters(scene, &names::word_at(&file.text, value, at)),
-        Holds::Value | Holds::Name | Holds::Uri | Holds::Names | Holds::Variable | Holds::Text => Vec::new(),
+        Holds::Number => names::parameters(scene, None, &names::word_at(&file.text, value, at)),
+        Holds::Condition => {
+            let replicated = scene.component_around(element).filter(|one| one.is_replicated);
+            names::parameters(scene, replicated, &names::word_at(&file.text, value, at))
+        }
+        Holds::Type => types::complete(scene, element, &value),
+        Holds::Element => types::elements(scene, element, &value),
+        Holds::Variable => types::variables(scene, element, &value),
+        Holds::File => paths::complete(scene, &value, at, paths::is_value),
+        Holds::Table => paths::complete(scene, &value, at, paths::is_table),
+        Holds::Library => paths::libraries(scene, element, &value, at),
+        Holds::Namespace => names::namespaces(scene, &value),
+        // What the binding of a reference leads to is a target.
+        Holds::Uri if is_of(&BINDING_SCA) && in_reference(scene, element) => {
+            ends::complete(scene, element, "target", value, at)
+        }
+        Holds::Name if is_of(&COMPOSITE) => names::of_file(scene, &value),
+        Holds::Name if is_of(&COMPOSITE_SERVICE) || is_of(&COMPOSITE_REFERENCE) => {
+            names::promoted(scene, element, &value)
+        }
+        Holds::Name | Holds::Uri | Holds::Names | Holds::Text => Vec::new(),
     }
+}
+
+/// The names in the `${...}` that a byte is in; `None` where it is in none.
+fn in_template(scene: &Scene, element: usize, range: &Range<usize>, at: usize) -> Option<Vec<Proposal>> {
+    let text = &scene.file().text;
+    let component = scene.component_around(element).filter(|one| one.is_replicated)?;
+    let expression = template_before(text, range.clone(), at)?;
+    let end = text[at..range.end].find('}').map_or(range.end, |found| at + found);
+    Some(names::parameters(scene, Some(component), &names::word_at(text, expression.start..end, at)))
+}
+
+fn in_reference(scene: &Scene, element: usize) -> bool {
+    let file = scene.file();
+    let parent = file.tree.elements[element].parent;
+    parent.is_some_and(|parent| file.tree.local(&file.text, parent) == "reference")
 }
 
 /// What can stand in the content of an element.
@@ -86,12 +129,14 @@ fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     let Some(element) = parent else { return elements::in_content(scene, None, at) };
     let one = &file.tree.elements[element];
+    let is_property = |one: &usize| {
+        let kinds = [&COMPONENT_PROPERTY, &COMPOSITE_PROPERTY];
+        file.kinds[*one].is_some_and(|kind| kinds.iter().any(|known| std::ptr::eq(kind, *known)))
+    };
     let property = match (file.kinds[element], one.parent) {
-        (Some(kind), _) if std::ptr::eq(kind, &COMPONENT_PROPERTY) => Some(element),
+        (Some(_), _) => Some(element).filter(is_property),
         // A `<value>` of a property.
-        (None, Some(outer)) if file.tree.local(&file.text, element) == "value" => {
-            file.kinds[outer].filter(|kind| std::ptr::eq(*kind, &COMPONENT_PROPERTY)).map(|_| outer)
-        }
+        (None, outer) if file.tree.local(&file.text, element) == "value" => outer.filter(is_property),
         _ => None,
     };
     let Some(property) = property else { return elements::in_content(scene, parent, at) };
@@ -109,7 +154,16 @@ fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
     // What is replaced is within a line, as the protocol asks.
     let line_start = file.text[..at].rfind(['\n', '\r']).map_or(0, |found| found + 1);
     let line_end = file.text[at..].find(['\n', '\r']).map_or(file.text.len(), |found| at + found);
-    values::complete(scene, property, range.start.max(line_start)..range.end.min(line_end), at)
+    let range = range.start.max(line_start)..range.end.min(line_end);
+    if let Some(inside) = in_template(scene, element, &range, at) {
+        return inside;
+    }
+    match file.kinds[property] {
+        Some(kind) if std::ptr::eq(kind, &COMPOSITE_PROPERTY) => {
+            values::of_parameter(scene, property, range, at)
+        }
+        _ => values::complete(scene, property, range, at),
+    }
 }
 
 /// A proposal of a value.

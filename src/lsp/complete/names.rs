@@ -5,10 +5,12 @@ use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
 use saoms_core::diagnostic::codes;
+use saoms_core::expression::is_name;
 use saoms_core::registry::{ClassDeclaration, InterfaceDeclaration, PropertyDeclaration};
 
 use super::Proposal;
 use crate::lsp::describe;
+use crate::lsp::expressions::INDEX;
 use crate::lsp::outline::{Component, Loop, Named};
 use crate::lsp::scene::Scene;
 
@@ -95,7 +97,16 @@ fn given(scene: &Scene, parent: usize, except: usize) -> Vec<&str> {
 
 /// The properties that an element, a component or a loop, can be given.
 pub(in crate::lsp) fn declared(scene: &Scene, element: usize) -> Vec<(&PropertyDeclaration, Option<&str>)> {
-    let Some(component) = scene.component_around(element) else { return Vec::new() };
+    declared_in(scene, 0, element)
+}
+
+/// The same of any file.
+pub(super) fn declared_in(
+    scene: &Scene,
+    file: usize,
+    element: usize,
+) -> Vec<(&PropertyDeclaration, Option<&str>)> {
+    let Some(component) = scene.component_in(file, element) else { return Vec::new() };
     if let Some(one) = component.loops.iter().find(|one| one.name.element == element) {
         let class = loop_class(scene, component, one);
         let class = class.and_then(|class| scene.registry.get_loop(&class));
@@ -275,14 +286,47 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
         .collect()
 }
 
+/// The namespaces of the composites around a file.
+pub(super) fn namespaces(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
+    let others = scene.files.iter().skip(1).map(|other| other.outline.namespace.as_str());
+    let others: BTreeSet<&str> = others.filter(|name| !name.is_empty()).collect();
+    others.into_iter().map(|name| Proposal::new(name, CompletionItemKind::MODULE, range)).collect()
+}
+
+/// The name of a file, which its composite as a rule has as well.
+pub(super) fn of_file(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
+    let stem = scene.file().path.file_stem().and_then(|stem| stem.to_str());
+    let fits = stem.filter(|stem| !stem.contains(|c: char| c.is_whitespace() || "/&<\"'".contains(c)));
+    let one = |stem| Proposal::new(stem, CompletionItemKind::MODULE, range).detail("the name of the file");
+    fits.map(one).into_iter().collect()
+}
+
+/// The names of what a service or a reference of the composite promotes.
+pub(super) fn promoted(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
+    let ends = scene.file().outline.ends.iter().filter(|end| end.component.element == element);
+    let names: BTreeSet<&str> = ends.filter_map(|end| Some(end.part.as_ref()?.text.as_str())).collect();
+    names.into_iter().map(|name| Proposal::new(name, CompletionItemKind::INTERFACE, range)).collect()
+}
+
 /// `$name` of each property of the composite.
 pub(super) fn sources(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
     of_parameters(scene, "$", range)
 }
 
-/// The properties of the composite, each with its value.
-pub(super) fn parameters(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
-    of_parameters(scene, "", range)
+/// The names of expressions: the properties of the composite, each with its value, and the index of a component that is replicated.
+pub(super) fn parameters(
+    scene: &Scene,
+    replicated: Option<&Component>,
+    range: &Range<usize>,
+) -> Vec<Proposal> {
+    let mut all = of_parameters(scene, "", range);
+    all.retain(|one| is_name(&one.label));
+    all.extend(replicated.map(|_| {
+        Proposal::new(INDEX, CompletionItemKind::VARIABLE, range)
+            .detail("what replicas are counted by")
+            .rank(4)
+    }));
+    all
 }
 
 fn of_parameters(scene: &Scene, sign: &str, range: &Range<usize>) -> Vec<Proposal> {

@@ -8,6 +8,8 @@ use saoms_core::registry::PropertyDeclaration;
 use super::{Proposal, names, topics, value};
 use crate::lsp::describe;
 use crate::lsp::scene::Scene;
+use crate::lsp::symbol::Symbol;
+use crate::lsp::syntax::local;
 
 /// The units of durations, as often as they are meant.
 const UNITS: &[(&str, &str)] = &[
@@ -30,10 +32,12 @@ pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: 
     }
     let declared = names::declared(scene, parent);
     let Some((one, preset)) = declared.into_iter().find(|(one, _)| one.name == name) else {
-        return Vec::new();
+        let component = scene.component_around(parent);
+        let inner = component.and_then(|one| scene.inside(0, one).first().copied());
+        return inner.map_or_else(Vec::new, |inner| as_used(scene, inner, name, &range, at));
     };
     let doc = describe::property(one, preset);
-    let mut all = of(one, &file.text[range.start..at], &range);
+    let mut all = of_declared(one, &file.text[range.start..at], &range);
     if name == "ID"
         && let Some(component) = scene.component_around(property)
     {
@@ -45,8 +49,44 @@ pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: 
         .collect()
 }
 
+/// The values that a property of the composite can have.
+pub(super) fn of_parameter(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Proposal> {
+    let file = scene.file();
+    match file.tree.value(&file.text, property, "name") {
+        Some(name) => as_used(scene, 0, &file.text[name], &range, at),
+        None => Vec::new(),
+    }
+}
+
+/// The values of a property of a composite: those of its type, or else those of the first property that takes its value from it.
+fn as_used(scene: &Scene, file: usize, name: &str, range: &Range<usize>, at: usize) -> Vec<Proposal> {
+    let Symbol::Parameter { file, name } = scene.parameter(file, name) else { return Vec::new() };
+    let of = &scene.files[file];
+    let declared = of.outline.properties.iter().find(|one| one.text == name);
+    let r#type = declared.and_then(|one| of.tree.value(&of.text, one.element, "type"));
+    if r#type.is_some_and(|at| local(&of.text[at]) == "boolean") {
+        return names::words(&["true", "false"], range);
+    }
+    let mut takers = scene.unit_of(file).iter().flat_map(|&place| {
+        let sources = scene.files[place].outline.sources.iter().filter(|source| source.text == name);
+        sources.filter_map(move |source| taker(scene, place, source.element))
+    });
+    let Some(one) = takers.next() else { return Vec::new() };
+    let (doc, expected) = (describe::property(one, None), one.expected());
+    let all = of_declared(one, &scene.file().text[range.start..at], range).into_iter();
+    all.map(|item| if item.detail.is_empty() { item.detail(&expected) } else { item }.doc(&doc)).collect()
+}
+
+/// What the class declares of a property of a component of a file.
+fn taker(scene: &Scene, file: usize, property: usize) -> Option<&PropertyDeclaration> {
+    let of = &scene.files[file];
+    let name = &of.text[of.tree.value(&of.text, property, "name")?];
+    let declared = names::declared_in(scene, file, of.tree.elements[property].parent?);
+    declared.into_iter().map(|(one, _)| one).find(|one| one.name == name)
+}
+
 /// What can be proposed from the declaration, behind what is typed.
-fn of(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> Vec<Proposal> {
+fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> Vec<Proposal> {
     let is_default = |text: &str| one.default.as_deref() == Some(text);
     let mut all: Vec<Proposal> = match one.kind {
         PropertyKind::Boolean => ["true", "false"].map(|word| value(word, range)).into(),

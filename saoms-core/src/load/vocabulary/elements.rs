@@ -51,7 +51,7 @@ pub static COMPOSITE: Kind = Kind {
         ),
         known(
             "targetNamespace",
-            Holds::Uri,
+            Holds::Namespace,
             "The namespace of the composite's name, such as `urn:example:fleet`.",
         ),
         known(
@@ -236,10 +236,10 @@ pub static COMPOSITE_REFERENCE: Kind = Kind {
     children: CONTRACT,
 };
 
-const TYPE: Known = known("type", Holds::Text, "The type of the value, such as `xsd:string` or `xsd:int`.");
+const TYPE: Known = known("type", Holds::Type, "The type of the value, such as `xsd:string` or `xsd:int`.");
 const ELEMENT: Known = known(
     "element",
-    Holds::Text,
+    Holds::Element,
     "The global element of a schema, instead of a type: the value is such an element, and components take what is inside.",
 );
 const MANY: Known = known("many", Holds::Boolean, "Whether it has any number of values, each in a `value`.");
@@ -260,7 +260,7 @@ pub static COMPONENT_PROPERTY: Kind = Kind {
             Holds::Source,
             "The property of the composite that the value comes from: `$name`, or `$name/part`.",
         ),
-        known("file", Holds::Uri, "The file whose text is the value, beside this one."),
+        known("file", Holds::File, "The file whose text is the value, beside this one."),
         old("mustSupply", Holds::Boolean, "Of a composite's properties; not looked at here."),
     ],
     children: &["value"],
@@ -358,7 +358,7 @@ pub static IMPLEMENTATION_RUST: Kind = Kind {
     doc: "The class of the component, by a name that is registered; `saoms components` lists them.",
     attributes: &[
         required("class", Holds::Class, "The name of the class."),
-        known("library", Holds::Uri, "The plugin that has the class."),
+        known("library", Holds::Library, "The plugin that has the class."),
         REQUIRES,
         POLICY_SETS,
     ],

@@ -5,6 +5,7 @@
 
 mod elements;
 mod own;
+mod types;
 
 pub use elements::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
@@ -13,6 +14,7 @@ pub use elements::{
     OTHERS, VARIANTS, WIRE,
 };
 pub use own::{OWN_ATTRIBUTES, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS};
+pub use types::{BUILT_IN_TYPES, XML_SCHEMA};
 
 use crate::model::Version;
 
@@ -77,6 +79,18 @@ pub enum Holds {
     Boolean,
     /// `0..1`, `1..1`, `0..n` or `1..n`.
     Multiplicity,
+    /// The type of a value, with a prefix of its namespace.
+    Type,
+    /// A global element of a schema, with a prefix of its namespace.
+    Element,
+    /// The file of a value, beside the composite.
+    File,
+    /// The table of what differs among replicas, beside the composite.
+    Table,
+    /// The library of a plugin.
+    Library,
+    /// The namespace of a composite.
+    Namespace,
     /// A URI.
     Uri,
     /// Names with prefixes, between blanks.

@@ -39,7 +39,7 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
         "component",
         own(
             "overrides",
-            Holds::Uri,
+            Holds::Table,
             "A table (CSV) beside the composite: a line for each replica that differs, a column for each property that does.",
         ),
     ),

@@ -1,3 +1,5 @@
+mod fleets;
+
 use super::*;
 use crate::lsp::testing::{composite, scene};
 
