@@ -8,6 +8,7 @@ use super::fleet::{Fleet, Kind};
 use super::report::{Report, escaped, list, replacing};
 use super::slots::Slots;
 use crate::diagnostic::{Diagnostic, codes, nearest_few, quoted};
+use crate::expression::has_expression;
 use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
     Class, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration, TopicDeclaration,
@@ -88,6 +89,10 @@ pub(super) fn resolve<'r>(
             }
             continue;
         };
+        // An expression that is still there has a fault, which is reported.
+        if fleet.members[place].is_partial && has_expression(class) {
+            continue;
+        }
         if !is_in_library(component, class, contribution, registry, assumes, report) {
             if assumes {
                 fleet.members[place].kind = Kind::Given;

@@ -40,8 +40,10 @@ pub(super) struct Scope {
     pub(super) owner: Option<usize>,
     pub(super) units: Vec<usize>,
     pub(super) members: Vec<usize>,
-    /// Whether some of its components could not be made, which is reported: names that lead nowhere may be theirs.
+    /// Whether a fault that is reported leaves some of it unknown.
     pub(super) is_faulty: bool,
+    /// What components are called that could not be made for such a fault, with `*` for what is not known.
+    pub(super) missing: Vec<String>,
 }
 
 /// A composite with all that it includes: one space of property, service and reference names.
@@ -69,6 +71,9 @@ pub(super) struct Member<'a> {
     pub(super) is_copy: bool,
     /// Whether a condition keeps it away: it is checked as far as it can be known, and is in no fleet.
     pub(super) is_absent: bool,
+    /// Whether it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is said of what others
+    /// would share with it.
+    pub(super) is_partial: bool,
     /// Its path, where that is more than its name.
     path: Option<Box<str>>,
 }
@@ -98,6 +103,7 @@ impl<'a> Member<'a> {
             instance: None,
             is_copy: false,
             is_absent: false,
+            is_partial: false,
             path: None,
         }
     }
@@ -136,6 +142,11 @@ impl<'a> Fleet<'a> {
         by_name.get(&(scope, name)).copied()
     }
 
+    /// Whether this may be the name of a component that a fault, which is reported, kept from being made.
+    pub(super) fn is_missing(&self, scope: usize, name: &str) -> bool {
+        self.scopes[scope].missing.iter().any(|pattern| is_like(name, pattern))
+    }
+
     /// The replicas that a name such as `Robot*` stands for.
     pub(super) fn group(&self, scope: usize, name: &str) -> Option<&[usize]> {
         if !name.contains('*') || self.find(scope, name).is_some() {
@@ -160,7 +171,8 @@ impl<'a> Fleet<'a> {
 
     /// The names of all components of a scope, in order.
     pub(super) fn names(&self, scope: usize) -> impl Iterator<Item = &'a str> + Clone {
-        self.scopes[scope].members.iter().map(|member| self.members[*member].component.name.as_str())
+        let known = self.scopes[scope].members.iter().filter(|member| !self.members[**member].is_partial);
+        known.map(|member| self.members[*member].component.name.as_str())
     }
 
     /// The one unit of the composite that implements a component.
@@ -182,4 +194,20 @@ impl<'a> Fleet<'a> {
             _ => None,
         }
     }
+}
+
+/// Whether a name is like a pattern, in which `*` stands for anything.
+fn is_like(name: &str, pattern: &str) -> bool {
+    let (Some((first, rest)), mut left) = (pattern.split_once('*'), name) else { return name == pattern };
+    let Some(behind) = left.strip_prefix(first) else { return false };
+    left = behind;
+    let mut parts = rest.split('*').peekable();
+    while let Some(part) = parts.next() {
+        if parts.peek().is_none() {
+            return left.ends_with(part);
+        }
+        let Some(place) = left.find(part) else { return false };
+        left = &left[place + part.len()..];
+    }
+    true
 }

@@ -8,6 +8,7 @@ use crate::diagnostic::nearest;
 use crate::expression::{Fault, Problem, Value, has_expression, render};
 use crate::model::{Component, Property, Table};
 use crate::source::Text;
+use crate::xml::Document;
 
 /// What the replicas of a component are counted by.
 pub(super) const INDEX: &str = "index";
@@ -16,6 +17,15 @@ pub(super) const INDEX: &str = "index";
 pub(super) struct Instance {
     pub(super) index: i64,
     pub(super) names: Rc<Names>,
+    /// Where it stands for replicas that cannot be made: what is missing of it.
+    pub(super) partial: Option<Partial>,
+}
+
+/// What is not known of a component that stands for replicas with a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Partial {
+    /// Whether a table may give it more properties.
+    pub(super) has_table: bool,
 }
 
 /// A component of a replica.
@@ -47,6 +57,14 @@ impl Instance {
         }
     }
 
+    /// Whether a value of a property cannot be known here for a fault in an expression, which is reported.
+    pub(super) fn hides(&self, property: &Property, document: &Document) -> bool {
+        self.partial.is_some()
+            && (texts(property).any(|text| has_expression(text))
+                || complex_texts(property, document)
+                    .any(|text| render(&text, &mut |name| self.value(name)).is_err()))
+    }
+
     /// A component with the numbers of this index in all its texts; and the faults in these, each with the text it is in.
     pub(super) fn of(
         &self,
@@ -66,6 +84,15 @@ impl Instance {
                 Err(found) => faults.extend(found.into_iter().map(|fault| (text.clone(), fault))),
             }
         });
+        if self.partial.is_some() {
+            // What is called something unknown cannot be looked at.
+            component.services.retain(|service| !has_expression(&service.name));
+            component.references.retain(|reference| !has_expression(&reference.name));
+            component.loops.retain(|one| {
+                let texts = [Some(&one.name), one.class.as_ref(), one.before.as_ref(), one.after.as_ref()];
+                !texts.into_iter().flatten().any(|text| has_expression(text))
+            });
+        }
         if let Some((table, row)) = table {
             replace(&mut component, table, row);
         }
@@ -123,14 +150,24 @@ fn of_property(property: &mut Property, each: &mut dyn FnMut(&mut Text)) {
     }
 }
 
-/// The texts in complex values of a component, which stay in the document and are rendered when they are asked for.
-pub(super) fn complex_texts(component: &Component, document: &crate::xml::Document) -> Vec<Text> {
+/// The texts of a property that are not inside complex values.
+fn texts(property: &Property) -> impl Iterator<Item = &Text> {
+    let own = [Some(&property.name), property.value.as_ref(), property.text.as_ref()];
+    let others = [property.source(), property.from_file()];
+    let listed = property.values().iter().map(|value| &value.text);
+    own.into_iter().chain(others).flatten().chain(listed)
+}
+
+/// The texts in complex values of a property, which stay in the document and are rendered when they are asked for.
+fn complex_texts<'d>(property: &'d Property, document: &'d Document) -> impl Iterator<Item = Text> + use<'d> {
+    let listed = property.values().iter().flat_map(|value| &value.content);
+    let elements = property.content().iter().chain(listed).flat_map(|id| document.element(*id).descendants());
+    elements.filter_map(|element| element.trimmed_text()).filter(|text| has_expression(text))
+}
+
+/// Those of a component and its loops.
+pub(super) fn all_complex_texts(component: &Component, document: &Document) -> Vec<Text> {
     let of_loops = component.loops.iter().flat_map(|one| &one.properties);
     let properties = component.properties.iter().chain(of_loops);
-    let content = properties.flat_map(|property| {
-        let listed = property.values().iter().flat_map(|value| &value.content);
-        property.content().iter().chain(listed)
-    });
-    let elements = content.flat_map(|id| document.element(*id).descendants());
-    elements.filter_map(|element| element.trimmed_text()).filter(|text| has_expression(text)).collect()
+    properties.flat_map(|property| complex_texts(property, document)).collect()
 }

@@ -32,6 +32,7 @@ mod properties;
 mod raw;
 mod rename;
 mod replicas;
+mod replicate;
 mod report;
 mod rules;
 mod setting;

@@ -14,7 +14,7 @@ pub(super) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         return;
     }
     let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());
-    for member in fleet.members.iter().filter(|member| !member.component.name.is_empty()) {
+    for member in fleet.members.iter().filter(|one| !one.is_partial && !one.component.name.is_empty()) {
         let given = member.component.path.as_deref();
         let place = given.unwrap_or(&member.component.name).location;
         let earlier = first.entry(member.path()).or_insert(place);

@@ -173,6 +173,9 @@ impl<'a> Parameters<'a> {
         property: &'a Property,
         report: &mut Report<'_>,
     ) -> Result<Found<'a>, ()> {
+        if place.instance.is_some_and(|instance| instance.hides(property, &place.composite.document)) {
+            return Err(());
+        }
         if let Some(source) = property.source() {
             let raw = self.resolve(place.unit, source, report)?;
             if !raw.0.is_empty() {

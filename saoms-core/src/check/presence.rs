@@ -3,15 +3,31 @@
 use std::rc::Rc;
 
 use super::fleet::Unit;
-use super::instance::complex_texts;
+use super::instance::{Instance, all_complex_texts};
 use super::names::{Names, Outside};
-use super::replicas::{Plan, condition, wrong};
+use super::replicas::{condition, wrong};
 use super::report::Report;
 use super::unfold::{MOST_MEMBERS, Unfolding};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::expression::{Fault, render};
 use crate::model::{Component, Composite, Origin};
 use crate::source::Text;
+
+/// Whether a component is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Presence {
+    There,
+    /// A condition keeps it away.
+    Absent,
+    /// Its condition has a fault, which is reported.
+    Unknown,
+}
+
+impl Presence {
+    pub(super) const fn of(is_there: bool) -> Self {
+        if is_there { Self::There } else { Self::Absent }
+    }
+}
 
 impl<'a> Unfolding<'a> {
     /// What expressions in a unit can name.
@@ -32,17 +48,17 @@ impl<'a> Unfolding<'a> {
         names
     }
 
-    /// Whether a condition in a unit is true. A faulty one is reported, and taken as false.
-    pub(super) fn holds(&mut self, text: &Text, unit: usize, report: &mut Report<'_>) -> bool {
+    /// Whether a condition in a unit is true; `None` for a faulty one, which is reported.
+    pub(super) fn holds(&mut self, text: &Text, unit: usize, report: &mut Report<'_>) -> Option<bool> {
         let names = self.names(unit);
         let holds = condition(text, &names, &mut |name| names.value(name), report);
         if holds.is_none() {
             self.fault(unit);
         }
-        holds.unwrap_or(false)
+        holds
     }
 
-    /// Whether an include or a wire in a unit is there.
+    /// Whether an include or a wire in a unit is there. With a faulty condition it is not.
     pub(super) fn is_there(
         &mut self,
         condition: Option<&Text>,
@@ -51,7 +67,12 @@ impl<'a> Unfolding<'a> {
         report: &mut Report<'_>,
     ) -> bool {
         let Some(condition) = condition else { return true };
-        let is_there = self.holds(condition, unit, report);
+        let holds = self.holds(condition, unit, report);
+        if holds.is_none() {
+            // Names that lead nowhere may be those of its components.
+            self.miss(unit, "*".to_owned());
+        }
+        let is_there = holds.unwrap_or(false);
         *self.fleet.conditional.entry((origin.file(), origin.element)).or_default() |= is_there;
         is_there
     }
@@ -73,29 +94,40 @@ impl<'a> Unfolding<'a> {
         self.fleet.units.len() - 1
     }
 
-    /// Remembers that components of a unit could not be made.
+    /// Remembers that parts of a unit are not as they are meant.
     pub(super) fn fault(&mut self, unit: usize) {
         let scope = self.fleet.units[unit].scope;
         self.fleet.scopes[scope].is_faulty = true;
     }
 
+    /// Remembers that components of a unit with names like this could not be made.
+    pub(super) fn miss(&mut self, unit: usize, pattern: String) {
+        self.fault(unit);
+        let scope = self.fleet.units[unit].scope;
+        self.fleet.scopes[scope].missing.push(pattern);
+    }
+
     /// Reports faults in the texts of a replica.
-    pub(super) fn faults(&mut self, plan: &Plan<'a>, faults: Vec<(Text, Fault)>, report: &mut Report<'_>) {
+    pub(super) fn faults(&self, names: &Names, faults: Vec<(Text, Fault)>, report: &mut Report<'_>) {
         for (text, fault) in &faults {
-            report.push(wrong(text, fault, &plan.names, report));
+            report.push(wrong(text, fault, names, report));
         }
     }
 
     /// Whether complex values of a replicated component have faults, which are reported.
-    pub(super) fn complex(&mut self, plan: &Plan<'a>, report: &mut Report<'_>) -> bool {
+    pub(super) fn complex(
+        &self,
+        component: &Component,
+        instance: &Instance,
+        report: &mut Report<'_>,
+    ) -> bool {
         let Some(open) = self.open.last() else { return false };
         let mut has_faults = false;
-        let instance = plan.instance(plan.sample());
-        for text in complex_texts(plan.component, &open.composite.document) {
+        for text in all_complex_texts(component, &open.composite.document) {
             let faults = render(&text, &mut |name| instance.value(name)).err().unwrap_or_default();
             has_faults |= !faults.is_empty();
             for fault in &faults {
-                report.push(wrong(&text, fault, &plan.names, report));
+                report.push(wrong(&text, fault, &instance.names, report));
             }
         }
         has_faults

@@ -14,6 +14,7 @@ use super::value_type::{self, Match, Typed};
 use super::values::{Path, Use, Values};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::expression::has_expression;
 use crate::model::{Component, ComponentType, Loop, Origin, Part, Property};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
@@ -145,7 +146,9 @@ pub(super) fn check<'a>(
     let mut unset: Vec<&Text> = Vec::new();
     let mut is_sound = true;
     for property in giver.properties {
-        if property.name.is_empty() {
+        let is_hidden =
+            member.instance.is_some_and(|one| one.partial.is_some() && has_expression(&property.name));
+        if property.name.is_empty() || is_hidden {
             is_sound = false;
             continue;
         }
@@ -207,7 +210,7 @@ pub(super) fn check<'a>(
             Some(_) => {}
         }
     }
-    Checked { given, is_sound }
+    Checked { given, is_sound: is_sound && !member.is_partial }
 }
 
 /// The value of a property; `None` when its `source` has none.
@@ -270,6 +273,10 @@ fn report_missing(
     slots: &Slots<'_>,
     report: &mut Report<'_>,
 ) {
+    let partial = giver.member.instance.and_then(|instance| instance.partial);
+    if partial.is_some_and(|partial| partial.has_table) {
+        return;
+    }
     let name = declaration.name.as_str();
     let document = &giver.member.composite.document;
     let element = giver.origin.element(document);

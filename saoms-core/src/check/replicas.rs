@@ -31,7 +31,7 @@ impl<'a> Plan<'a> {
     pub(super) fn of(
         component: &'a Component,
         replicas: &'a Replicas,
-        names: Rc<Names>,
+        names: &Rc<Names>,
         left: u64,
         report: &mut Report<'_>,
     ) -> Option<Self> {
@@ -46,16 +46,14 @@ impl<'a> Plan<'a> {
             report.push(one.help("add `saoms:count=\"...\"`"));
             return None;
         };
-        if let (Some(file), None) = (&replicas.overrides, &replicas.table) {
+        let is_readable = replicas.overrides.is_none() || replicas.table.is_some();
+        if let (Some(file), false) = (&replicas.overrides, is_readable || report.has_errors()) {
             // As a rule it was reported by who tried to read it.
-            if !report.has_errors() {
-                report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
-            }
-            return None;
+            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
         }
-        let count = number(written, &names, report);
-        let from = replicas.from.as_ref().map_or(Some(1), |from| number(from, &names, report));
-        let is_named = has_index(component, &names, report);
+        let count = number(written, names, report);
+        let from = replicas.from.as_ref().map_or(Some(1), |from| number(from, names, report));
+        let is_named = has_index(component, names, report);
         let (count, from) = (count?, from?);
         let fault = |message: String, help: &str, report: &mut Report<'_>| {
             let mut one = Diagnostic::new(&codes::REPLICAS, written.location, message).help(help);
@@ -82,8 +80,9 @@ impl<'a> Plan<'a> {
             fault("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`", report);
             return None;
         }
+        let names = Rc::clone(names);
         let mut plan = Self { component, names, next: from, count, left: count, rows: HashMap::new() };
-        let is_sound = replicas.table.as_ref().is_none_or(|table| plan.rows(table, report));
+        let is_sound = is_readable && replicas.table.as_ref().is_none_or(|table| plan.rows(table, report));
         (is_sound && is_named).then_some(plan)
     }
 
@@ -94,6 +93,11 @@ impl<'a> Plan<'a> {
         Some(self.next - 1)
     }
 
+    /// Whether the replica that came last is the first one.
+    pub(super) fn is_at_first(&self) -> bool {
+        self.left + 1 == self.count
+    }
+
     /// The first replica, whether there is one or not: what can be known about the others is known by it.
     pub(super) fn sample(&self) -> i64 {
         self.next
@@ -101,7 +105,7 @@ impl<'a> Plan<'a> {
 
     /// The instance of an index.
     pub(super) fn instance(&self, index: i64) -> Instance {
-        Instance { index, names: Rc::clone(&self.names) }
+        Instance { index, names: Rc::clone(&self.names), partial: None }
     }
 
     /// What the table says about an index.
@@ -162,6 +166,12 @@ impl<'a> Plan<'a> {
     }
 }
 
+/// The index of the first replica as far as it is known, without a word about faults.
+pub(super) fn first_index(replicas: &Replicas, names: &Names) -> Option<i64> {
+    let Some(from) = &replicas.from else { return Some(1) };
+    parse(from).and_then(|one| integer(&one, &mut |name| names.value(name))).ok()
+}
+
 /// Checks that the name of a replicated component differs from replica to replica.
 fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) -> bool {
     let name = &component.name;
@@ -169,7 +179,7 @@ fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) 
         return !name.is_empty();
     }
     // A wrong expression is reported when it is used.
-    let instance = Instance { index: 0, names: Rc::clone(names) };
+    let instance = Instance { index: 0, names: Rc::clone(names), partial: None };
     if render(name, &mut |name| instance.value(name)).is_err() {
         return true;
     }

@@ -8,6 +8,7 @@ use super::fleet::Fleet;
 use super::offer::{Offer, Side};
 use super::report::{Report, escaped, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::expression::has_expression;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
 
@@ -83,7 +84,7 @@ impl<'t> Uri<'t> {
     ) -> Option<usize> {
         let found = fleet.find(scope, self.component);
         if found.is_none() {
-            if fleet.scopes[scope].is_faulty {
+            if fleet.is_missing(scope, self.component) {
                 return None;
             }
             if let Some(condition) = fleet.absent.get(&(scope, self.component)) {
@@ -129,7 +130,8 @@ pub(super) fn target(
     classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Target {
-    if is_address(text) && report.assumes {
+    // An expression that is still there has a fault, which is reported.
+    if is_address(text) && report.assumes || fleet.scopes[scope].is_faulty && has_expression(text) {
         return Target::Open;
     }
     let Some(uri) = Uri::of(text, 3, report) else { return Target::Wrong };

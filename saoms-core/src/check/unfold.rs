@@ -8,10 +8,10 @@ use super::fleet::{Fleet, Kind, Member, Scope, Unit};
 use super::instance::{Instance, Replica};
 use super::once;
 use super::options::Options;
-use super::replicas::{MOST_REPLICAS, Plan, condition};
+use super::presence::Presence;
+use super::replicas::{MOST_REPLICAS, Plan};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::expression::pattern;
 use crate::model::{Component, Composite, Contribution, Include, Link, Missing, Naming};
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
@@ -98,8 +98,8 @@ pub(super) struct Unfolding<'a> {
     pub(super) options: &'a Options,
     /// How many components the composites come to that were asked about.
     sizes: HashMap<usize, usize>,
-    replicas: End<'a, Replica>,
-    replicas_left: u64,
+    pub(super) replicas: End<'a, Replica>,
+    pub(super) replicas_left: u64,
 }
 
 /// How many components a composite comes to, known before they are made.
@@ -126,7 +126,7 @@ fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut Hash
 pub(super) struct Open<'a> {
     place: usize,
     pub(super) composite: &'a Composite,
-    unit: usize,
+    pub(super) unit: usize,
     /// What the composites around it say of autowire, its own word before theirs.
     autowire: bool,
     /// What names it.
@@ -134,7 +134,7 @@ pub(super) struct Open<'a> {
     next_component: usize,
     next_include: usize,
     /// Replicas of the last component that are still to be made.
-    plan: Option<Plan<'a>>,
+    pub(super) plan: Option<Plan<'a>>,
     /// Whether a condition keeps it away.
     is_absent: bool,
 }
@@ -256,78 +256,18 @@ impl<'a> Unfolding<'a> {
         self.open(place, composite, unit, Some(naming), report);
     }
 
-    fn component(&mut self, component: &'a Component, report: &mut Report<'_>) {
-        let Some(open) = self.open.last() else { return };
-        let unit = open.unit;
-        let Some(replicas) = &component.replicas else {
-            let condition = component.condition.as_deref();
-            let is_absent = condition.is_some_and(|condition| !self.holds(condition, unit, report));
-            return self.member(component, component, None, is_absent, report);
-        };
-        let names = self.names(unit);
-        let Some(plan) = Plan::of(component, replicas, names, self.replicas_left, report) else {
-            self.fault(unit);
-            return;
-        };
-        let group = (self.fleet.units[unit].scope, pattern(&component.name));
-        let (is_empty, index) = (plan.count == 0, plan.sample());
-        self.fleet.groups.entry(group).or_default();
-        if self.complex(&plan, report) {
-            self.fault(unit);
-            return;
-        }
-        if is_empty {
-            let instance = plan.instance(index);
-            let (made, faults) = instance.of(component, None);
-            self.faults(&plan, faults, report);
-            let Replica { component: made, instance } =
-                self.replicas.add(Replica { component: made, instance });
-            return self.member(component, made, Some(instance), true, report);
-        }
-        self.replicas_left -= plan.count;
-        if let Some(open) = self.open.last_mut() {
-            open.plan = Some(plan);
-        }
-    }
-
-    /// Makes one of the replicas of a component; `false` with a fault that the others would have as well.
-    fn replica(&mut self, plan: &Plan<'a>, index: i64, report: &mut Report<'_>) -> bool {
-        let Some(open) = self.open.last() else { return false };
-        let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
-        let instance = plan.instance(index);
-        let (made, faults) = instance.of(plan.component, plan.row(index));
-        let Replica { component, instance } = self.replicas.add(Replica { component: made, instance });
-        report.about_replica(&component.name, index);
-        let asked = plan.component.condition.as_deref();
-        let holds = asked.map(|text| condition(text, &plan.names, &mut |name| instance.value(name), report));
-        let is_absent = matches!(holds, Some(Some(false)));
-        let is_faulty = !faults.is_empty() || matches!(holds, Some(None));
-        self.faults(plan, faults, report);
-        report.about_all();
-        if is_faulty || self.is_beyond(plan.component, report) {
-            self.fault(unit);
-            return false;
-        }
-        let member = self.fleet.members.len();
-        self.member(plan.component, component, Some(instance), is_absent, report);
-        if !is_absent && !self.fleet.units[unit].is_absent {
-            self.fleet.groups.entry((scope, pattern(&plan.component.name))).or_default().push(member);
-        }
-        true
-    }
-
     /// Adds a component as it is `written`, and what is inside it.
-    fn member(
+    pub(super) fn member(
         &mut self,
         written: &'a Component,
         component: &'a Component,
         instance: Option<&'a Instance>,
-        is_absent: bool,
+        presence: Presence,
         report: &mut Report<'_>,
     ) {
         let Some(open) = self.open.last() else { return };
         let (composite, unit, autowire) = (open.composite, open.unit, open.autowire);
-        let is_seen = !is_absent && !open.is_absent;
+        let is_seen = presence != Presence::Absent && !open.is_absent;
         let scope = self.fleet.units[unit].scope;
         let index = self.fleet.members.len();
         let mut member = Member::new(composite, unit, scope, component);
@@ -335,6 +275,10 @@ impl<'a> Unfolding<'a> {
         member.autowire = autowire;
         member.instance = instance;
         member.is_absent = !is_seen;
+        member.is_partial = presence == Presence::Unknown
+            || instance.is_some_and(|instance| instance.partial.is_some())
+            || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
+        let is_partial = member.is_partial;
         member.is_copy = instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy);
         let own = component.path.as_deref().unwrap_or(&component.name);
         match owner {
@@ -350,6 +294,10 @@ impl<'a> Unfolding<'a> {
         match self.fleet.by_name.get(&(scope, name)) {
             _ if name.is_empty() => {}
             None if is_seen => _ = self.fleet.by_name.insert((scope, name), index),
+            Some(_) if is_seen && is_partial => {}
+            Some(&first) if is_seen && self.fleet.members[first].is_partial => {
+                self.fleet.by_name.insert((scope, name), index);
+            }
             Some(&first) if is_seen => {
                 report.about(&self.fleet.members[index]);
                 self.repeated(component, first, report);
@@ -361,7 +309,10 @@ impl<'a> Unfolding<'a> {
                 self.fleet.absent.insert((scope, name), condition);
             }
         }
-        if let Some(naming) = Naming::of_component(component) {
+        let hides = |property| instance.is_some_and(|one| one.hides(property, &composite.document));
+        if let Some(naming) = Naming::of_component(component)
+            && !component.properties.iter().any(hides)
+        {
             self.inner(index, naming, !is_seen, report);
         }
     }

@@ -42,6 +42,9 @@ impl<'a> Unique<'a> {
         checked: &Checked,
         report: &mut Report<'_>,
     ) {
+        if member.is_partial {
+            return;
+        }
         let component = member.path();
         for (slot, given) in class.slots.all.iter().zip(&checked.given) {
             let Some(declaration) = slot.main() else { continue };

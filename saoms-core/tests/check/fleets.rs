@@ -147,6 +147,9 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
           help: give each its own name
         11:19-26 error S2045: `${` is never closed (in `I${index`, index 1)
           help: write `${...}`, or `$${` for `${` itself
+        12:27-28 error S2045: after `:` the number of digits is expected, with a `0` before it (in `J${index:3}`, index 1)
+          help: as in `${index:03}`, which makes 007 of 7
+          fix: replace `3` with `03` [12:27-28 "03"]
         12:44-49 error S2045: the composite has no property `robts`
           fix: replace `robts` with `robots` [12:44-49 "robots"]
         13:29-40 error S1007: `component` has no attribute `saoms:cuont`
@@ -155,6 +158,8 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
           help: it is an attribute of SAOMS: write `saoms:count`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
         15:42-43 error S2046: the indices go beyond 64 bits
           help: choose a smaller `saoms:from`
+        16:18-27 error S3006: component `N1` lacks the property `ID` (index 1)
+          help: add `<property name="ID">...</property>`: a text that is not empty
         16:128-131 error S2045: the composite has no property `nix`
           help: its properties are `many`, `robots` and `site`
     "#]].assert_eq(&of(
@@ -179,6 +184,8 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
         3:49-55 error S2046: 4000000 replicas are more than a fleet can have
           --set:1:8-15 `robots` is this
           help: a fleet has at most 100000 replicas
+        5:66-75 error S3008: property `charger.y`: `4000000` is out of range: expected a whole number from 0 to 10 (in `Robot001`, index 1)
+          help: the default is `0`
         7:44-50 error S2046: 4000000 replicas are more than a fleet can have
           --set:1:8-15 `robots` is this
           help: a fleet has at most 100000 replicas
@@ -437,6 +444,9 @@ fn values_come_from_the_environment_unless_somebody_gives_one() {
         3:42-48 error S2045: here is the text `many`, and a whole number is expected
           environment:1:8-12 `robots` is this
           help: `docs/fleets.md` says what expressions are
+        environment:1:7-8 error S3008: property `speed`: `9` is out of range: expected a number from 0.0 to 2.5 [m/s] (in `R1`, index 1)
+          4:32-38 used here as `speed`
+          help: `speed`: How fast it drives; the default is `1.0`
     "#]]
     .assert_eq(&found(&[("SPEED", "9"), ("ROBOTS", "many")], &[]));
 }

@@ -22,6 +22,7 @@ mod rules;
 mod severities;
 mod support;
 mod tasks;
+mod together;
 mod topics;
 mod wires;
 mod wiring;
