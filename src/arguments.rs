@@ -100,7 +100,8 @@ pub(crate) enum Command {
 /// What describes a fleet.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct FleetArguments {
-    /// Composite files, not standard input; several form one fleet
+    /// Composite files, `-` for standard input; several form one fleet. A folder is a contribution: `check` looks at all of it, others
+    /// take what its `sca-contribution.xml` calls deployable, or the only composite that runs by itself
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
 

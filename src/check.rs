@@ -6,19 +6,26 @@ use serde_json::{Value, json};
 
 use crate::Exit;
 use crate::arguments::{CheckArguments, CheckFormat};
-use crate::fleet::checked;
+use crate::folder::{Several, checked_each};
 use crate::output::{counted, eprint, print};
 use crate::wiring;
 
 pub(crate) fn check(arguments: &CheckArguments) -> Exit {
     let asked =
         Options { assume_classes: arguments.assume_classes, wiring: arguments.wiring, ..Options::default() };
-    let outcome = match checked(&arguments.fleet, asked) {
+    let Several { checked: outcome, assemblies, fleets } = match checked_each(&arguments.fleet, asked) {
         Ok(outcome) => outcome,
         Err(exit) => return exit,
     };
-    let wired = outcome.assembly.as_ref().filter(|_| arguments.wiring);
-    let wiring = wired.map(wiring::value);
+    let wired = || assemblies.iter().filter(|_| arguments.wiring);
+    let wiring = match (arguments.wiring, &assemblies[..]) {
+        (false, _) | (true, []) => None,
+        (true, [(_, only)]) if fleets == 1 => Some(wiring::value(only)),
+        (true, _) => {
+            let by_file = wired().map(|(path, one)| (path.display().to_string(), wiring::value(one)));
+            Some(Value::Object(by_file.collect()))
+        }
+    };
     match arguments.format {
         CheckFormat::Json => print(&written(outcome.json(), wiring)),
         CheckFormat::Sarif => {
@@ -30,16 +37,20 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
         }
         CheckFormat::Human => {
             eprint(&outcome.human(Severity::Note));
-            if let Some(assembly) = wired {
+            for (path, assembly) in wired() {
+                if fleets > 1 {
+                    print(&format!("{}\n", path.display()));
+                }
                 print(&wiring::text(assembly));
             }
             let errors = counted(outcome.count(Severity::Error), "error");
             let warnings = counted(outcome.count(Severity::Warning), "warning");
-            print(&match &outcome.assembly {
-                Some(assembly) => {
-                    format!("{}: {errors}, {warnings}\n", counted(assembly.components.len(), "component"))
-                }
-                None => format!("{errors}, {warnings}\n"),
+            let components = assemblies.iter().map(|(_, assembly)| assembly.components.len()).sum();
+            let components = counted(components, "component");
+            print(&match (fleets, assemblies.len()) {
+                (2.., _) => format!("{fleets} fleets, {components}: {errors}, {warnings}\n"),
+                (_, 1) => format!("{components}: {errors}, {warnings}\n"),
+                _ => format!("{errors}, {warnings}\n"),
             });
         }
     }

@@ -1,50 +1,81 @@
 //! From composite files to an assembly, or to the diagnostics that say why there is none.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, Setting, SeveritySetting, Variable, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
-use saoms_core::load::{load_file, load_named, read, read_values};
+use saoms_core::load::{STANDARD_INPUT, load_file, load_named, read, read_from, read_values};
 use saoms_core::model::{Composite, Contribution};
 use saoms_core::plugin::{Search, open_named};
 use saoms_core::registry::Registry;
-use saoms_core::source::Sources;
+use saoms_core::source::{FileId, Sources};
 use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
+use crate::folder;
 use crate::plugins::{registry, search};
+
+/// The option that sets composite properties.
+pub(crate) const SET: &str = "--set";
+/// The option that sets severities.
+pub(crate) const SEVERITY: &str = "--severity";
+/// The name that stands for standard input.
+pub(crate) const INPUT: &str = "-";
 
 /// The outcome of loading and checking.
 pub(crate) struct Checked {
     /// What is to run; absent where there was an error.
     pub(crate) assembly: Option<Assembly>,
-    contribution: Contribution,
+    pub(crate) contribution: Contribution,
     pub(crate) sources: Sources,
     /// Those that are kept for the record alone among them.
-    diagnostics: Vec<Diagnostic>,
+    pub(crate) diagnostics: Vec<Diagnostic>,
 }
 
-/// Loads the files and checks them as one fleet, as it is asked.
+/// Loads the files and checks them as one fleet, as it is asked. Folders stand for the fleets that run in them.
 ///
 /// # Errors
 /// A plugin cannot be used, which was told.
 pub(crate) fn checked(arguments: &FleetArguments, asked: Options) -> Result<Checked, Exit> {
-    let registry = registry(&arguments.plugins, &arguments.files)?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
+    let files = folder::one_fleet(&arguments.files, arguments.max_size, &mut sources, &mut diagnostics);
+    let options = options(arguments, asked, &mut sources, &mut diagnostics);
+    let registry = registry(&arguments.plugins, &files)?;
+    let search = search(&arguments.plugins, &files);
+    Ok(checked_with(&files, arguments.max_size, options, registry, &search, sources, diagnostics))
+}
+
+/// What the command line says of a check.
+pub(crate) fn options(
+    arguments: &FleetArguments,
+    asked: Options,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Options {
     let settings = arguments.settings.iter();
     let settings: Vec<Setting> =
-        settings.filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics)).collect();
+        settings.filter_map(|text| Setting::parse(SET, text, sources, diagnostics)).collect();
     let severities = arguments.severities.iter();
-    let severities = severities
-        .filter_map(|text| SeveritySetting::parse("--severity", text, &mut sources, &mut diagnostics))
-        .collect();
-    let options = Options { settings, severities, ..asked };
-    let search = search(&arguments.plugins, &arguments.files);
-    Ok(checked_with(&arguments.files, arguments.max_size, options, registry, &search, sources, diagnostics))
+    let severities =
+        severities.filter_map(|text| SeveritySetting::parse(SEVERITY, text, sources, diagnostics)).collect();
+    Options { settings, severities, ..asked }
+}
+
+/// Reads a file; `-` is standard input.
+pub(crate) fn read_or_input(
+    path: &Path,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<FileId> {
+    if path == Path::new(INPUT) {
+        return read_from(std::io::stdin().lock(), STANDARD_INPUT, max_size, sources, diagnostics);
+    }
+    read(path, max_size, sources, diagnostics)
 }
 
 /// The same with these classes and those of the libraries that the composites name; what was read and found before is kept.
@@ -59,7 +90,7 @@ pub(crate) fn checked_with(
 ) -> Checked {
     let mut composites = Vec::new();
     for path in files {
-        let file = read(path, max_size, &mut sources, &mut diagnostics);
+        let file = read_or_input(path, max_size, &mut sources, &mut diagnostics);
         let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
             continue;
         };

@@ -6,16 +6,13 @@ use std::path::Path;
 
 use saoms_core::diagnostic::{Diagnostics, human};
 use saoms_core::format::format;
-use saoms_core::load::{read, read_from};
 use saoms_core::source::{FileId, Sources};
 use saoms_core::xml;
 
 use crate::Exit;
 use crate::arguments::FmtArguments;
+use crate::fleet::{INPUT, read_or_input};
 use crate::output::{eprint, print, try_print};
-
-/// The name that stands for standard input.
-const STANDARD_INPUT: &str = "-";
 
 pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     let (mut is_wrong, mut has_failed) = (false, false);
@@ -56,14 +53,9 @@ enum Outcome {
 }
 
 fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
-    let is_input = path == Path::new(STANDARD_INPUT);
+    let is_input = path == Path::new(INPUT);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = if is_input {
-        let input = io::stdin().lock();
-        read_from(input, "<stdin>", arguments.max_size, &mut sources, &mut diagnostics)
-    } else {
-        read(path, arguments.max_size, &mut sources, &mut diagnostics)
-    };
+    let file = read_or_input(path, arguments.max_size, &mut sources, &mut diagnostics);
     let formatted = file.and_then(|file| formatted(file, arguments.width, &sources, &mut diagnostics));
     let (Some(file), Some(formatted)) = (file, formatted) else {
         let diagnostics = diagnostics.into_sorted();

@@ -4,23 +4,20 @@ use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 
-use saoms_core::check::{Census, Options, Setting, SeveritySetting, Variable};
+use saoms_core::check::{Census, Options, Variable};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human};
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
-use saoms_core::load::{load_file, load_named, read, read_values};
+use saoms_core::load::{load_file, load_named, read_values};
 use saoms_core::model::Contribution;
 use saoms_core::plugin::open_named;
 use saoms_core::source::Sources;
 
 use crate::Exit;
 use crate::arguments::{GraphArguments, Picture};
+use crate::fleet::{SET, SEVERITY, options, read_or_input};
+use crate::folder::one_fleet;
 use crate::output::{counted, eprint, try_print};
 use crate::plugins::{registry, search};
-
-/// The option that sets composite properties.
-const SET: &str = "--set";
-/// The option that sets severities.
-const SEVERITY: &str = "--severity";
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
@@ -41,8 +38,9 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let fleet = &arguments.fleet;
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let mut composites = Vec::new();
-    for path in &fleet.files {
-        let file = read(path, fleet.max_size, &mut sources, &mut diagnostics);
+    let files = one_fleet(&fleet.files, fleet.max_size, &mut sources, &mut diagnostics);
+    for path in &files {
+        let file = read_or_input(path, fleet.max_size, &mut sources, &mut diagnostics);
         let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
             continue;
         };
@@ -51,21 +49,15 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     }
     let mut contribution = Contribution::of(composites);
     load_named(&mut contribution, fleet.max_size, &mut sources, &mut diagnostics);
-    let settings = fleet.settings.iter();
-    let settings =
-        settings.filter_map(|text| Setting::parse(SET, text, &mut sources, &mut diagnostics)).collect();
-    let severities = fleet.severities.iter();
-    let severities = severities
-        .filter_map(|text| SeveritySetting::parse(SEVERITY, text, &mut sources, &mut diagnostics))
-        .collect();
+    let asked = options(fleet, Options::default(), &mut sources, &mut diagnostics);
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
-    let options = Options { settings, variables, severities, ..Options::default() };
-    let mut registry = match registry(&fleet.plugins, &fleet.files) {
+    let options = Options { variables, ..asked };
+    let mut registry = match registry(&fleet.plugins, &files) {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
-    open_named(&mut contribution, &search(&fleet.plugins, &fleet.files), &sources, &mut registry);
+    open_named(&mut contribution, &search(&fleet.plugins, &files), &sources, &mut registry);
     let census = Census::of(&contribution, &registry, &options, &sources, &mut diagnostics);
     let found = diagnostics.into_sorted();
     let is_of_option = |one: &&Diagnostic| matches!(sources.get(one.location.file).path(), SET | SEVERITY);

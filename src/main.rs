@@ -11,6 +11,7 @@ mod console;
 mod expand;
 mod fleet;
 mod fmt;
+mod folder;
 mod graph;
 mod lsp;
 mod new;

@@ -1,6 +1,7 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
 use std::io;
+use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 
@@ -15,7 +16,7 @@ use signal_hook::iterator::Signals;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format, RunArguments};
 use crate::console::Console;
-use crate::fleet::checked;
+use crate::fleet::{INPUT, checked};
 use crate::output::{counted, eprint, print};
 use crate::paths::Paths;
 use crate::reload::{Reload, Watched};
@@ -26,6 +27,10 @@ use crate::watch::Watch;
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut files = arguments.fleet.clone();
     files.plugins.copies = arguments.reload;
+    if arguments.reload && files.files.iter().any(|path| path == Path::new(INPUT)) {
+        eprint("error: `--reload` reads composites again, which standard input cannot be\n");
+        return Exit::WrongInput;
+    }
     let Some(assembly) = assembly(arguments, &files) else { return Exit::WrongInput };
     if !results::writable(arguments) {
         return Exit::WrongInput;

@@ -8,6 +8,8 @@ use crate::source::Text;
 pub struct Options {
     /// Values of composite properties that count in place of those in the files.
     pub settings: Vec<Setting>,
+    /// Whether the settings are those of several fleets: one of a property that is not there is then a note.
+    pub shared_settings: bool,
     /// Environment variables that composite properties can take their values from.
     pub variables: Vec<Variable>,
     /// Severities that count where composites say nothing else.

@@ -89,7 +89,7 @@ impl<'a> Parameters<'a> {
                 }
             }
         }
-        parameters.set(fleet, &options.settings, report);
+        parameters.set(fleet, options, report);
         let declared = parameters.units.iter_mut().flat_map(|unit| unit.by_name.values_mut());
         for parameter in declared.filter(|parameter| parameter.given.is_none()) {
             let named = parameter.property.env();
@@ -130,9 +130,9 @@ impl<'a> Parameters<'a> {
         fleet.scopes.first().into_iter().flat_map(|scope| scope.units.iter().copied())
     }
 
-    fn set(&mut self, fleet: &Fleet<'a>, settings: &'a [Setting], report: &mut Report<'_>) {
+    fn set(&mut self, fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) {
         let mut first: HashMap<&str, &Setting> = HashMap::new();
-        for setting in settings {
+        for setting in &options.settings {
             if let Some(earlier) = first.insert(&setting.name, setting) {
                 let message = format!("{} is set twice", quoted(&setting.name));
                 report.push(
@@ -157,7 +157,10 @@ impl<'a> Parameters<'a> {
                 let message = format!("no composite has a property {}", quoted(&setting.name));
                 let at = setting.name.location;
                 let known = ("the properties of the composite are", names.iter().copied());
-                let one = report.unknown(&codes::UNKNOWN_SETTING, at, message, &setting.name, known);
+                let mut one = report.unknown(&codes::UNKNOWN_SETTING, at, message, &setting.name, known);
+                if options.shared_settings {
+                    one = one.severity(Severity::Note);
+                }
                 report.push(match names.is_empty() {
                     true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
                     false => one,

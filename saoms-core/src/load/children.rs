@@ -41,14 +41,17 @@ impl Loader<'_> {
                         return Family::Sca;
                     }
                     let message = format!(
-                        "{} is of {}, and the composite is of {}",
+                        "{} is of {}, and the {} is of {}",
                         quoted(element.name()),
                         version.label(),
+                        root.local_name(),
                         self.version.label()
                     );
                     let one = Diagnostic::new(&codes::OTHER_VERSION, location, message);
                     let help = "a composite and all of SCA inside it are of one namespace";
-                    self.report(one.label(root.name_location(), "the composite").help(help));
+                    self.report(
+                        one.label(root.name_location(), format!("the {}", root.local_name())).help(help),
+                    );
                     Family::Sca
                 }
             },

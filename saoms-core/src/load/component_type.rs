@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::children::Family;
+use super::root::of_another_kind;
 use super::vocabulary::{COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE_PROPERTY};
 use super::{Gathered, Loader};
-use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
+use crate::diagnostic::Diagnostics;
 use crate::model::{Component, ComponentType, Composite, ImplementationKind, Origin, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
@@ -30,10 +31,8 @@ pub fn load_component_type(
     let root = document.root();
     let version = Version::from_namespace(root.namespace());
     let Some(version) = version.filter(|_| root.local_name() == ENDING) else {
-        let message =
-            format!("the root element is {} and has to be `componentType` of SCA", quoted(root.name()));
-        let one = Diagnostic::new(&codes::ROOT, root.name_location(), message);
-        diagnostics.push(one.help("a file of this name describes the implementation of the same name"));
+        let help = "a file of this name describes the implementation of the same name";
+        diagnostics.push(of_another_kind(root, ENDING, help));
         return None;
     };
     let namespace = root.namespace().to_owned();

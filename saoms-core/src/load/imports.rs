@@ -3,52 +3,14 @@
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use super::read;
-use super::shelf::{DESCRIPTIONS, Shelf};
-use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
-use crate::model::Version;
+use super::description::{self, Description, Kind};
+use super::shelf::Shelf;
+use crate::diagnostic::{Diagnostics, quoted};
 use crate::source::{Sources, identity};
-use crate::xml;
 
 /// Folders beside a contribution in which those that it imports from are looked for.
 const MOST_BESIDE: usize = 1_000;
-
-/// What is imported and exported: the ending of the element, and the attribute that says what.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Definitions of a namespace, as composites.
-    Namespace,
-    /// What belongs to classes of a package.
-    Java,
-}
-
-impl Kind {
-    fn of_element(ending: &str) -> Option<(Self, &'static str)> {
-        match ending {
-            "" => Some((Self::Namespace, "namespace")),
-            ".java" => Some((Self::Java, "package")),
-            _ => None,
-        }
-    }
-}
-
-/// One `import` or `export`.
-struct Entry {
-    kind: Kind,
-    what: String,
-    /// The folder of the other contribution, where it is said.
-    location: Option<PathBuf>,
-}
-
-/// What the description of a contribution says.
-#[derive(Default)]
-struct Description {
-    path: PathBuf,
-    imports: Vec<Entry>,
-    exports: Vec<Entry>,
-}
 
 /// The descriptions of contributions, each read once and when it is needed.
 pub(super) struct Imports {
@@ -154,7 +116,8 @@ impl Imports {
                 lacking.push(format!("write `<import namespace=\"{namespace}\"/>` in {own}"));
             }
             if !is_exported {
-                let description = quoted(&description_in(&holder).unwrap_or(holder).display().to_string());
+                let description =
+                    quoted(&description::path_in(&holder).unwrap_or(holder).display().to_string());
                 lacking.push(format!("write `<export namespace=\"{namespace}\"/>` in {description}"));
             }
             hints.push(format!("the contribution in {other} has it: {}", lacking.join(", and ")));
@@ -183,20 +146,10 @@ impl Imports {
     ) -> Option<&Description> {
         let max_size = self.max_size;
         let known = self.descriptions.entry(root.to_owned()).or_insert_with(|| {
-            description_in(root).map(|path| described(path, max_size, sources, diagnostics))
+            description::path_in(root).map(|path| Description::read(path, max_size, sources, diagnostics))
         });
         known.as_ref()
     }
-}
-
-impl Entry {
-    fn is(&self, kind: Kind, what: &str) -> bool {
-        self.kind == kind && self.what == what
-    }
-}
-
-fn description_in(root: &Path) -> Option<PathBuf> {
-    DESCRIPTIONS.iter().map(|name| root.join(name)).find(|path| path.is_file())
 }
 
 /// The folders of contributions in the folder that a contribution is in.
@@ -209,48 +162,7 @@ fn beside(root: &Path) -> Vec<PathBuf> {
     let here = if around.as_os_str().is_empty() { Path::new(".") } else { &around };
     let entries = fs::read_dir(here).into_iter().flatten().take(MOST_BESIDE).flatten();
     let mut all: Vec<PathBuf> = entries.map(|entry| around.join(entry.file_name())).collect();
-    all.retain(|folder| description_in(folder).is_some());
+    all.retain(|folder| description::path_in(folder).is_some());
     all.sort_unstable();
     all
-}
-
-/// Reads a description. What is wrong with it is reported.
-fn described(
-    path: PathBuf,
-    max_size: u64,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) -> Description {
-    let mut made = Description { path, ..Description::default() };
-    let Some(file) = read(&made.path, max_size, sources, diagnostics) else { return made };
-    let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
-    fault.into_iter().for_each(|fault| diagnostics.push(fault));
-    let Some(document) = document.map(Arc::new) else { return made };
-    let root = document.root();
-    if root.local_name() != "contribution" || Version::from_namespace(root.namespace()).is_none() {
-        let message =
-            format!("the root element is {} and has to be `contribution` of SCA", quoted(root.name()));
-        let one = Diagnostic::new(&codes::ROOT, root.name_location(), message);
-        diagnostics.push(one.severity(Severity::Warning).help("what it imports and exports is not known"));
-        return made;
-    }
-    for child in root.children().filter(|child| child.namespace() == root.namespace()) {
-        let name = child.local_name();
-        let (list, ending) = match (name.strip_prefix("import"), name.strip_prefix("export")) {
-            (Some(ending), _) => (&mut made.imports, ending),
-            (_, Some(ending)) => (&mut made.exports, ending),
-            _ => continue,
-        };
-        let Some((kind, attribute)) = Kind::of_element(ending) else { continue };
-        let text = |name| child.attribute(name).map(|one| one.trimmed().as_str().to_owned());
-        let Some(what) = text(attribute).filter(|what| !what.is_empty()) else {
-            let message = format!("`{name}` lacks the attribute `{attribute}`");
-            diagnostics.push(Diagnostic::new(&codes::MISSING_ATTRIBUTE, child.name_location(), message));
-            continue;
-        };
-        // The addresses of contributions elsewhere are no folders.
-        let location = text("location").filter(|location| !location.contains(':')).map(PathBuf::from);
-        list.push(Entry { kind, what, location });
-    }
-    made
 }

@@ -3,7 +3,9 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::imports::{Imports, Kind};
+use super::description::Kind;
+use super::imports::Imports;
+use super::read::STANDARD_INPUT;
 use super::shelf::Shelf;
 use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
@@ -21,7 +23,7 @@ const OFFERED: usize = 3;
 /// there is none. What is not there is looked for in the contributions that export its namespace (for component types, its package), where the
 /// description of its own imports that: those of the composites that are given together, those in folders beside it, and the folder that
 /// the import has as its `location`. No file is opened that is not needed, and a large folder is given up after some ten thousand entries.
-/// Texts that were not read from files are not looked at.
+/// Texts that were not read from files are not looked at, but for [`STANDARD_INPUT`].
 ///
 /// What is wrong with a file that is found is reported; that one is not found is for the checker to say.
 pub fn load_named(
@@ -64,7 +66,7 @@ pub fn load_named(
             .collect();
         let described = described(composite);
         if wanted.is_empty() && described.is_empty()
-            || !(path.is_file() || sources.open().get(&path).is_some())
+            || !(path.is_file() || sources.open().get(&path).is_some() || path == Path::new(STANDARD_INPUT))
         {
             continue;
         }
@@ -184,7 +186,11 @@ struct Wanted {
 
 /// The warning that a name leads to one of several files, which one of them nobody says.
 fn ambiguous(wanted: &Wanted, found: &Path, twins: &[PathBuf]) -> Option<Diagnostic> {
-    let name = |path: &Path| quoted(&path.file_name().unwrap_or_default().to_string_lossy());
+    let is_beside = twins.iter().all(|twin| twin.parent() == found.parent());
+    let name = |path: &Path| match path.file_name() {
+        Some(name) if is_beside => quoted(&name.to_string_lossy()),
+        _ => quoted(&path.display().to_string()),
+    };
     let first = twins.first()?;
     let others = match twins.len() {
         1 => name(first),
@@ -197,7 +203,8 @@ fn ambiguous(wanted: &Wanted, found: &Path, twins: &[PathBuf]) -> Option<Diagnos
     );
     let one = Diagnostic::new(&codes::COMPOSITE_REPEATED, wanted.at, message);
     Some(
-        one.severity(Severity::Warning).help("give each its own name, or move one of them to another folder"),
+        one.severity(Severity::Warning)
+            .help("give each its own name, or move one of them to another contribution"),
     )
 }
 

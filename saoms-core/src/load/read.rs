@@ -11,6 +11,9 @@ use crate::source::{FileId, Location, OpenTexts, Sources, Span};
 /// The size in bytes above which a file is refused unless something else is set: 256 MB.
 pub const MAX_SIZE: u64 = 256_000_000;
 
+/// What a text that comes from standard input is called. Its folder is the current one.
+pub const STANDARD_INPUT: &str = "<stdin>";
+
 /// Sources name bytes with 32 bits, and a byte behind the end must have a name.
 const LIMIT: u64 = u32::MAX as u64 - 1;
 

@@ -96,3 +96,20 @@ fn namespaces() -> String {
     let all = Version::ALL.map(|version| format!("`{}` ({})", version.namespace(), version.label()));
     format!("{}, {} or {}", all[0], all[1], all[2])
 }
+
+/// The fault of a file whose root is not the element of SCA that it has to be, with what such a file is for.
+pub(super) fn of_another_kind(root: Element<'_>, expected: &str, help: &str) -> Diagnostic {
+    let found = quoted(root.name());
+    let message = if root.local_name() != expected {
+        format!("the root element is {found} and has to be {} of SCA", quoted(expected))
+    } else if root.namespace().is_empty() {
+        format!("{found} is in no namespace, and has to be in one of SCA")
+    } else {
+        format!("{found} is in the namespace {}, and has to be in one of SCA", quoted(root.namespace()))
+    };
+    let one = Diagnostic::new(&codes::ROOT, root.name_location(), message).help(help);
+    match root.local_name() == expected {
+        true => one.help(format!("that is {}", namespaces())),
+        false => one,
+    }
+}

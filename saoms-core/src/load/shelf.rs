@@ -89,10 +89,18 @@ impl Shelf {
         None
     }
 
-    /// The other files in the folder of one that was found that hold a composite of the same name and namespace.
+    /// The other files that hold a composite of the same name and namespace as one that was found: in its folder, and those of its file's name in
+    /// the folders of a contribution that is described as such.
     pub(super) fn twins(&mut self, found: &Path) -> Vec<PathBuf> {
         let Some(Head { namespace, local, .. }) = self.head(found).clone() else { return Vec::new() };
-        let mut all = self.listing(found.parent().unwrap_or(Path::new(""))).composites;
+        let folder = found.parent().unwrap_or(Path::new(""));
+        let mut all = self.listing(folder).composites;
+        let root = self.root(folder);
+        if describes(&root) {
+            let is_elsewhere =
+                |path: &PathBuf| path.parent() != found.parent() && path.file_name() == found.file_name();
+            all.extend(self.contribution(&root).0.into_iter().filter(is_elsewhere));
+        }
         all.retain(|path| {
             let is_same = |head: &Head| head.namespace == namespace && head.local == local;
             path != found && self.head(path).as_ref().is_some_and(is_same)
@@ -137,6 +145,25 @@ impl Shelf {
         let found = root(folder);
         self.roots.insert(folder.to_owned(), found.clone());
         found
+    }
+
+    /// The composites of the contribution in a folder, sorted, and the folders of other contributions below it.
+    pub(super) fn contribution(&mut self, root: &Path) -> (Vec<PathBuf>, Vec<PathBuf>) {
+        let (mut composites, mut others) = (Vec::new(), Vec::new());
+        let mut waiting = vec![root.to_owned()];
+        let mut seen = HashSet::new();
+        while let Some(next) = waiting.pop() {
+            if next != root && describes(&next) {
+                others.push(next);
+            } else if seen.insert(next.clone()) {
+                let listing = self.listing(&next);
+                composites.extend(listing.composites);
+                waiting.extend(listing.folders);
+            }
+        }
+        composites.sort_unstable();
+        others.sort_unstable();
+        (composites, others)
     }
 
     /// Makes a file that was found for one in `folder` one of its contribution.
@@ -202,12 +229,16 @@ pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     all
 }
 
+/// Whether a folder has a description of a contribution: one of its own, and not for the folder around it.
+fn describes(folder: &Path) -> bool {
+    !folder.ends_with("META-INF") && DESCRIPTIONS.iter().any(|name| folder.join(name).is_file())
+}
+
 /// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.
 fn root(folder: &Path) -> PathBuf {
     // The folder that we are in, which an empty path means, has no absolute one by that name.
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(absolute) = std::path::absolute(here) else { return folder.to_owned() };
-    let describes = |folder: &Path| DESCRIPTIONS.iter().any(|name| folder.join(name).is_file());
     let found = absolute.ancestors().take(MOST_ABOVE).position(describes);
     let Some(above) = found else { return folder.to_owned() };
     // As the user wrote it, where that goes up far enough.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use expect_test::expect_file;
 use saoms_core::check::{Options, Setting, check};
 use saoms_core::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
-use saoms_core::load::{MAX_SIZE, load, load_file, load_named, read};
+use saoms_core::load::{MAX_SIZE, load, load_file, load_folder, load_named, read};
 use saoms_core::model::Contribution;
 use saoms_core::plugin::{Search, open_named};
 use saoms_core::source::Sources;
@@ -108,6 +108,7 @@ fn example(code: &Code) -> Result<String, String> {
             checked(&files, 1, &[])
         }
         id @ ("S2043" | "S2044" | "S2047") => from_folder(id),
+        "S2051" => contribution(),
         id => from_files(id),
     };
     let found: Vec<Diagnostic> = diagnostics.iter().filter(|one| one.code == code).cloned().collect();
@@ -143,11 +144,22 @@ fn from_folder(id: &str) -> (Vec<Diagnostic>, Sources) {
     load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
     let options = Options { assume_classes: true, ..Options::default() };
     check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+    (diagnostics.into_sorted(), by_file_name(&sources))
+}
+
+/// Looks at the folder of a contribution.
+fn contribution() -> (Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    load_folder(&folder().join("S2051"), MAX_SIZE, &mut sources, &mut diagnostics);
+    (diagnostics.into_sorted(), by_file_name(&sources))
+}
+
+fn by_file_name(sources: &Sources) -> Sources {
     let mut renamed = Sources::new();
     for (_, file) in sources.iter() {
         renamed.add(Path::new(file.path()).file_name().unwrap().to_string_lossy(), file.text().clone());
     }
-    (diagnostics.into_sorted(), renamed)
+    renamed
 }
 
 /// The codes that the wiring report adds.

@@ -4,7 +4,7 @@ use expect_test::expect;
 
 use crate::named::{composite, links};
 
-fn description(inside: &str) -> String {
+pub(crate) fn description(inside: &str) -> String {
     format!("<contribution xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912'>{inside}</contribution>")
 }
 

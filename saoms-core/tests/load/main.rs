@@ -4,6 +4,7 @@
 
 mod corpus;
 mod files;
+mod folders;
 mod format;
 mod graph;
 mod imports;

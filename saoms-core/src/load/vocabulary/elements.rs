@@ -2,11 +2,11 @@
 
 use super::{Holds, Kind, Known};
 
-const fn known(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+pub(super) const fn known(name: &'static str, holds: Holds, doc: &'static str) -> Known {
     Known { name, holds, doc, required: false, only_1_0: false }
 }
 
-const fn required(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+pub(super) const fn required(name: &'static str, holds: Holds, doc: &'static str) -> Known {
     Known { required: true, ..known(name, holds, doc) }
 }
 

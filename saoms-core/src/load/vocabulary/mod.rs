@@ -3,10 +3,12 @@
 //! The loader holds files to these tables; the XML schema for editors is made of them, too. Where the schemas of the two versions differ and both
 //! could be meant, what either allows is known.
 
+mod contribution;
 mod elements;
 mod own;
 mod types;
 
+pub(super) use contribution::{CONTRIBUTION, PARTS};
 pub use elements::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,

@@ -1,0 +1,150 @@
+//! Descriptions of contributions: `sca-contribution.xml`.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::children::Family;
+use super::root::of_another_kind;
+use super::shelf::DESCRIPTIONS;
+use super::vocabulary::{CONTRIBUTION, PARTS};
+use super::{Gathered, Loader, read};
+use crate::diagnostic::Diagnostics;
+use crate::model::Version;
+use crate::source::{Sources, Text};
+use crate::xml::{self, Element};
+
+/// What is imported and exported.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Definitions of a namespace, as composites.
+    Namespace,
+    /// What belongs to classes of a package.
+    Java,
+}
+
+/// One `import` or `export`.
+pub(super) struct Entry {
+    kind: Kind,
+    what: String,
+    /// The folder of the other contribution, where it is said.
+    pub(super) location: Option<PathBuf>,
+}
+
+/// A composite that runs by itself.
+pub(super) struct Deployable {
+    pub(super) name: Text,
+    /// The namespace that it is in; `None` where the name does not say it.
+    pub(super) namespace: Option<String>,
+}
+
+/// What the description of a contribution says.
+#[derive(Default)]
+pub(super) struct Description {
+    pub(super) path: PathBuf,
+    pub(super) imports: Vec<Entry>,
+    pub(super) exports: Vec<Entry>,
+    pub(super) deployables: Vec<Deployable>,
+}
+
+/// The file that describes the contribution in a folder.
+pub(super) fn path_in(root: &Path) -> Option<PathBuf> {
+    DESCRIPTIONS.iter().map(|name| root.join(name)).find(|path| path.is_file())
+}
+
+impl Entry {
+    pub(super) fn is(&self, kind: Kind, what: &str) -> bool {
+        self.kind == kind && self.what == what
+    }
+}
+
+impl Deployable {
+    /// Its name without a prefix.
+    pub(super) fn local(&self) -> &str {
+        self.name.split_once(':').map_or(self.name.as_str(), |(_, local)| local)
+    }
+}
+
+impl Description {
+    /// Reads a description. What is wrong with it is reported.
+    pub(super) fn read(
+        path: PathBuf,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Self {
+        let mut made = Self { path, ..Self::default() };
+        let Some(file) = read(&made.path, max_size, sources, diagnostics) else { return made };
+        let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
+        if let Some(fault) = fault {
+            diagnostics.push(fault);
+            return made;
+        }
+        let Some(document) = document.map(Arc::new) else { return made };
+        let root = document.root();
+        let version = Version::from_namespace(root.namespace());
+        let Some(version) = version.filter(|_| root.local_name() == CONTRIBUTION.name) else {
+            let help = "a file of this name says what a contribution runs, imports and exports";
+            diagnostics.push(of_another_kind(root, CONTRIBUTION.name, help));
+            return made;
+        };
+        let mut loader = Loader {
+            version,
+            namespace: root.namespace().to_owned(),
+            diagnostics,
+            gathered: Gathered::default(),
+            is_replicated: false,
+            severities: Vec::new(),
+        };
+        loader.check_attributes(root, &CONTRIBUTION);
+        loader.no_text(root);
+        root.children().for_each(|child| made.add(child, &mut loader));
+        made
+    }
+
+    fn add(&mut self, child: Element<'_>, loader: &mut Loader<'_>) {
+        let name = child.local_name();
+        let family = loader.family(child);
+        if family != Family::Sca {
+            return;
+        }
+        let Some(part) = PARTS.iter().find(|part| part.name == name) else {
+            // Imports of other kinds are extensions, whichever namespace they are in.
+            let is_extension = name.starts_with("import.") || name.starts_with("export.");
+            if !is_extension && !CONTRIBUTION.children.contains(&name) {
+                loader.unexpected(child, &CONTRIBUTION, family);
+            }
+            return;
+        };
+        loader.check_attributes(child, part);
+        let Some(what) = part.attributes.first().and_then(|first| loader.required(child, first.name)) else {
+            return;
+        };
+        if part.name == "deployable" {
+            let namespace = namespace(&what, child);
+            return self.deployables.push(Deployable { name: what, namespace });
+        }
+        let (list, ending) = match name.strip_prefix("import") {
+            Some(ending) => (&mut self.imports, ending),
+            None => (&mut self.exports, name.trim_start_matches("export")),
+        };
+        let kind = match ending {
+            "" => Kind::Namespace,
+            ".java" => Kind::Java,
+            // Files are named by their paths, wherever they are.
+            _ => return,
+        };
+        let location = child.attribute("location").map(|one| one.trimmed());
+        // The addresses of contributions elsewhere are no folders.
+        let location = location.filter(|location| !location.contains(':'));
+        let location = location.map(|location| PathBuf::from(location.as_str()));
+        list.push(Entry { kind, what: what.as_str().to_owned(), location });
+    }
+}
+
+/// The namespace of a name. One without a prefix is of the default namespace; where that is one of SCA, in which nobody's composites are, any may be
+/// meant, and so with a prefix that is bound to none.
+fn namespace(name: &str, at: Element<'_>) -> Option<String> {
+    let prefix = name.split_once(':').map_or("", |(prefix, _)| prefix);
+    let namespace = at.resolve_prefix(prefix)?.into_owned();
+    (Version::from_namespace(&namespace).is_none() && !namespace.is_empty()).then_some(namespace)
+}

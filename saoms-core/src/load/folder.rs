@@ -1,0 +1,205 @@
+//! Folders as contributions.
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use super::description::{self, Deployable, Description};
+use super::shelf::Shelf;
+use super::{load_file, read};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
+use crate::model::{Composite, Contribution, Link};
+use crate::source::{Sources, Span};
+
+/// Composites in a folder that form one fleet: no other composite there names them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FolderFleet {
+    /// Their files.
+    pub files: Vec<PathBuf>,
+    /// Whether `sca-contribution.xml` says that they run. Others may be parts of fleets that are elsewhere.
+    pub is_deployable: bool,
+}
+
+/// Looks at a folder as a contribution, and at those in folders below it: the fleets in it. What `sca-contribution.xml` calls `deployable` is one fleet,
+/// and every other composite that no composite there names is one of its own.
+///
+/// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share a name. What is wrong with
+/// the composites themselves is found when they are loaded as fleets.
+pub fn load_folder(
+    folder: &Path,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Vec<FolderFleet> {
+    let mut shelf = Shelf::new(sources.open().clone());
+    let mut fleets = Vec::new();
+    let mut waiting = vec![folder.to_owned()];
+    while let Some(root) = waiting.pop() {
+        let (files, mut inner) = shelf.contribution(&root);
+        inner.reverse();
+        waiting.extend(inner);
+        let description = description::path_in(&root);
+        let description = description.map(|path| Description::read(path, max_size, sources, diagnostics));
+        let contribution = Files::read(files, max_size, sources);
+        contribution.repeated(description.is_some(), max_size, sources, diagnostics);
+        let deployables = description.iter().flat_map(|description| &description.deployables);
+        let deployed: Vec<Option<PathBuf>> =
+            deployables.map(|one| contribution.find(one, &mut shelf, &root, diagnostics)).collect();
+        contribution.fleets(deployed.into_iter().flatten().collect(), &mut fleets);
+    }
+    if fleets.is_empty() && !diagnostics.has_errors() {
+        let file = sources.add(folder.display().to_string(), "");
+        let message = "a directory without composites";
+        let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);
+        diagnostics.push(one.help("the names of composites end with `.composite`"));
+    }
+    fleets
+}
+
+/// The composites of one contribution.
+struct Files {
+    /// All of them, sorted.
+    paths: Vec<PathBuf>,
+    /// Those that could be read, and where each is among the paths.
+    read: Contribution,
+    places: Vec<usize>,
+}
+
+impl Files {
+    /// Reads composites for the names in them. What is wrong with them is told by those who check them.
+    fn read(paths: Vec<PathBuf>, max_size: u64, sources: &Sources) -> Self {
+        let (mut scratch, mut untold) = (Sources::with_open(sources.open().clone()), Diagnostics::new());
+        let (mut composites, mut places) = (Vec::new(), Vec::new());
+        for (place, path) in paths.iter().enumerate() {
+            let file = read(path, max_size, &mut scratch, &mut untold);
+            if let Some(composite) = file.and_then(|file| load_file(file, &scratch, &mut untold)) {
+                composites.push(composite);
+                places.push(place);
+            }
+        }
+        Self { paths, read: Contribution::with(Vec::new(), composites), places }
+    }
+
+    /// Reports composites of one namespace that have one name. Without a description nobody says that the folder is one contribution.
+    fn repeated(
+        &self,
+        is_described: bool,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let mut first: HashMap<(&str, &str), usize> = HashMap::new();
+        for (place, composite) in self.read.composites().iter().enumerate() {
+            let name = (composite.namespace(), composite.name.as_str());
+            if name.1.is_empty() {
+                continue;
+            }
+            let Some(earlier) = first.get(&name) else {
+                first.insert(name, place);
+                continue;
+            };
+            let mut place_of = |place: usize| {
+                let file = read(&self.paths[self.places[place]], max_size, sources, &mut Diagnostics::new())?;
+                Some(self.read.composites()[place].name.location.span.in_file(file))
+            };
+            let (Some(at), Some(other)) = (place_of(place), place_of(*earlier)) else { continue };
+            let message = format!("there are two composites {} in one namespace", quoted(name.1));
+            let severity = if is_described { Severity::Error } else { Severity::Warning };
+            let one = Diagnostic::new(&codes::COMPOSITE_REPEATED, at, message).severity(severity);
+            diagnostics.push(one.label(other, "the first").help("give each its own name"));
+        }
+    }
+
+    /// The file of a deployable; one that is not there is reported.
+    fn find(
+        &self,
+        deployable: &Deployable,
+        shelf: &mut Shelf,
+        root: &Path,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<PathBuf> {
+        let local = deployable.local();
+        let namespaces = deployable.namespace.as_ref().map(std::slice::from_ref);
+        // Also a file that could be read no further than its first tag.
+        let found = shelf.find(root, namespaces, local).filter(|found| self.paths.contains(found));
+        if found.is_some() {
+            return found;
+        }
+        let all = self.read.composites();
+        let name = quoted(&deployable.name);
+        let (at, prefix) = (deployable.name.location, deployable.name.as_str().strip_suffix(local));
+        let of_namespace = |one: &&Composite| {
+            deployable.namespace.as_ref().is_none_or(|namespace| namespace == one.namespace())
+        };
+        let message = format!("the contribution has no composite {name}");
+        let one = Diagnostic::new(&codes::DEPLOYABLE_NOT_FOUND, at, message);
+        let names = all.iter().filter(of_namespace).map(|one| one.name.as_str());
+        diagnostics.push(if let Some(meant) = nearest(local, names.clone()) {
+            let meant = format!("{}{meant}", prefix.unwrap_or_default());
+            one.suggest(format!("replace {name} with {}", quoted(&meant)), at, meant)
+        } else if let Some(other) = all.iter().find(|one| one.name == *local) {
+            one.help(format!("it has {} in the namespace {}", quoted(local), quoted(other.namespace())))
+        } else if names.clone().next().is_none() {
+            one.help("it has none of this namespace")
+        } else {
+            let names: Vec<String> = names.take(10).map(quoted).collect();
+            one.help(format!("it has {}", names.join(", ")))
+        });
+        None
+    }
+
+    /// What runs together, and every other composite that none here names.
+    fn fleets(self, mut deployed: Vec<PathBuf>, fleets: &mut Vec<FolderFleet>) {
+        let all = self.read.composites();
+        let links: Vec<Vec<usize>> = all
+            .iter()
+            .map(|one| {
+                let to = one.namings().filter_map(|naming| match self.read.link(naming.origin)? {
+                    Link::To(place) => Some(*place),
+                    _ => None,
+                });
+                to.collect()
+            })
+            .collect();
+        let mut is_named = vec![false; all.len()];
+        for (place, to) in links.iter().enumerate() {
+            to.iter().filter(|to| **to != place).for_each(|to| is_named[*to] = true);
+        }
+        let mut seen: Vec<bool> = all.iter().map(|_| false).collect();
+        let reach = |start: usize, seen: &mut Vec<bool>| {
+            let mut waiting = vec![start];
+            while let Some(place) = waiting.pop() {
+                if !std::mem::replace(&mut seen[place], true) {
+                    waiting.extend(&links[place]);
+                }
+            }
+        };
+        let mut roots: Vec<usize> = Vec::new();
+        for (place, path) in self.places.iter().map(|place| &self.paths[*place]).enumerate() {
+            if deployed.contains(path) {
+                reach(place, &mut seen);
+            }
+        }
+        // Those in circles of names have no first one: what is left is reached from any of them.
+        for is_left in [false, true] {
+            for place in 0..all.len() {
+                if !seen[place] && (is_left || !is_named[place]) {
+                    roots.push(place);
+                    reach(place, &mut seen);
+                }
+            }
+        }
+        let mut known = HashSet::new();
+        deployed.retain(|path| known.insert(path.clone()));
+        let faulty = (0..self.paths.len()).filter(|place| self.places.binary_search(place).is_err());
+        let mut others: Vec<usize> = roots.into_iter().map(|root| self.places[root]).chain(faulty).collect();
+        others.sort_unstable();
+        let others =
+            others.into_iter().map(|place| &self.paths[place]).filter(|path| !deployed.contains(path));
+        let others: Vec<FolderFleet> =
+            others.map(|path| FolderFleet { files: vec![path.clone()], is_deployable: false }).collect();
+        if !deployed.is_empty() {
+            fleets.push(FolderFleet { files: deployed, is_deployable: true });
+        }
+        fleets.extend(others);
+    }
+}

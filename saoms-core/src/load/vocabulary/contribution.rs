@@ -1,0 +1,52 @@
+//! The tables of `sca-contribution.xml`.
+
+use super::elements::{known, required};
+use super::{Holds, Kind, Known};
+
+const LOCATION: Known = known("location", Holds::Uri, "The folder of the contribution that it comes from.");
+const PACKAGE: Known = required("package", Holds::Text, "A package of classes.");
+const NAMESPACE: Known = required("namespace", Holds::Uri, "The target namespace of composites.");
+const URI: Known = required("uri", Holds::Uri, "A file of the contribution.");
+
+/// The root of the file.
+pub(in crate::load) static CONTRIBUTION: Kind = Kind {
+    name: "contribution",
+    doc: "What a folder of composites runs, gives to others and takes from them.",
+    attributes: &[],
+    children: &[
+        "deployable",
+        "import",
+        "import.java",
+        "import.resource",
+        "export",
+        "export.java",
+        "export.resource",
+        "documentation",
+        "extensions",
+    ],
+};
+
+/// The elements in it that have attributes.
+pub(in crate::load) static PARTS: [Kind; 7] = [
+    Kind {
+        name: "deployable",
+        doc: "A composite that runs by itself.",
+        attributes: &[required("composite", Holds::Composite, "Its name, with a prefix of its namespace.")],
+        children: &["documentation", "extensions"],
+    },
+    part("import", &[NAMESPACE, LOCATION]),
+    part("import.java", &[PACKAGE, LOCATION]),
+    part("import.resource", &[URI, LOCATION]),
+    part("export", &[NAMESPACE]),
+    part("export.java", &[PACKAGE]),
+    part("export.resource", &[URI]),
+];
+
+const fn part(name: &'static str, attributes: &'static [Known]) -> Kind {
+    Kind {
+        name,
+        doc: "What contributions take from each other.",
+        attributes,
+        children: &["documentation", "extensions"],
+    }
+}

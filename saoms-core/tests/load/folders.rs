@@ -1,0 +1,171 @@
+//! Folders as contributions.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use expect_test::expect;
+use saoms_core::diagnostic::Diagnostics;
+use saoms_core::load::{MAX_SIZE, load_folder};
+use saoms_core::source::Sources;
+
+use crate::imports::description;
+use crate::named::composite;
+
+/// The fleets in a folder of these files, and what is wrong with it.
+fn fleets(files: &[(&str, String)]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let fleets = load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
+    let mut out = String::new();
+    for fleet in fleets {
+        let files: Vec<String> = fleet.files.iter().map(|path| path.display().to_string()).collect();
+        let _ = writeln!(out, "{}{}", files.join(" + "), if fleet.is_deployable { " runs" } else { "" });
+    }
+    for one in &diagnostics.into_sorted() {
+        let file = sources.get(one.location.file);
+        let at = file.line_column(one.location.span.start);
+        let (severity, code) = (one.severity.name(), one.code.id);
+        let shown = sources.snippet(one.location);
+        let _ = writeln!(
+            out,
+            "{}:{}:{} [{shown}] {severity} {code} {}",
+            file.path(),
+            at.line,
+            at.column,
+            one.message
+        );
+        one.help.iter().for_each(|help| _ = writeln!(out, "  {help}"));
+        one.suggestions.iter().for_each(|one| _ = writeln!(out, "  {}", one.description));
+    }
+    out.replace(&format!("{}/", folder.path().display()), "")
+        .replace(&folder.path().display().to_string(), "FOLDER")
+}
+
+fn deployables(names: &[&str]) -> String {
+    let all: String = names.iter().map(|name| format!("<deployable composite='{name}'/>")).collect();
+    format!(
+        "<contribution xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' xmlns:a='urn:a'>\n{all}</contribution>"
+    )
+}
+
+#[test]
+fn what_is_deployable_runs_and_what_nobody_names_is_a_fleet_of_its_own() {
+    let mut files = vec![
+        ("fleet.composite", composite("urn:a", "fleet", "<include name='a:hall'/>")),
+        ("deep/er/hall.composite", composite("urn:a", "hall", "<include name='a:door'/>")),
+        ("deep/door.composite", composite("urn:a", "door", "")),
+        ("other.composite", composite("urn:a", "other", "")),
+        ("broken.composite", "<composite".to_owned()),
+        ("target/made.composite", composite("urn:a", "made", "")),
+        ("round.composite", composite("urn:a", "round", "<include name='a:about'/>")),
+        ("about.composite", composite("urn:a", "about", "<include name='a:round'/>")),
+    ];
+    expect![[r#"
+        about.composite
+        broken.composite
+        fleet.composite
+        other.composite
+    "#]]
+    .assert_eq(&fleets(&files));
+    files.push(("META-INF/sca-contribution.xml", deployables(&["a:fleet", "other", "u:fleet"])));
+    files.push(("lib/sca-contribution.xml", deployables(&["a:fleet"])));
+    files.push(("lib/fleet.composite", composite("urn:a", "fleet", "")));
+    expect![[r#"
+        fleet.composite + other.composite runs
+        about.composite
+        broken.composite
+        lib/fleet.composite runs
+    "#]]
+    .assert_eq(&fleets(&files));
+}
+
+#[test]
+fn what_is_wrong_with_a_contribution_is_told() {
+    let one = |inside: &str| {
+        fleets(&[
+            ("sca-contribution.xml", description(inside)),
+            ("fleet.composite", composite("urn:a", "fleet", "")),
+            ("more.composite", composite("urn:b", "hall", "")),
+        ])
+    };
+    expect![[r#"
+        fleet.composite
+        more.composite
+        sca-contribution.xml:2:24 [x:flet] error S2051 the contribution has no composite `x:flet`
+          replace `x:flet` with `x:fleet`
+        sca-contribution.xml:3:24 [x:hall] error S2051 the contribution has no composite `x:hall`
+          it has `hall` in the namespace `urn:b`
+        sca-contribution.xml:4:24 [x:hall] error S2051 the contribution has no composite `x:hall`
+          it has `hall` in the namespace `urn:b`
+        sca-contribution.xml:5:2 [deployable] error S1008 `deployable` needs the attribute `composite`
+          write `<deployable composite="..."`
+        sca-contribution.xml:6:13 [composit] error S1007 `deployable` has no attribute `composit`
+          replace `composit` with `composite`
+        sca-contribution.xml:7:9 [namespace=''] error S1011 the attribute `namespace` is empty
+        sca-contribution.xml:8:27 [locaton] error S1007 `export` has no attribute `locaton`
+          `export` has the attributes `namespace`
+        sca-contribution.xml:9:2 [imports] error S1004 SCA 1.1 has no element `imports`
+          replace `imports` with `import`
+        sca-contribution.xml:10:1 [text] error S1012 text in `contribution`, which holds no text
+        sca-contribution.xml:10:6 [import.resource] error S1008 `import.resource` needs the attribute `uri`
+          write `<import.resource uri="..."`
+        sca-contribution.xml:11:43 [component] error S1005 `component` cannot stand in `contribution`
+          `contribution` can hold `deployable`, `import`, `import.java`, `import.resource`, `export`, `export.java`, `export.resource`, `documentation`, `extensions`
+    "#]].assert_eq(&one(
+        "\n<deployable composite='x:flet' xmlns:x='urn:a'/>\n<deployable composite='x:hall' xmlns:x='urn:a'/>\n<deployable composite='x:hall' xmlns:x='urn:c'/>\n<deployable/>\n<deployable composit='fleet'/>\n<import namespace=''/>\n<export namespace='urn:a' locaton='x'/>\n<imports/>\ntext<import.resource/>\n<import.sdo x='1'/><x:y xmlns:x='urn:x'/><component/>",
+    ));
+    expect![[r#"
+        fleet.composite
+        sca-contribution.xml:1:2 [contribution] error S1001 `contribution` is in the namespace `urn:c`, and has to be in one of SCA
+          a file of this name says what a contribution runs, imports and exports
+          that is `http://docs.oasis-open.org/ns/opencsa/sca/200912` (SCA 1.1), `http://docs.oasis-open.org/ns/opencsa/sca/200903` (SCA 1.1 (draft)) or `http://www.osoa.org/xmlns/sca/1.0` (SCA 1.0)
+        a/sca-contribution.xml:2:4 [</b>] error S0102 `</b>` found where `</a>` is expected
+          replace it with `</a>`
+    "#]].assert_eq(&fleets(&[
+        ("sca-contribution.xml", "<contribution xmlns='urn:c'/>".to_owned()),
+        ("a/sca-contribution.xml", "<contribution>\n<a></b></contribution>".to_owned()),
+        ("fleet.composite", composite("urn:a", "fleet", "")),
+    ]));
+    expect![[r#"
+        FOLDER:1:1 [] error S0002 a directory without composites
+          the names of composites end with `.composite`
+    "#]]
+    .assert_eq(&fleets(&[("deep/readme.txt", String::new())]));
+}
+
+#[test]
+fn composites_of_one_name_are_told_as_far_as_the_folder_is_one_contribution() {
+    let mut files = vec![
+        ("fleet.composite", composite("urn:a", "fleet", "<include name='a:hall'/>")),
+        ("one/hall.composite", composite("urn:a", "hall", "")),
+        ("two/hall.composite", composite("urn:a", "hall", "")),
+        ("two/other.composite", composite("urn:b", "hall", "")),
+    ];
+    expect![[r#"
+        fleet.composite
+        two/hall.composite
+        two/other.composite
+        two/hall.composite:1:4625 [hall] warning S2001 there are two composites `hall` in one namespace
+          give each its own name
+    "#]]
+    .assert_eq(&fleets(&files));
+    files.push(("sca-contribution.xml", description("")));
+    expect![[r#"
+        fleet.composite
+        two/hall.composite
+        two/other.composite
+        two/hall.composite:1:4625 [hall] error S2001 there are two composites `hall` in one namespace
+          give each its own name
+    "#]]
+    .assert_eq(&fleets(&files));
+    expect![[r#"
+        fleet.composite: a:hall -> one/hall.composite
+        fleet.composite S2001
+    "#]]
+    .assert_eq(&crate::named::links(&files, "fleet.composite"));
+}

@@ -1,0 +1,167 @@
+//! Folders on the command line: contributions, with the fleets in them.
+
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use saoms_core::assembly::Assembly;
+use saoms_core::check::Options;
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
+use saoms_core::load::{FolderFleet, load_folder};
+use saoms_core::model::Contribution;
+use saoms_core::registry::Registry;
+use saoms_core::source::{Sources, Span};
+
+use crate::Exit;
+use crate::arguments::FleetArguments;
+use crate::fleet::{Checked, checked_with, options};
+use crate::plugins::{registry, search};
+
+/// Composites that are named where one of them has to be.
+const OFFERED: usize = 5;
+
+/// The files of the one fleet that these paths stand for: for a folder those that run in it. Where that is unclear, it is reported.
+pub(crate) fn one_fleet(
+    paths: &[PathBuf],
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Vec<PathBuf> {
+    let mut files = Vec::with_capacity(paths.len());
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let mut fleets = load_folder(path, max_size, sources, diagnostics);
+        if fleets.iter().any(|one| one.is_deployable) {
+            fleets.retain(|one| one.is_deployable);
+        }
+        match &fleets[..] {
+            [] => {}
+            [only] => files.extend_from_slice(&only.files),
+            several => diagnostics.push(unclear(path, several, sources)),
+        }
+    }
+    files
+}
+
+fn unclear(folder: &Path, fleets: &[FolderFleet], sources: &mut Sources) -> Diagnostic {
+    let file = sources.add(folder.display().to_string(), "");
+    let message = format!("a directory with {} fleets, and one is asked for", fleets.len());
+    let firsts = fleets.iter().filter_map(|fleet| fleet.files.first());
+    let mut names: Vec<String> =
+        firsts.take(OFFERED).map(|path| quoted(&path.display().to_string())).collect();
+    if fleets.len() > OFFERED {
+        names.push(format!("{} more", fleets.len() - OFFERED));
+    }
+    let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);
+    let one = one.help(format!("name one: {}", names.join(", ")));
+    if fleets[0].is_deployable {
+        return one;
+    }
+    let description = folder.join("sca-contribution.xml");
+    one.help(format!(
+        "or let {} say what runs: `<deployable composite=\"...\"/>`",
+        quoted(&description.display().to_string())
+    ))
+}
+
+/// What a check of several fleets comes to.
+pub(crate) struct Several {
+    /// All that is wrong.
+    pub(crate) checked: Checked,
+    /// What the fleets come to, with the first file of each; those with errors are not among them.
+    pub(crate) assemblies: Vec<(PathBuf, Assembly)>,
+    /// How many fleets there are.
+    pub(crate) fleets: usize,
+}
+
+/// Checks every fleet that these paths stand for: the files together are one, and each folder has its own.
+///
+/// # Errors
+/// A plugin cannot be used, which was told.
+pub(crate) fn checked_each(arguments: &FleetArguments, asked: Options) -> Result<Several, Exit> {
+    let mut sources = Sources::new();
+    let mut diagnostics = Diagnostics::new();
+    let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) =
+        arguments.files.iter().cloned().partition(|path| path.is_dir());
+    let mut fleets = Vec::new();
+    if !files.is_empty() {
+        fleets.push(FolderFleet { files, is_deployable: true });
+    }
+    for folder in &folders {
+        fleets.extend(load_folder(folder, arguments.max_size, &mut sources, &mut diagnostics));
+    }
+    let options = options(arguments, asked, &mut sources, &mut diagnostics);
+    let options = Options { shared_settings: fleets.len() > 1, ..options };
+    let mut merged = Merged { is_one: fleets.len() == 1, ..Merged::default() };
+    let count = fleets.len();
+    merged.add(diagnostics.into_all(), true, &sources);
+    let mut contribution = Contribution::default();
+    let mut assemblies = Vec::new();
+    // Composites in one folder have the same plugins, whose faults are told once.
+    let mut registries: HashMap<Vec<PathBuf>, Registry> = HashMap::new();
+    for FolderFleet { files, is_deployable } in fleets {
+        let beside: Vec<PathBuf> =
+            files.iter().filter_map(|file| file.parent().map(Path::to_owned)).collect();
+        let registry = match registries.entry(beside) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => new.insert(registry(&arguments.plugins, &files)?),
+        };
+        let search = search(&arguments.plugins, &files);
+        let (options, registry) = (options.clone(), registry.clone());
+        let found =
+            checked_with(&files, arguments.max_size, options, registry, &search, sources, Diagnostics::new());
+        sources = found.sources;
+        merged.add(found.diagnostics, is_deployable, &sources);
+        contribution = found.contribution;
+        assemblies.extend(files.into_iter().next().zip(found.assembly));
+    }
+    let diagnostics = merged.finish(count);
+    let checked = Checked { assembly: None, contribution, sources, diagnostics };
+    Ok(Several { checked, assemblies, fleets: count })
+}
+
+/// The diagnostics of several fleets, in which composites can be that several of them name.
+#[derive(Default)]
+struct Merged {
+    all: Vec<Diagnostic>,
+    known: HashSet<(String, Span, &'static str, String)>,
+    /// Settings that fleets do not know: a fault where none of them does.
+    unknown: Vec<Diagnostic>,
+    is_one: bool,
+}
+
+impl Merged {
+    /// Adds those of a fleet. One that nobody says runs by itself may lack what those that use it give.
+    fn add(&mut self, found: Vec<Diagnostic>, is_deployable: bool, sources: &Sources) {
+        for one in found {
+            let is_of_user =
+                one.code == &codes::COMPOSITE_PROPERTY_MISSING || one.code == &codes::PROMOTED_UNWIRED;
+            if is_of_user && !is_deployable && !self.is_one {
+                continue;
+            }
+            if one.code == &codes::UNKNOWN_SETTING {
+                self.unknown.push(one);
+                continue;
+            }
+            let path = sources.get(one.location.file).path().to_owned();
+            if self.known.insert((path, one.location.span, one.code.id, one.message.clone())) {
+                self.all.push(one);
+            }
+        }
+    }
+
+    fn finish(mut self, fleets: usize) -> Vec<Diagnostic> {
+        while let Some(first) = self.unknown.first().cloned() {
+            let (same, others): (Vec<_>, Vec<_>) =
+                self.unknown.into_iter().partition(|one| one.location == first.location);
+            self.unknown = others;
+            if same.len() >= fleets {
+                self.all.push(first.severity(Severity::Error));
+            }
+        }
+        self.all
+    }
+}

@@ -1,0 +1,140 @@
+//! Folders and standard input in place of files.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// Runs `saoms` in the folder.
+fn saoms(folder: &Path, arguments: &[&str], input: &str) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
+    let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = pipes.args(arguments).current_dir(folder).spawn().unwrap();
+    // A command that reads no input closes it.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
+    (status.code().unwrap(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
+}
+
+fn composite(name: &str, inside: &str) -> String {
+    format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:a=\"urn:a\" targetNamespace=\"urn:a\" name=\"{name}\">\n{inside}\n</composite>\n"
+    )
+}
+
+fn robot(number: u32, inside: &str) -> String {
+    format!(
+        "<component name=\"Robot{number}\"><implementation.rust class=\"saoms.Robot\"/><property name=\"ID\">R{number}</property><property name=\"period\">100</property>{inside}</component>"
+    )
+}
+
+/// A folder with a fleet that includes a part that cannot run by itself, and another fleet with robots of the same names.
+fn contribution(deployables: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    write("fleet.composite", &composite("fleet", "<include name=\"a:part\"/>"));
+    write("parts/part.composite", &composite("part", &robot(1, "")));
+    write("other.composite", &composite("other", &(robot(1, "") + &robot(2, ""))));
+    let must = "<property name=\"level\" mustSupply=\"true\"/>";
+    let hall = must.to_owned() + &robot(7, "<property name=\"battery\" source=\"$level\"/>");
+    write("hall.composite", &composite("hall", &hall));
+    if !deployables.is_empty() {
+        let all: String =
+            deployables.iter().map(|name| format!("<deployable composite=\"{name}\"/>")).collect();
+        write(
+            "sca-contribution.xml",
+            &format!(
+                "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:a=\"urn:a\">{all}</contribution>"
+            ),
+        );
+    }
+    folder
+}
+
+#[test]
+fn check_looks_at_every_fleet_of_a_folder() {
+    let folder = contribution(&[]);
+    let (code, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
+    assert_eq!((code, stdout.as_str()), (0, "3 fleets, 3 components: 0 errors, 0 warnings\n"), "{stderr}");
+    let (_, stdout, _) = saoms(folder.path(), &["check", ".", "--set", "level=40"], "");
+    assert_eq!(stdout, "3 fleets, 4 components: 0 errors, 0 warnings\n");
+    let (code, _, stderr) = saoms(folder.path(), &["check", ".", "--set", "levle=40"], "");
+    assert!(code == 2 && stderr.matches("error[").count() == 1 && stderr.contains("S2029"), "{stderr}");
+    // What two fleets share has its faults once.
+    fs::write(
+        folder.path().join("parts/part.composite"),
+        composite("part", &robot(1, "<property name=\"batery\">1</property>")),
+    )
+    .unwrap();
+    fs::write(folder.path().join("second.composite"), composite("second", "<include name=\"a:part\"/>"))
+        .unwrap();
+    let (code, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
+    assert_eq!((code, stdout.as_str()), (2, "4 fleets, 2 components: 1 error, 0 warnings\n"), "{stderr}");
+    assert!(stderr.contains("parts/part.composite:2:"), "{stderr}");
+}
+
+#[test]
+fn what_runs_of_a_folder_is_what_it_calls_deployable() {
+    let folder = contribution(&[]);
+    let (code, _, stderr) = saoms(folder.path(), &["run", "--virtual", "."], "");
+    assert_eq!(code, 2);
+    assert!(stderr.contains("error[S0002]: a directory with 3 fleets, and one is asked for"), "{stderr}");
+    assert!(
+        stderr.contains("name one: `./fleet.composite`, `./hall.composite`, `./other.composite`"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("`<deployable composite=\"...\"/>`"), "{stderr}");
+
+    let folder = contribution(&["a:other"]);
+    let (code, stdout, stderr) = saoms(folder.path(), &["expand", "."], "");
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stdout.contains("Robot1") && stdout.contains("Robot2") && !stdout.contains("Robot7"), "{stdout}");
+    let (code, stdout, stderr) = saoms(folder.path(), &["graph", ".", "--format", "dot"], "");
+    assert!(code == 0 && stdout.contains("Robot2") && !stdout.contains("Robot7"), "{stderr}");
+    let (code, _, stderr) = saoms(folder.path(), &["run", "--virtual", "--for", "1s", "."], "");
+    assert_eq!(code, 0, "{stderr}");
+
+    // Two deployables are one fleet.
+    let folder = contribution(&["a:other", "a:fleet"]);
+    let (code, _, stderr) = saoms(folder.path(), &["check", "."], "");
+    assert!(code == 2 && stderr.contains("S2002"), "{stderr}");
+    // One with a value that nobody gives cannot run.
+    let folder = contribution(&["a:hall"]);
+    let (code, _, stderr) = saoms(folder.path(), &["check", "."], "");
+    assert!(code == 2 && stderr.contains("S2025"), "{stderr}");
+    // One that is not there is told beside all else.
+    let folder = contribution(&["a:flet"]);
+    let (code, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
+    assert!(code == 2 && stderr.contains("error[S2051]") && stdout.starts_with("3 fleets"), "{stderr}");
+}
+
+#[test]
+fn a_wiring_report_of_a_folder_has_every_fleet() {
+    let folder = contribution(&[]);
+    let (_, stdout, _) = saoms(folder.path(), &["check", "--wiring", "--format", "json", "."], "");
+    let found: Value = serde_json::from_str(&stdout).unwrap();
+    let fleets: Vec<&String> = found["wiring"].as_object().unwrap().keys().collect();
+    assert_eq!(fleets, ["./fleet.composite", "./other.composite"]);
+}
+
+#[test]
+fn standard_input_is_a_composite_in_the_current_folder() {
+    let folder = contribution(&[]);
+    let fleet = composite("piped", &("<include name=\"a:part\"/>".to_owned() + &robot(2, "")));
+    let (code, stdout, stderr) = saoms(folder.path(), &["check", "-"], &fleet);
+    assert_eq!((code, stdout.as_str()), (0, "2 components: 0 errors, 0 warnings\n"), "{stderr}");
+    let (code, stdout, stderr) = saoms(folder.path(), &["expand", "-"], &fleet);
+    assert!(code == 0 && stdout.contains("Robot1"), "{stderr}");
+    let (code, _, stderr) = saoms(folder.path(), &["check", "-"], "<composite");
+    assert!(code == 2 && stderr.contains("<stdin>:1:"), "{stderr}");
+    let (code, _, stderr) = saoms(folder.path(), &["run", "--reload", "-"], &fleet);
+    assert!(code == 2 && stderr.contains("standard input"), "{stderr}");
+}
