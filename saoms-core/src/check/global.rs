@@ -2,7 +2,7 @@
 
 use super::raw::{Piece, Raw};
 use super::report::{Report, list};
-use crate::diagnostic::{Code, Diagnostic, codes, quoted};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::Property;
 use crate::source::Text;
 use crate::xml::{Document, Element, ElementId};
@@ -52,7 +52,9 @@ pub(super) fn check(property: &Property, document: &Document, code: &'static Cod
         let at = first.name_location();
         if first.local_name() == expected.local {
             let found = format!("one {}", in_namespace(first.namespace()));
-            report.push(wrong(found)(at).help(format!("write `<{of}>`")));
+            // Its name says what is meant, and that is how its parts are found.
+            let one = wrong(found)(at).severity(Severity::Warning);
+            report.push(one.help(format!("write `<{of}>`")));
         } else {
             let found = list(elements.iter().map(|one| one.local_name()));
             let help = format!("put what is inside into `<{of}>...</{of}>`, or give the property a `type`");

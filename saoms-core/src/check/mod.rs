@@ -52,10 +52,12 @@ mod variable;
 mod wires;
 mod written;
 
+use std::collections::HashSet;
+
 use saoms_api::PropertyValue;
 
 use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostics, Severity, codes};
 use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::{Location, Sources};
@@ -108,6 +110,9 @@ pub fn check(
     let mut fleet = unfold::unfold(contribution, options, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);
     let mut classes = classes::resolve(&mut fleet, contribution, registry, options.assume_classes, report);
+    if options.assume_classes {
+        elsewhere(&fleet, report);
+    }
     let checked = properties(&fleet, &classes, &mut parameters, report);
     let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
@@ -156,6 +161,18 @@ pub fn check(
     }
     severities.finish(options.wiring, report.diagnostics());
     assembly.filter(|_| !report.has_errors())
+}
+
+/// The files of values of components that are taken as given may come with what implements them: that they are not there is a warning.
+fn elsewhere(fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let given = fleet.members.iter().filter(|member| member.kind == Kind::Given);
+    let properties = given.flat_map(|member| &member.component.properties);
+    let places: HashSet<Location> = properties.filter_map(|one| Some(one.file()?.location)).collect();
+    report.diagnostics().adjust(0, |one| {
+        if one.code == &codes::FILE_NOT_FOUND && places.contains(&one.location) {
+            one.severity = Severity::Warning;
+        }
+    });
 }
 
 /// What the properties of a component come to.

@@ -8,7 +8,7 @@ use super::fleet::{Fleet, Unit};
 use super::offer::Side;
 use super::report::{Report, list};
 use super::target::{Uri, spread};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Multiplicity, Part, Reference};
 use crate::source::{Location, Text};
 
@@ -31,7 +31,11 @@ pub(super) fn check<'f>(
     report: &mut Report<'_>,
 ) -> Promoted<'f> {
     let mut promoted = Promoted::default();
-    for unit in &fleet.units {
+    // What is wrong where a component is implemented counts, and is said once.
+    let is_outermost = |unit: &&Unit<'_>| fleet.scopes[unit.scope].owner.is_none();
+    let inner = fleet.units.iter().filter(|unit| !is_outermost(unit));
+    for unit in inner.chain(fleet.units.iter().filter(is_outermost)) {
+        let known = report.diagnostics().len();
         repeated(unit.services().map(|service| &service.name), Side::Service, "ASM60003", report);
         repeated(unit.references().map(|reference| &reference.name), Side::Reference, "ASM60006", report);
         for promote in unit.services().filter_map(|service| service.promote.as_ref()) {
@@ -59,6 +63,11 @@ pub(super) fn check<'f>(
                     promoted.outermost.extend(found);
                 }
             }
+        }
+        // What a composite offers that runs by itself nobody here takes: it runs the same with faults in it, and other programs say so of those of
+        // SCA 1.0. A component that it implements is another matter.
+        if owner.is_none() && unit.composites.iter().all(|composite| !composite.version.is_1_1()) {
+            report.diagnostics().adjust(known, |one| one.severity = one.severity.min(Severity::Warning));
         }
     }
     promoted

@@ -89,7 +89,7 @@ codes! {
     PROMOTED_UNWIRED = "S2022" Warning "promoted-unwired": "A composite that runs by itself promotes a reference, and nothing wires it.";
     SOURCE_MALFORMED = "S2023" Error "source-malformed": "The `source` of a property leads to no value.";
     UNKNOWN_SOURCE = "S2024" Error "unknown-source": "The `source` of a property names a composite property that does not exist.";
-    COMPOSITE_PROPERTY_MISSING = "S2025" Error "composite-property-missing" ("ASM60034"): "A composite property that has to have a value has none. Of a composite by itself a warning with `--assume-classes`.";
+    COMPOSITE_PROPERTY_MISSING = "S2025" Error "composite-property-missing" ("ASM60034"): "A composite property that has to have a value has none.";
     UNUSED_PROPERTY = "S2026" Warning "unused-property": "A composite property is used by no component.";
     SETTING_MALFORMED = "S2027" Error "setting-malformed": "An option that sets a composite property has no name or no `=`.";
     SETTING_REPEATED = "S2028" Error "setting-repeated": "One composite property is set twice.";

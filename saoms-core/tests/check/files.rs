@@ -8,7 +8,7 @@ use saoms_api::PropertyValue;
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, check};
 use saoms_core::diagnostic::Diagnostics;
-use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
+use saoms_core::load::{MAX_SIZE, load, load_file, load_named, read, read_values};
 use saoms_core::model::Contribution;
 use saoms_core::source::Sources;
 
@@ -154,4 +154,30 @@ fn a_component_type_gives_the_values_that_components_do_not() {
           help: `speed`: How fast it drives; the default is `1.0`
     "#]]
     .assert_eq(&found);
+}
+
+#[test]
+fn a_file_of_a_component_that_is_taken_as_given_may_come_with_it() {
+    let inside = r#"<component name="A"><implementation.java class="other.A"/><property name="p" file="none.txt"/></component>
+<component name="R"><implementation.java class="example.Robot"/><property name="ID">R</property>
+<property name="period">1s</property><property name="speed" file="none.txt"/></component>"#;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fleet.composite");
+    fs::write(&path, fleet(inside)).unwrap();
+    let found = |assume_classes| {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let composite = load(&path, &mut sources, &mut diagnostics).unwrap();
+        let options = Options { assume_classes, ..Options::default() };
+        check(&Contribution::of(vec![composite]), &registry(), &options, &sources, &mut diagnostics);
+        let all = diagnostics.into_sorted();
+        let missing = all.iter().filter(|one| one.code.id == "S0001");
+        missing
+            .map(|one| {
+                let line = sources.get(one.location.file).line_column(one.location.span.start).line;
+                format!("{line} {}\n", one.severity.name())
+            })
+            .collect::<String>()
+    };
+    assert_eq!(found(true), "2 warning\n4 error\n");
+    assert_eq!(found(false), "2 error\n4 error\n");
 }

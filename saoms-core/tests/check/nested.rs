@@ -1,6 +1,8 @@
 //! Composites that include others, and components that composites implement.
 
 use expect_test::expect;
+use saoms_core::diagnostic::Severity;
+use saoms_core::model::Version;
 
 use crate::support::{nested, outcome, part, shown};
 
@@ -337,4 +339,29 @@ fn faults_only(found: &str) -> String {
         .split_inclusive('\n')
         .filter(|line| !line.contains("used by no") && !line.contains("takes its value with"))
         .collect()
+}
+
+/// Nobody here takes what a composite promotes that runs by itself; one that implements a component is another matter.
+#[test]
+fn what_a_composite_of_1_0_promotes_by_itself_is_a_warning() {
+    let inside = r#"<service name="s" promote="A/s"/><service name="s" promote="B"/><reference name="r" promote="A/r"/>
+<component name="A"><implementation.java class="other.A"/><service name="s"/></component>"#;
+    let inner = part("inner", "", inside);
+    let outer =
+        part("outer", "", r#"<component name="A"><implementation.composite name="t:inner"/></component>"#);
+    let of_1_0 = |text: &str| text.replace(Version::Oasis200912.namespace(), Version::Osoa10.namespace());
+    let found = |texts: &[&str]| {
+        let texts: Vec<String> = texts.iter().map(|text| of_1_0(text)).collect();
+        let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+        let (_, diagnostics, _) = nested(&texts, &[], true);
+        let found = diagnostics.iter().filter(|one| one.code.id != "S2022");
+        found.map(|one| format!("{} {}\n", one.severity.name(), one.message)).collect::<String>()
+    };
+    let faults = |severity: &str| {
+        format!("{severity} the composite has two services `s`\n{severity} there is no component `B`\n")
+    };
+    assert_eq!(found(&[&inner]), faults("warning"));
+    assert_eq!(found(&[&outer, &inner]), faults("error"));
+    let (_, diagnostics, _) = nested(&[&inner], &[], true);
+    assert_eq!(diagnostics.iter().filter(|one| one.severity == Severity::Error).count(), 2);
 }

@@ -147,7 +147,7 @@ fn values_are_the_elements_that_properties_are_typed_by() {
           help: put what is inside into `<p:place>...</p:place>`, or give the property a `type`
         3:17-18 warning S2026: the property `b` of the composite is used by no component
           help: a component takes its value with `source="$b"`
-        3:55-60 error S2042: the property `b` holds elements `p:place` in the namespace `urn:x`: found one in the namespace `http://docs.oasis-open.org/ns/opencsa/sca/200912`
+        3:55-60 warning S2042: the property `b` holds elements `p:place` in the namespace `urn:x`: found one in the namespace `http://docs.oasis-open.org/ns/opencsa/sca/200912`
           3:29-36 the element
           help: write `<p:place>`
         4:17-18 warning S2026: the property `c` of the composite is used by no component
