@@ -110,9 +110,6 @@ pub fn check(
     let mut fleet = unfold::unfold(contribution, options, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);
     let mut classes = classes::resolve(&mut fleet, contribution, registry, options.assume_classes, report);
-    if options.assume_classes {
-        elsewhere(&fleet, report);
-    }
     let checked = properties(&fleet, &classes, &mut parameters, report);
     let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
@@ -138,6 +135,9 @@ pub fn check(
     let rules =
         registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
     rules::check(&fleet, &classes, &resolved, &wiring, rules, report);
+    if options.assume_classes {
+        elsewhere(&fleet, report);
+    }
     report.finish();
     severities.apply(0, report.diagnostics());
     if report.has_errors() {

@@ -90,7 +90,9 @@ pub(super) fn given(property: &Property, value: &Text, report: &mut Report<'_>) 
 pub(super) fn holds(property: &Property, value: &Text, code: &'static Code, report: &mut Report<'_>) -> bool {
     let Some(of) = property.r#type() else { return true };
     let Some((_, expected, is_one)) = simple_type(of) else { return true };
-    if value.is_empty() || is_one(value) {
+    // Many values may be written as a list, as in files of SCA 1.0.
+    let is_list = property.many().is_some_and(|many| many.value);
+    if value.is_empty() || is_one(value) || is_list && value.split_whitespace().all(|one| is_one(one)) {
         return true;
     }
     let message = format!(

@@ -16,13 +16,12 @@ const TUSCANY: [&str; 2] =
 
 /// The attributes that an element has to have.
 const REQUIRED: &[(&str, &[&str])] = &[
-    ("binding.gdata", &["serviceType"]),
     ("implementation.bpel", &["process"]),
     ("implementation.c", &["module", "componentType"]),
     ("implementation.cpp", &["library", "header"]),
     ("implementation.ejb", &["ejb-link"]),
     ("implementation.jee", &["archive"]),
-    ("implementation.node", &["uri", "composite"]),
+    ("implementation.node", &["composite"]),
     ("implementation.notification", &["name"]),
     ("implementation.osgi", &["bundleSymbolicName"]),
     ("implementation.resource", &["location"]),

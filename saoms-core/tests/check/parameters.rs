@@ -271,3 +271,16 @@ fn a_value_that_a_component_has_to_give_is_awaited_of_one_that_is_not_seen() {
     "#]]
     .assert_eq(&found(&[&outer, &inner], true));
 }
+
+#[test]
+fn many_values_may_be_a_list_of_its_type() {
+    let of = |text: &str| {
+        faults(&format!(
+            r#"<property name="p" type="xsd:int" many="true" xmlns:xsd="http://www.w3.org/2001/XMLSchema">{text}</property>
+{}"#,
+            robot(r#"<property name="stops" source="$p"/>"#)
+        ))
+    };
+    assert!(!of("1 2\t3").contains("S2042"));
+    assert!(of("1 2 x").contains("error S2042: the property `p` is of the type `xsd:int`: found `1 2 x`"));
+}
