@@ -131,6 +131,15 @@ fn what_is_wrong_with_a_contribution_is_told() {
         ("a/sca-contribution.xml", "<contribution>\n<a></b></contribution>".to_owned()),
         ("fleet.composite", composite("urn:a", "fleet", "")),
     ]));
+    // Real ones have this, as composites do.
+    let with_namespace = description("").replace("<contribution", "<contribution targetNamespace='urn:a'");
+    assert_eq!(
+        fleets(&[
+            ("sca-contribution.xml", with_namespace),
+            ("fleet.composite", composite("urn:a", "fleet", ""))
+        ]),
+        "fleet.composite\n"
+    );
     expect![[r#"
         FOLDER:1:1 [] error S0002 a directory without composites
           the names of composites end with `.composite`

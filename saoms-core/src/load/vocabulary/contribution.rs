@@ -12,7 +12,7 @@ const URI: Known = required("uri", Holds::Uri, "A file of the contribution.");
 pub(in crate::load) static CONTRIBUTION: Kind = Kind {
     name: "contribution",
     doc: "What a folder of composites runs, gives to others and takes from them.",
-    attributes: &[],
+    attributes: &[known("targetNamespace", Holds::Uri, "Often written, as in composites. It means nothing.")],
     children: &[
         "deployable",
         "import",
