@@ -18,7 +18,7 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
         Err(exit) => return exit,
     };
     eprint(&outcome.human(Severity::Error));
-    let (Some(assembly), Some(first)) = (&outcome.assembly, outcome.first()) else {
+    let (Some(assembly), Some(first)) = (&outcome.made, outcome.first()) else {
         eprint(&format!("\n{}: nothing to expand\n", counted(outcome.count(Severity::Error), "error")));
         return Exit::WrongInput;
     };

@@ -25,14 +25,27 @@ pub(crate) const SEVERITY: &str = "--severity";
 /// The name that stands for standard input.
 pub(crate) const INPUT: &str = "-";
 
+/// What the checker is asked for: an assembly ([`check`](saoms_core::check::check)), or the diagnostics alone
+/// ([`count`](saoms_core::check::count)).
+pub(crate) type Checker<T> = fn(&Contribution, &Registry, &Options, &Sources, &mut Diagnostics) -> Option<T>;
+
 /// The outcome of loading and checking.
-pub(crate) struct Checked {
-    /// What is to run; absent where there was an error.
-    pub(crate) assembly: Option<Assembly>,
+pub(crate) struct Checked<T = Assembly> {
+    /// What the checker made: what is to run. Absent where there was an error.
+    pub(crate) made: Option<T>,
     pub(crate) contribution: Contribution,
     pub(crate) sources: Sources,
     /// Those that are kept for the record alone among them.
     pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+/// Which files are to be loaded, and how they are to be checked.
+pub(crate) struct Asked<'a> {
+    pub(crate) files: &'a [PathBuf],
+    /// The size of a file from which it is refused, in bytes.
+    pub(crate) max_size: u64,
+    pub(crate) options: Options,
+    pub(crate) search: &'a Search,
 }
 
 /// Loads the files and checks them as one fleet, as it is asked. Folders stand for the fleets that run in them.
@@ -46,7 +59,8 @@ pub(crate) fn checked(arguments: &FleetArguments, asked: Options) -> Result<Chec
     let options = options(arguments, asked, &mut sources, &mut diagnostics);
     let registry = registry(&arguments.plugins, &files)?;
     let search = search(&arguments.plugins, &files);
-    Ok(checked_with(&files, arguments.max_size, options, registry, &search, sources, diagnostics))
+    let asked = Asked { files: &files, max_size: arguments.max_size, options, search: &search };
+    Ok(checked_with(check, asked, registry, sources, diagnostics))
 }
 
 /// What the command line says of a check.
@@ -79,15 +93,14 @@ pub(crate) fn read_or_input(
 }
 
 /// The same with these classes and those of the libraries that the composites name; what was read and found before is kept.
-pub(crate) fn checked_with(
-    files: &[PathBuf],
-    max_size: u64,
-    options: Options,
+pub(crate) fn checked_with<T>(
+    check: Checker<T>,
+    asked: Asked<'_>,
     mut registry: Registry,
-    search: &Search,
     mut sources: Sources,
     mut diagnostics: Diagnostics,
-) -> Checked {
+) -> Checked<T> {
+    let Asked { files, max_size, options, search } = asked;
     let mut composites = Vec::new();
     for path in files {
         let file = read_or_input(path, max_size, &mut sources, &mut diagnostics);
@@ -103,11 +116,11 @@ pub(crate) fn checked_with(
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
     let options = Options { variables, ..options };
-    let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
-    Checked { assembly, contribution, sources, diagnostics: diagnostics.into_all() }
+    let made = check(&contribution, &registry, &options, &sources, &mut diagnostics);
+    Checked { made, contribution, sources, diagnostics: diagnostics.into_all() }
 }
 
-impl Checked {
+impl<T> Checked<T> {
     /// The first composite that was asked for.
     pub(crate) fn first(&self) -> Option<&Composite> {
         self.contribution.asked_for().first()

@@ -4,7 +4,6 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use saoms_core::assembly::Assembly;
 use saoms_core::check::Options;
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
 use saoms_core::load::{FolderFleet, load_folder};
@@ -14,7 +13,7 @@ use saoms_core::source::{Sources, Span};
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::fleet::{Checked, checked_with, options};
+use crate::fleet::{Asked, Checked, Checker, checked_with, options};
 use crate::plugins::{registry, search};
 
 /// Composites that are named where one of them has to be.
@@ -68,11 +67,11 @@ fn unclear(folder: &Path, fleets: &[FolderFleet], sources: &mut Sources) -> Diag
 }
 
 /// What a check of several fleets comes to.
-pub(crate) struct Several {
+pub(crate) struct Several<T> {
     /// All that is wrong.
-    pub(crate) checked: Checked,
-    /// What the fleets come to, with the first file of each; those with errors are not among them.
-    pub(crate) assemblies: Vec<(PathBuf, Assembly)>,
+    pub(crate) checked: Checked<T>,
+    /// What the checker made of the fleets, with the first file of each; those with errors are not among them.
+    pub(crate) made: Vec<(PathBuf, T)>,
     /// How many fleets there are.
     pub(crate) fleets: usize,
 }
@@ -81,7 +80,11 @@ pub(crate) struct Several {
 ///
 /// # Errors
 /// A plugin cannot be used, which was told.
-pub(crate) fn checked_each(arguments: &FleetArguments, asked: Options) -> Result<Several, Exit> {
+pub(crate) fn checked_each<T>(
+    arguments: &FleetArguments,
+    asked: Options,
+    check: Checker<T>,
+) -> Result<Several<T>, Exit> {
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
     let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) =
@@ -99,7 +102,7 @@ pub(crate) fn checked_each(arguments: &FleetArguments, asked: Options) -> Result
     let count = fleets.len();
     merged.add(diagnostics.into_all(), true, &sources);
     let mut contribution = Contribution::default();
-    let mut assemblies = Vec::new();
+    let mut made = Vec::new();
     // Composites in one folder have the same plugins, whose faults are told once.
     let mut registries: HashMap<Vec<PathBuf>, Registry> = HashMap::new();
     for FolderFleet { files, is_deployable } in fleets {
@@ -111,16 +114,16 @@ pub(crate) fn checked_each(arguments: &FleetArguments, asked: Options) -> Result
         };
         let search = search(&arguments.plugins, &files);
         let (options, registry) = (options.clone(), registry.clone());
-        let found =
-            checked_with(&files, arguments.max_size, options, registry, &search, sources, Diagnostics::new());
+        let asked = Asked { files: &files, max_size: arguments.max_size, options, search: &search };
+        let found = checked_with(check, asked, registry, sources, Diagnostics::new());
         sources = found.sources;
         merged.add(found.diagnostics, is_deployable, &sources);
         contribution = found.contribution;
-        assemblies.extend(files.into_iter().next().zip(found.assembly));
+        made.extend(files.into_iter().next().zip(found.made));
     }
     let diagnostics = merged.finish(count);
-    let checked = Checked { assembly: None, contribution, sources, diagnostics };
-    Ok(Several { checked, assemblies, fleets: count })
+    let checked = Checked { made: None, contribution, sources, diagnostics };
+    Ok(Several { checked, made, fleets: count })
 }
 
 /// The diagnostics of several fleets, in which composites can be that several of them name.

@@ -128,7 +128,7 @@ impl Watcher {
         let Ok(outcome) = checked(&self.arguments, Options::default()) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
-        let Some(assembly) = &outcome.assembly else {
+        let Some(assembly) = &outcome.made else {
             eprint(&outcome.human(Severity::Error));
             return self.handle.note(Level::Error, kept("the composites do not fit to it"));
         };

@@ -68,17 +68,17 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly> {
     let outcome = checked(files, Options::default()).ok()?;
     // Standard output belongs to the run, unless there is none.
-    match (arguments.format, &outcome.assembly) {
+    match (arguments.format, &outcome.made) {
         (Format::Json, None) => print(&format!("{:#}\n", outcome.json())),
         (Format::Json, Some(_)) => eprint(&format!("{:#}\n", outcome.json())),
         (Format::Human, _) => {
             eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
         }
     }
-    if outcome.assembly.is_none() && arguments.format == Format::Human {
+    if outcome.made.is_none() && arguments.format == Format::Human {
         eprint(&format!("\n{}: nothing was started\n", counted(outcome.count(Severity::Error), "error")));
     }
-    outcome.assembly
+    outcome.made
 }
 
 fn settings(arguments: &RunArguments) -> Settings {

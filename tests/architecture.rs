@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// The modules of `saoms-core`: each may use those before it, none after it.
 const CORE: &[&str] = &[
+    "hash",
     "source",
     "diagnostic",
     "expression",

@@ -223,7 +223,7 @@ pub struct ComponentView<'a> {
     /// The declaration of its class.
     pub declaration: &'a str,
     /// The declarations of the classes that its class extends, the nearest first.
-    pub extends: Vec<&'a str>,
+    pub extends: Rc<[&'a str]>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: &'a [(String, PropertyValue)],
     /// From one execution to the next, where it is periodic.
@@ -231,9 +231,9 @@ pub struct ComponentView<'a> {
     /// Whether its messages go to a broker, where others may be that this fleet does not know.
     pub has_broker: bool,
     /// The topics that it publishes, by their names before any `topicRename`.
-    pub publishes: Vec<&'a str>,
+    pub publishes: Rc<[&'a str]>,
     /// The classes of its loops, in their order.
-    pub loops: Vec<&'a str>,
+    pub loops: Rc<[&'a str]>,
     /// Its references that are wired, and the index of the component that each leads to.
     pub wires: Vec<(&'a str, usize)>,
 }

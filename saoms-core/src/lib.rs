@@ -8,6 +8,7 @@ pub mod diagnostic;
 pub mod expression;
 pub mod format;
 pub mod graph;
+mod hash;
 pub mod journal;
 pub mod load;
 pub mod model;

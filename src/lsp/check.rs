@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use saoms_core::check::Options;
+use saoms_core::check::{Options, count};
 use saoms_core::diagnostic::Diagnostics;
 use saoms_core::load::MAX_SIZE;
 use saoms_core::registry::Registry;
@@ -19,7 +19,7 @@ use super::diagnostics::{Reported, reported};
 use super::registries::Registries;
 use super::scene::Scene;
 use super::workspace::Workspace;
-use crate::fleet::checked_with;
+use crate::fleet::{Asked, checked_with};
 use crate::output::eprint;
 
 /// How long nothing has to change before a check starts.
@@ -124,15 +124,8 @@ impl Checker {
         let registry = Registry::clone(&self.registries.of(root, &[]));
         let search = self.registries.search(root);
         let sources = Sources::with_open(job.open.clone());
-        let found = checked_with(
-            &[root.to_owned()],
-            MAX_SIZE,
-            options,
-            registry,
-            &search,
-            sources,
-            Diagnostics::new(),
-        );
+        let asked = Asked { files: &[root.to_owned()], max_size: MAX_SIZE, options, search: &search };
+        let found = checked_with(count, asked, registry, sources, Diagnostics::new());
         for (_, file) in found.sources.iter() {
             seen.insert(identity(Path::new(file.path())));
         }

@@ -169,9 +169,9 @@ impl MemberView {
                 values,
                 period: (self.period != u64::MAX).then(|| Duration::from_nanos(self.period)),
                 has_broker: self.has_broker != 0,
-                extends: self.extends.read()?,
-                publishes: self.publishes.read()?,
-                loops: self.loops.read()?,
+                extends: self.extends.read()?.into(),
+                publishes: self.publishes.read()?.into(),
+                loops: self.loops.read()?.into(),
                 wires: list(self.wires, self.wire_count)?
                     .iter()
                     .map(|wire| Ok((wire.reference.get_text()?, wire.target)))

@@ -124,22 +124,52 @@ impl<'a> Rule<'a> {
     /// # Errors
     /// What was found and what was expected, in one line.
     pub fn check(&self, text: &str) -> Result<Scalar, String> {
-        let refuse = |what: &str| Err(format!("`{}` is {what}: expected {}", text.trim(), Expected(self)));
-        if text.trim().is_empty() && (self.non_empty || self.kind != PropertyKind::String) {
+        match self.kind {
+            PropertyKind::String => self.text(text).map(|()| Scalar::Text(text.to_owned())),
+            PropertyKind::Enumeration => self.text(text).map(|()| Scalar::Text(text.trim().to_owned())),
+            _ => self.number(text),
+        }
+    }
+
+    /// As [`check`](Rule::check), where the value is not asked for.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn allows(&self, text: &str) -> Result<(), String> {
+        match self.kind {
+            PropertyKind::String | PropertyKind::Enumeration => self.text(text),
+            _ => self.number(text).map(drop),
+        }
+    }
+
+    fn text(&self, text: &str) -> Result<(), String> {
+        let trimmed = text.trim();
+        if trimmed.is_empty() && (self.non_empty || self.kind != PropertyKind::String) {
             return Err(format!("the value is empty: expected {}", Expected(self)));
         }
-        let Some(value) = parse_scalar(self.kind, text) else { return refuse(why_not(self.kind, text)) };
-        if let Scalar::Text(text) = &value
-            && !self.allowed.is_empty()
-            && !self.allowed.contains(&text.as_str())
-        {
-            return refuse("not allowed");
+        let value = if self.kind == PropertyKind::String { text } else { trimmed };
+        match self.allowed.is_empty() || self.allowed.contains(&value) {
+            true => Ok(()),
+            false => Err(self.refusal("not allowed", text)),
         }
+    }
+
+    fn number(&self, text: &str) -> Result<Scalar, String> {
+        if text.trim().is_empty() {
+            return Err(format!("the value is empty: expected {}", Expected(self)));
+        }
+        let Some(value) = parse_scalar(self.kind, text) else {
+            return Err(self.refusal(why_not(self.kind, text), text));
+        };
         let order = |bound: Option<&str>| value.compare(&parse_scalar(self.kind, bound?)?);
         let below = order(self.min) == Some(Ordering::Less);
         let above = order(self.max) == Some(Ordering::Greater)
             || matches!(order(self.exclusive_max), Some(Ordering::Greater | Ordering::Equal));
-        if below || above { refuse("out of range") } else { Ok(value) }
+        if below || above { Err(self.refusal("out of range", text)) } else { Ok(value) }
+    }
+
+    fn refusal(&self, what: &str, text: &str) -> String {
+        format!("`{}` is {what}: expected {}", text.trim(), Expected(self))
     }
 
     /// What is expected, as in `a whole number from 1 to 99 [%]`.

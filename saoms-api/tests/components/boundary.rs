@@ -420,16 +420,16 @@ fn a_rule_finds_the_same_behind_the_boundary() {
         path: "hall/robot",
         class: "test.Busy",
         declaration: Busy::DECLARATION,
-        extends: vec!["{}", "{1}"],
+        extends: ["{}", "{1}"].into(),
         values: &values,
         period: Some(Duration::from_millis(50)),
         has_broker: true,
-        publishes: vec!["A", "B"],
-        loops: vec!["test.Dimmer"],
+        publishes: ["A", "B"].into(),
+        loops: ["test.Dimmer"].into(),
         wires: vec![("adder", 1)],
     };
     let other =
-        ComponentView { period: None, has_broker: false, values: &[], publishes: vec![], ..one.clone() };
+        ComponentView { period: None, has_broker: false, values: &[], publishes: [].into(), ..one.clone() };
     // SAFETY: the function of the table is this crate's own.
     let imported = unsafe { ImportedRule::new(RuleTable::of(&SHOWN)) };
     for missing in [

@@ -20,7 +20,6 @@ use std::sync::Arc;
 
 use saoms_api::{SharedMessage, TopicDeclaration};
 
-pub(crate) use hash::fold;
 use topic::{Reader, Topic};
 
 /// All topics of a fleet, by the names that they have after renaming.

@@ -4,8 +4,8 @@ use saoms_api::{SharedMessage, TopicDeclaration, TopicKind};
 
 use super::Mismatch;
 use super::events::EventLog;
-use super::hash::fold;
 use super::state::StateTable;
+use crate::hash::fold;
 
 /// One topic: what it carries, and what it holds at present.
 pub(super) struct Topic {

@@ -4,7 +4,7 @@
 //! answer, so such a circle of wires is a fault of the composite.
 
 use super::classes::ClassIndex;
-use super::cycles::{Edge, cycles};
+use super::cycles::cycles;
 use super::fleet::Fleet;
 use super::report::Report;
 use super::target::Provider;
@@ -15,8 +15,8 @@ use crate::source::Location;
 const SHOWN: usize = 8;
 
 /// The wires of a fleet along which components call each other.
+#[derive(Default)]
 pub(super) struct Circles<'f> {
-    edges: Vec<Vec<Edge>>,
     wires: Vec<Wire<'f>>,
 }
 
@@ -28,10 +28,6 @@ struct Wire<'f> {
 }
 
 impl<'f> Circles<'f> {
-    pub(super) fn new(members: usize) -> Self {
-        Self { edges: std::iter::repeat_with(Vec::new).take(members).collect(), wires: Vec::new() }
-    }
-
     /// Adds a wire. What the host serves for a component does not disturb the component.
     pub(super) fn add(
         &mut self,
@@ -45,14 +41,14 @@ impl<'f> Circles<'f> {
         let is_of_host =
             fleet.class_of(to.member, classes).is_some_and(|class| class.services[to.service].is_of_host());
         if !is_of_host {
-            self.edges[member].push(Edge { to: to.member, wire: self.wires.len() });
             self.wires.push(Wire { member, reference, to: to.member, place });
         }
     }
 
     /// Reports every circle at the wire that closes it.
     pub(super) fn check(&self, fleet: &Fleet<'_>, report: &mut Report<'_>) {
-        for circle in cycles(&self.edges) {
+        let edges: Vec<(usize, usize)> = self.wires.iter().map(|wire| (wire.member, wire.to)).collect();
+        for circle in cycles(fleet.members.len(), &edges) {
             self.report(&circle, fleet, report);
         }
     }

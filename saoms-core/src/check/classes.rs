@@ -1,5 +1,6 @@
 //! Which class each component is of.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -11,7 +12,8 @@ use crate::diagnostic::{Diagnostic, codes, nearest_few, quoted};
 use crate::expression::has_expression;
 use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
-    Class, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration, TopicDeclaration,
+    Class, InterfaceDeclaration, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration,
+    TopicDeclaration,
 };
 use crate::source::{Sources, Text};
 
@@ -28,6 +30,17 @@ pub(super) struct ClassIndex<'r> {
     pub(super) references: Vec<&'r ReferenceDeclaration>,
     pub(super) publishes: Vec<&'r TopicDeclaration>,
     pub(super) subscribes: Vec<&'r TopicDeclaration>,
+    /// Which of its services fit the interfaces that were asked for: the declarations are long, and few.
+    fitting: RefCell<Vec<(*const InterfaceDeclaration, Fitting)>>,
+}
+
+/// The services of a class with an interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fitting {
+    None,
+    /// The one of this place.
+    One(usize),
+    Several,
 }
 
 impl<'r> ClassIndex<'r> {
@@ -41,6 +54,7 @@ impl<'r> ClassIndex<'r> {
             references: declaration.references.iter().collect(),
             publishes: declaration.publishes.iter().collect(),
             subscribes: declaration.subscribes.iter().collect(),
+            fitting: RefCell::default(),
         }
     }
 
@@ -58,6 +72,23 @@ impl<'r> ClassIndex<'r> {
             }
         }
         all
+    }
+
+    /// Which of its services have an interface.
+    pub(super) fn fitting(&self, interface: &InterfaceDeclaration) -> Fitting {
+        let mut known = self.fitting.borrow_mut();
+        if let Some((_, fitting)) = known.iter().find(|(asked, _)| std::ptr::eq(*asked, interface)) {
+            return *fitting;
+        }
+        let all = self.services.iter().enumerate();
+        let mut all = all.filter(|(_, service)| service.interface == *interface).map(|(place, _)| place);
+        let fitting = match (all.next(), all.next()) {
+            (None, _) => Fitting::None,
+            (Some(only), None) => Fitting::One(only),
+            (Some(_), Some(_)) => Fitting::Several,
+        };
+        known.push((interface, fitting));
+        fitting
     }
 
     /// Whether the topics it declares are any.

@@ -1,6 +1,7 @@
 //! What components say about their services and references, held against their classes.
 
 use std::collections::HashMap;
+use std::fmt;
 
 use super::classes::ClassIndex;
 use super::fleet::Fleet;
@@ -16,14 +17,18 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
         let component = member.component;
-        if !component.services.is_empty() {
+        if component.services.len() > 1 {
             let names = component.services.iter().map(|service| &service.name);
             repeated(names, component, "service", "ASM50002", report);
+        }
+        if !component.services.is_empty() {
             services(place, fleet, classes, report);
         }
-        if !component.references.is_empty() {
+        if component.references.len() > 1 {
             let names = component.references.iter().map(|reference| &reference.name);
             repeated(names, component, "reference", "ASM50007", report);
+        }
+        if !component.references.is_empty() {
             references(place, fleet, classes, report);
         }
     }
@@ -31,11 +36,19 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
 }
 
 /// What implements a component, for people.
-fn whose(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> Option<String> {
-    if let Some(class) = fleet.class_of(member, classes) {
-        return Some(format!("class {}", quoted(class.class.name())));
+struct Whose<'w>(&'static str, &'w str);
+
+impl fmt::Display for Whose<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{} {}", self.0, quoted(self.1))
     }
-    Some(format!("composite {}", quoted(&fleet.inner(member)?.main().name)))
+}
+
+fn whose<'w>(member: usize, fleet: &Fleet<'w>, classes: &'w [ClassIndex<'_>]) -> Option<Whose<'w>> {
+    if let Some(class) = fleet.class_of(member, classes) {
+        return Some(Whose("class", class.class.name()));
+    }
+    Some(Whose("composite", &fleet.inner(member)?.main().name))
 }
 
 fn services(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
@@ -65,7 +78,6 @@ fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], repo
     let class = fleet.class_of(member, classes);
     for reference in &fleet.members[member].component.references {
         let name = &reference.name;
-        let names = fleet.reference_names(member, classes).unwrap_or_default();
         let declared =
             class.and_then(|class| class.references.iter().find(|known| known.name == name.as_str()));
         let inner =
@@ -78,6 +90,7 @@ fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], repo
             let own = inner.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value);
             narrows(reference, own, &whose, report);
         } else {
+            let names = fleet.reference_names(member, classes).unwrap_or_default();
             unknown(&codes::UNKNOWN_REFERENCE, "reference", name, &whose, names.iter().copied(), report);
         }
     }
@@ -106,7 +119,7 @@ fn unknown<'n>(
     code: &'static Code,
     what: &str,
     name: &Text,
-    whose: &str,
+    whose: &Whose<'_>,
     known: impl Iterator<Item = &'n str> + Clone,
     report: &mut Report<'_>,
 ) {
@@ -127,14 +140,13 @@ fn interface(
     report: &mut Report<'_>,
 ) {
     let Some(given) = given else { return };
+    let named = given.interface.as_ref();
+    if named.is_some_and(|name| name.as_str() == declared.name && can_name(given.kind)) {
+        return;
+    }
     let (of, expected) = (quoted(of), quoted(&declared.name));
     let one = match &given.interface {
-        Some(name)
-            if matches!(given.kind, InterfaceKind::Java | InterfaceKind::Rust | InterfaceKind::Other) =>
-        {
-            if name.as_str() == declared.name {
-                return;
-            }
+        Some(name) if can_name(given.kind) => {
             let message = format!("the interface of {of} is {expected}, not {}", quoted(name));
             Diagnostic::new(&codes::INTERFACE_DIFFERS, name.location, message).suggest(
                 replacing(name, &declared.name),
@@ -153,6 +165,11 @@ fn interface(
     report.push(one.rule(rule));
 }
 
+/// Whether elements of this kind can name an interface of a class.
+const fn can_name(kind: InterfaceKind) -> bool {
+    matches!(kind, InterfaceKind::Java | InterfaceKind::Rust | InterfaceKind::Other)
+}
+
 /// How many targets a reference of the class can have.
 pub(super) fn of_class(declared: &ReferenceDeclaration) -> Multiplicity {
     match (declared.optional, declared.many) {
@@ -164,7 +181,12 @@ pub(super) fn of_class(declared: &ReferenceDeclaration) -> Multiplicity {
 }
 
 /// Checks that the multiplicity that a component gives narrows that of what implements it.
-pub(super) fn narrows(reference: &Reference, own: Multiplicity, whose: &str, report: &mut Report<'_>) {
+pub(super) fn narrows(
+    reference: &Reference,
+    own: Multiplicity,
+    whose: &dyn fmt::Display,
+    report: &mut Report<'_>,
+) {
     let Some(given) = &reference.multiplicity else { return };
     if given.value.narrows(own) {
         return;

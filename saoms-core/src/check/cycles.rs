@@ -1,15 +1,10 @@
 //! Cycles in a directed graph.
 
-/// An edge of the graph: where it leads, and what the caller knows it by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Edge {
-    pub(super) to: usize,
-    pub(super) wire: usize,
-}
-
-/// The wires of cycles, each in the order of walking it, one cycle for each wire that leads back to where a walk in
-/// order of the nodes came from: without all those wires there is no cycle. Time and space are linear in the graph.
-pub(super) fn cycles(edges: &[Vec<Edge>]) -> Vec<Vec<usize>> {
+/// The cycles among so many nodes that have these edges, each from a node to another one.
+///
+/// A cycle is the places of its edges in the order of walking it; there is one for each edge that leads back to where a walk in
+/// order of the nodes came from: without all those there is no cycle. Time and space are linear in the graph.
+pub(super) fn cycles(nodes: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> {
     #[derive(Clone, Copy, PartialEq)]
     enum State {
         New,
@@ -17,34 +12,45 @@ pub(super) fn cycles(edges: &[Vec<Edge>]) -> Vec<Vec<usize>> {
         Open(usize),
         Done,
     }
-    let mut states = vec![State::New; edges.len()];
+    // The edges of all nodes in order, and where those of each start.
+    let mut starts = vec![0; nodes + 1];
+    edges.iter().for_each(|(from, _)| starts[from + 1] += 1);
+    for node in 0..nodes {
+        starts[node + 1] += starts[node];
+    }
+    let mut leaving: Vec<usize> = (0..edges.len()).collect();
+    leaving.sort_by_key(|edge| edges[*edge].0);
+    let mut states = vec![State::New; nodes];
     let mut found = Vec::new();
-    for start in 0..edges.len() {
-        if states[start] != State::New || edges[start].is_empty() {
+    // Nodes from the start of a walk, each with its next edge, and the edges between them.
+    let mut path: Vec<(usize, usize)> = Vec::new();
+    let mut walked: Vec<usize> = Vec::new();
+    for start in 0..nodes {
+        if states[start] != State::New || starts[start] == starts[start + 1] {
             continue;
         }
-        // Nodes from `start`, each with how many of its edges were taken, and the wires between them.
-        let mut path = vec![(start, 0)];
-        let mut wires: Vec<usize> = Vec::new();
+        path.push((start, starts[start]));
         states[start] = State::Open(0);
-        while let Some((node, taken)) = path.last_mut() {
+        while let Some((node, next)) = path.last_mut() {
             let node = *node;
-            let Some(edge) = edges[node].get(*taken) else {
+            if *next == starts[node + 1] {
                 states[node] = State::Done;
                 path.pop();
-                wires.pop();
+                walked.pop();
                 continue;
-            };
-            *taken += 1;
-            match states[edge.to] {
+            }
+            let edge = leaving[*next];
+            let to = edges[edge].1;
+            *next += 1;
+            match states[to] {
                 State::New => {
-                    states[edge.to] = State::Open(path.len());
-                    path.push((edge.to, 0));
-                    wires.push(edge.wire);
+                    states[to] = State::Open(path.len());
+                    path.push((to, starts[to]));
+                    walked.push(edge);
                 }
                 State::Open(place) => {
-                    let mut cycle = wires[place..].to_vec();
-                    cycle.push(edge.wire);
+                    let mut cycle = walked[place..].to_vec();
+                    cycle.push(edge);
                     found.push(cycle);
                 }
                 State::Done => {}

@@ -113,6 +113,11 @@ impl<'a> Member<'a> {
         self.path.as_deref().unwrap_or(&self.component.name)
     }
 
+    /// Whether it is there in a run, rather than the composite that it is.
+    pub(super) fn runs(&self) -> bool {
+        !matches!(self.kind, Kind::Composite(_))
+    }
+
     pub(super) fn set_path(&mut self, path: String) {
         self.path = Some(path.into());
     }

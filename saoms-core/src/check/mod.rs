@@ -103,6 +103,40 @@ pub fn check(
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly> {
+    examine(contribution, registry, options, sources, diagnostics, |sound, severities, report| {
+        let places = if options.wiring { sound.places() } else { Vec::new() };
+        let assembly = sound.assemble(|one| classes::library(one, contribution, sources))?;
+        if options.wiring {
+            let known = report.diagnostics().len();
+            traffic::check(&assembly, &places, report);
+            severities.apply(known, report.diagnostics());
+        }
+        Some(assembly)
+    })
+}
+
+/// As [`check`] for the diagnostics alone, which needs no assembly: the number of components of the fleet that there would be.
+///
+/// What [`Options::wiring`] asks for is told of assemblies only.
+pub fn count(
+    contribution: &Contribution,
+    registry: &Registry,
+    options: &Options,
+    sources: &Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<usize> {
+    examine(contribution, registry, options, sources, diagnostics, |sound, _, _| sound.count())
+}
+
+/// Looks at everything, and makes something of a fleet without errors.
+fn examine<T>(
+    contribution: &Contribution,
+    registry: &Registry,
+    options: &Options,
+    sources: &Sources,
+    diagnostics: &mut Diagnostics,
+    make: impl FnOnce(Sound<'_, '_>, &mut Severities, &mut Report<'_>) -> Option<T>,
+) -> Option<T> {
     let mut severities = Severities::of(contribution, options, registry, diagnostics);
     let report = &mut Report::new(sources, diagnostics);
     report.assumes = options.assume_classes;
@@ -143,24 +177,10 @@ pub fn check(
     if report.has_errors() {
         return None;
     }
-    let places: Vec<traffic::Place> = match options.wiring {
-        true => fleet
-            .members
-            .iter()
-            .zip(&resolved)
-            .filter_map(|(member, one)| place(member, one.as_ref()?))
-            .collect(),
-        false => Vec::new(),
-    };
-    let assembly =
-        assemble(&fleet, &classes, resolved, &wiring, |one| classes::library(one, contribution, sources));
-    if let Some(assembly) = assembly.as_ref().filter(|_| options.wiring) {
-        let known = report.diagnostics().len();
-        traffic::check(assembly, &places, report);
-        severities.apply(known, report.diagnostics());
-    }
+    let sound = Sound { fleet: &fleet, classes: &classes, resolved, wiring: &wiring };
+    let made = make(sound, &mut severities, report);
     severities.finish(options.wiring, report.diagnostics());
-    assembly.filter(|_| !report.has_errors())
+    made.filter(|_| !report.has_errors())
 }
 
 /// The files of values of components that are taken as given may come with what implements them: that they are not there is a warning.
@@ -185,12 +205,6 @@ struct Resolved<'r> {
     /// Where its topics got other names.
     renamed: Vec<(String, Location)>,
     loops: loops::Resolved<'r>,
-}
-
-/// Where a component of the assembly stands.
-fn place(member: &Member<'_>, resolved: &Resolved<'_>) -> Option<traffic::Place> {
-    let place = || traffic::Place { name: member.component.name.location, renamed: resolved.renamed.clone() };
-    (!matches!(member.kind, Kind::Composite(_))).then(place)
 }
 
 impl Resolved<'_> {
@@ -279,51 +293,71 @@ fn components<'f, 'a>(
     all
 }
 
-/// The assembly; `None` when something is missing, which was reported or is taken as given.
-fn assemble(
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-    resolved: Vec<Option<Box<Resolved<'_>>>>,
-    wiring: &Wiring,
-    library: impl Fn(&crate::model::Component) -> Option<String>,
-) -> Option<Assembly> {
-    // Components that composites implement are not there in a run: the others close ranks.
-    let is_composite = |member: &fleet::Member<'_>| matches!(member.kind, Kind::Composite(_));
-    let mut count = 0;
-    let places = fleet.members.iter().map(|member| {
-        count += usize::from(!is_composite(member));
-        count.saturating_sub(1)
-    });
-    let places: Vec<usize> = places.collect();
-    let mut components = Vec::with_capacity(count);
-    for (place, resolved) in resolved.into_iter().enumerate() {
-        if is_composite(&fleet.members[place]) {
-            continue;
-        }
-        let class = fleet.class_of(place, classes)?;
-        let Resolved { values, task, loops, .. } = *resolved?;
-        let references = class.references.iter().zip(&wiring[place]);
-        let references = references.map(|(declared, providers)| Wire {
-            reference: declared.name.clone(),
-            interface: declared.interface.name.clone(),
-            targets: providers
-                .iter()
-                .filter_map(|provider| {
-                    let class = fleet.class_of(provider.member, classes)?;
-                    let service = class.services[provider.service].name.clone();
-                    Some(Target { component: places[provider.member], service })
-                })
-                .collect(),
-        });
-        components.push(ComponentSpec {
-            path: fleet.members[place].path().to_owned(),
-            class: std::sync::Arc::clone(class.class),
-            library: library(fleet.members[place].component),
-            values,
-            task,
-            references: references.collect(),
-            loops: loops.specs,
-        });
+/// A fleet without errors. Components of it may have no class where that is taken as given.
+struct Sound<'s, 'a> {
+    fleet: &'s Fleet<'a>,
+    classes: &'s [ClassIndex<'a>],
+    resolved: Vec<Option<Box<Resolved<'a>>>>,
+    wiring: &'s Wiring,
+}
+
+impl Sound<'_, '_> {
+    /// How many components there are; `None` when something is taken as given.
+    fn count(&self) -> Option<usize> {
+        let runs = self.fleet.members.iter().zip(&self.resolved).filter(|(member, _)| member.runs());
+        runs.map(|(_, resolved)| resolved.as_ref().map(|_| 1)).sum()
     }
-    Some(Assembly { components })
+
+    /// Where the components of the assembly stand.
+    fn places(&self) -> Vec<traffic::Place> {
+        let runs = self.fleet.members.iter().zip(&self.resolved).filter(|(member, _)| member.runs());
+        let places = runs.filter_map(|(member, resolved)| {
+            let renamed = resolved.as_ref()?.renamed.clone();
+            Some(traffic::Place { name: member.component.name.location, renamed })
+        });
+        places.collect()
+    }
+
+    /// The assembly; `None` when something is taken as given.
+    fn assemble(self, library: impl Fn(&crate::model::Component) -> Option<String>) -> Option<Assembly> {
+        let Self { fleet, classes, resolved, wiring } = self;
+        // Components that composites implement are not there in a run: the others close ranks.
+        let mut count = 0;
+        let places = fleet.members.iter().map(|member| {
+            count += usize::from(member.runs());
+            count.saturating_sub(1)
+        });
+        let places: Vec<usize> = places.collect();
+        let mut components = Vec::with_capacity(count);
+        for (place, resolved) in resolved.into_iter().enumerate() {
+            if !fleet.members[place].runs() {
+                continue;
+            }
+            let class = fleet.class_of(place, classes)?;
+            let Resolved { values, task, loops, .. } = *resolved?;
+            let references = class.references.iter().zip(wiring.of(place));
+            let references = references.map(|(declared, providers)| Wire {
+                reference: declared.name.clone(),
+                interface: declared.interface.name.clone(),
+                targets: providers
+                    .iter()
+                    .filter_map(|provider| {
+                        let class = fleet.class_of(provider.member, classes)?;
+                        let service = class.services[provider.service].name.clone();
+                        Some(Target { component: places[provider.member], service })
+                    })
+                    .collect(),
+            });
+            components.push(ComponentSpec {
+                path: fleet.members[place].path().to_owned(),
+                class: std::sync::Arc::clone(class.class),
+                library: library(fleet.members[place].component),
+                values,
+                task,
+                references: references.collect(),
+                loops: loops.specs,
+            });
+        }
+        Some(Assembly { components })
+    }
 }

@@ -47,7 +47,7 @@ pub(super) fn check<'f>(
                 .promote()
                 .iter()
                 .flat_map(|promote| spread(promote, unit.scope, fleet))
-                .filter_map(|promote| find(&promote, Side::Reference, unit, fleet, classes, report));
+                .filter_map(|(promote, _)| find(&promote, Side::Reference, unit, fleet, classes, report));
             let found: Vec<Place<'f>> = found.collect();
             found.iter().for_each(|inner| may_be_promoted(*inner, reference, fleet, classes, report));
             match owner {

@@ -22,6 +22,8 @@ use crate::xml::Document;
 
 /// What a component gives for one property of its class.
 pub(super) struct Given {
+    /// The place of the property in its class.
+    slot: usize,
     pub(super) value: PropertyValue,
     /// Where the value is, to point at.
     pub(super) place: Location,
@@ -60,8 +62,8 @@ impl Written<'_> {
 
 /// What all properties of a component come to.
 pub(super) struct Checked {
-    /// By the places of the class's properties, of which most components give few.
-    pub(super) given: Vec<Option<Box<Given>>>,
+    /// In the order of the class's properties, of which most components give few.
+    given: Vec<Given>,
     /// Whether there was no fault, so that the component can be constructed.
     pub(super) is_sound: bool,
 }
@@ -69,14 +71,18 @@ pub(super) struct Checked {
 impl Checked {
     /// What is given for the property of this name.
     pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<&Given> {
-        self.given[slots.place(name)?].as_deref()
+        self.at(slots.place(name)?)
+    }
+
+    /// What is given for the property of this place.
+    pub(super) fn at(&self, slot: usize) -> Option<&Given> {
+        self.given.iter().find(|given| given.slot == slot)
     }
 
     /// Where the class's own properties are given.
     pub(super) fn places<'r>(&self, slots: &Slots<'r>) -> Vec<Written<'r>> {
-        let slots = slots.all.iter().zip(&self.given);
-        let places = slots.filter_map(|(slot, given)| {
-            let (property, given) = (&slot.own?.name, given.as_ref()?);
+        let places = self.given.iter().filter_map(|given| {
+            let property = &slots.all[given.slot].own?.name;
             Some(Written { property, first: given.place, more: given.more.clone(), source: given.source })
         });
         places.collect()
@@ -88,9 +94,9 @@ impl Checked {
         slots: &Slots<'r>,
         of: impl Fn(&Slot<'r>) -> Option<&'r PropertyDeclaration>,
     ) -> Vec<(String, PropertyValue)> {
-        let slots = slots.all.iter().zip(&self.given);
+        let given = self.given.iter();
         let values =
-            slots.filter_map(|(slot, given)| Some((of(slot)?.name.clone(), given.as_ref()?.value.clone())));
+            given.filter_map(|given| Some((of(&slots.all[given.slot])?.name.clone(), given.value.clone())));
         values.collect()
     }
 }
@@ -136,12 +142,12 @@ pub(super) fn check<'a>(
     giver: &Giver<'_, 'a>,
     slots: &Slots<'_>,
     parameters: &mut Parameters<'a>,
-    values: &mut Values,
+    values: &mut Values<'a>,
     report: &mut Report<'_>,
 ) -> Checked {
     let member = giver.member;
-    let mut given: Vec<Option<Box<Given>>> = std::iter::repeat_with(|| None).take(slots.all.len()).collect();
-    let mut first: Vec<Option<&Property>> = vec![None; slots.all.len()];
+    let mut given: Vec<Given> = Vec::with_capacity(giver.properties.len());
+    let mut first = values.first(slots.all.len());
     // Those whose `source` is right, and has no value.
     let mut unset: Vec<&Text> = Vec::new();
     let mut is_sound = true;
@@ -167,13 +173,15 @@ pub(super) fn check<'a>(
         }
         first[place] = Some(property);
         let slot = &slots.all[place];
-        match value(member, property, slot, parameters, values, report) {
+        match value(member, property, (place, slot), parameters, values, report) {
             Ok(None) => unset.push(&property.name),
-            Ok(value) => given[place] = value.map(Box::new),
+            Ok(Some(value)) => {
+                if let Some(described) = giver.described {
+                    described::value(described, &property.name, &value, report);
+                }
+                given.push(value);
+            }
             Err(()) => is_sound = false,
-        }
-        if let (Some(described), Some(given)) = (giver.described, &given[place]) {
-            described::value(described, &property.name, given, report);
         }
     }
     for (default, document) in giver.defaults() {
@@ -184,14 +192,18 @@ pub(super) fn check<'a>(
         let found = raw(default, document, None, report);
         let used = Use { property: default.tag(), source: Some(giver.name.location) };
         let found = found.map(|found| found.inside_elements_of(default));
-        match found.and_then(|found| converted(default, found, used, &slots.all[place], values, report)) {
-            Ok(value) => given[place] = Some(Box::new(value)),
+        match found
+            .and_then(|found| converted(default, found, used, (place, &slots.all[place]), values, report))
+        {
+            Ok(value) => given.push(value),
             Err(()) => is_sound = false,
         }
     }
-    for (place, slot) in slots.all.iter().enumerate() {
+    given.sort_unstable_by_key(|given| given.slot);
+    for &place in &slots.required {
+        let slot = &slots.all[place];
         let Some(declaration) = slot.main() else { continue };
-        if given[place].is_some() || !slot.is_required() {
+        if given.iter().any(|given| given.slot == place) {
             continue;
         }
         let name = declaration.name.as_str();
@@ -210,6 +222,7 @@ pub(super) fn check<'a>(
             Some(_) => {}
         }
     }
+    values.keep(first);
     Checked { given, is_sound: is_sound && !member.is_partial }
 }
 
@@ -217,11 +230,18 @@ pub(super) fn check<'a>(
 fn value<'a>(
     member: &Member<'a>,
     property: &'a Property,
-    slot: &Slot<'_>,
+    slot: (usize, &Slot<'_>),
     parameters: &mut Parameters<'a>,
-    values: &mut Values,
+    values: &mut Values<'a>,
     report: &mut Report<'_>,
 ) -> Result<Option<Given>, ()> {
+    if let Some(text) = property.only_text().filter(|_| slot.1.takes_text()) {
+        let used = Use { property: property.tag(), source: None };
+        let path = Path { outer: None, name: &property.name };
+        let value = values.text(text, path, slot.1.declarations(), used, report).ok_or(())?;
+        let place = text.location;
+        return Ok(Some(Given { slot: slot.0, value, place, more: Vec::new(), source: None }));
+    }
     let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
     let Found { raw: found, source } = parameters.taken(place, property, report)?;
     if source.is_none() && property.source().is_some() && found.0.is_empty() {
@@ -236,20 +256,20 @@ fn converted(
     property: &Property,
     found: Raw<'_>,
     used: Use,
-    slot: &Slot<'_>,
-    values: &mut Values,
+    (slot, declared): (usize, &Slot<'_>),
+    values: &mut Values<'_>,
     report: &mut Report<'_>,
 ) -> Result<Given, ()> {
     let path = Path { outer: None, name: &property.name };
     let place = found.0.first().map_or(used.property, Piece::location);
     let more = found.0.iter().skip(1).map(Piece::location).collect();
-    let both: [Option<&PropertyDeclaration>; 2] = [slot.own, slot.task];
+    let both: [Option<&PropertyDeclaration>; 2] = [declared.own, declared.task];
     let value = match both {
         [Some(own), Some(task)] => values.convert(found, path, &[own, task], used, report),
         [Some(one), None] | [None, Some(one)] => values.convert(found, path, &[one], used, report),
         [None, None] => None,
     };
-    Ok(Given { value: value.ok_or(())?, place, more, source: used.source })
+    Ok(Given { slot, value: value.ok_or(())?, place, more, source: used.source })
 }
 
 fn report_unknown(property: &Property, slots: &Slots<'_>, report: &mut Report<'_>) {

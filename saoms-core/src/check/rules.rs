@@ -1,15 +1,18 @@
 //! What rules of crates of components find in the fleet as a whole.
 
+use std::rc::Rc;
+
 use saoms_api::{ComponentView, FleetView};
 
 use super::Resolved;
 use super::classes::ClassIndex;
 use super::findings::{Subject, diagnostic};
-use super::fleet::{Fleet, Kind, Member};
+use super::fleet::Fleet;
 use super::report::Report;
 use super::wires::Wiring;
+use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::registry::Rule;
+use crate::registry::{Class, Rule};
 
 /// Asks the rules about the components that are resolved; where some are not, only the rules that can judge a part of a fleet.
 pub(super) fn check<'s>(
@@ -20,8 +23,6 @@ pub(super) fn check<'s>(
     rules: impl Iterator<Item = &'s Rule>,
     report: &mut Report<'_>,
 ) {
-    // Components that composites implement are not there in a run.
-    let runs = |member: &Member<'_>| !matches!(member.kind, Kind::Composite(_));
     let mut places = Vec::with_capacity(fleet.members.len());
     let mut missing = Vec::new();
     if fleet.scopes.iter().any(|scope| scope.is_faulty) {
@@ -31,9 +32,9 @@ pub(super) fn check<'s>(
     let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
     for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
         let class = fleet.class_of(place, classes);
-        let (true, Some(resolved), Some(class)) = (runs(member), resolved, class) else {
+        let (true, Some(resolved), Some(class)) = (member.runs(), resolved, class) else {
             places.push(None);
-            if runs(member) {
+            if member.runs() {
                 missing.push(class.map(|class| {
                     let own = std::iter::once(class.class.declaration_json());
                     own.chain(class.class.extended_json()).collect()
@@ -46,28 +47,28 @@ pub(super) fn check<'s>(
         parts.push((place, resolved, class));
     }
     let Some(first) = subjects.first().copied() else { return };
+    let mut lists = Lists::default();
     let views: Vec<ComponentView<'_>> = parts
         .iter()
         .zip(&subjects)
         .map(|((place, resolved, class), subject)| {
             let declaration = class.class.declaration();
-            let references = class.references.iter().zip(&wiring[*place]);
+            let references = class.references.iter().zip(wiring.of(*place));
             let wires = references.flat_map(|(reference, providers)| {
                 let known = providers.iter().filter_map(|provider| places[provider.member]);
                 known.map(|place| (reference.name.as_str(), place))
             });
-            let own = declaration.publishes.iter();
-            let of_loops = resolved.loops.specs.iter().flat_map(|one| &one.class.declaration().publishes);
+            let Lists { extends, publishes, loops, .. } = lists.of(class, resolved).clone();
             ComponentView {
                 path: subject.name,
                 class: &declaration.name,
                 declaration: class.class.declaration_json(),
-                extends: class.class.extended_json().collect(),
+                extends,
                 values: &resolved.values,
                 period: resolved.task.as_ref().map(|task| task.period),
                 has_broker: resolved.task.as_ref().is_some_and(|task| task.url.is_some()),
-                publishes: own.chain(of_loops).map(|topic| topic.name.as_str()).collect(),
-                loops: resolved.loops.specs.iter().map(|one| one.class.name()).collect(),
+                publishes,
+                loops,
                 wires: wires.collect(),
             }
         })
@@ -95,5 +96,33 @@ pub(super) fn check<'s>(
                 report.push(one);
             }
         }
+    }
+}
+
+/// What all components of a class with the same loops have in common.
+#[derive(Clone, Default)]
+struct Lists<'s> {
+    /// Whose lists these are.
+    of: Option<(&'s Class, &'s [LoopSpec])>,
+    extends: Rc<[&'s str]>,
+    publishes: Rc<[&'s str]>,
+    loops: Rc<[&'s str]>,
+}
+
+impl<'s> Lists<'s> {
+    /// Those of a component: mostly those of the one before.
+    fn of(&mut self, class: &ClassIndex<'s>, resolved: &'s Resolved<'_>) -> &Self {
+        let (class, loops): (&'s Class, &'s [LoopSpec]) = (class.class, &resolved.loops.specs);
+        if !self.of.is_some_and(|(of, known)| std::ptr::eq(of, class) && std::ptr::eq(known, loops)) {
+            let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
+            let published = class.declaration().publishes.iter().chain(of_loops);
+            *self = Self {
+                of: Some((class, loops)),
+                extends: class.extended_json().collect(),
+                publishes: published.map(|topic| topic.name.as_str()).collect(),
+                loops: loops.iter().map(|one| one.class.name()).collect(),
+            };
+        }
+        self
     }
 }

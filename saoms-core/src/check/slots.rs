@@ -1,11 +1,14 @@
 //! The properties that components of a class, or loops, can be given.
 
-use std::collections::HashMap;
-
 use saoms_api::PropertyValue;
+use saoms_api::declaration::PropertyKind;
 
 use crate::assembly::TaskProperties;
+use crate::hash::Map;
 use crate::registry::{Class, LoopClass, PropertyDeclaration};
+
+/// The task property that people know a task by.
+const ID: &str = "ID";
 
 /// The properties of a class or a loop.
 pub(super) struct Slots<'r> {
@@ -15,7 +18,11 @@ pub(super) struct Slots<'r> {
     pub(super) name: &'r str,
     /// Its properties, those of tasks behind its own.
     pub(super) all: Vec<Slot<'r>>,
-    by_name: HashMap<&'r str, usize>,
+    /// The places of those that no two components may share.
+    pub(super) unique: Vec<usize>,
+    /// The places of those that have to be given.
+    pub(super) required: Vec<usize>,
+    by_name: Map<&'r str, usize>,
     /// Values that count where the composite gives none.
     pub(super) presets: &'r [(String, PropertyValue)],
     /// Whether it is never executed, so that it has no task properties.
@@ -36,8 +43,18 @@ impl<'r> Slot<'r> {
         self.own.into_iter().chain(self.task)
     }
 
-    pub(super) fn is_required(&self) -> bool {
+    fn is_required(&self) -> bool {
         self.declarations().any(|declaration| declaration.required)
+    }
+
+    /// Whether its value is one text.
+    pub(super) fn takes_text(&self) -> bool {
+        self.main().is_some_and(|main| !main.many && main.kind != PropertyKind::Complex)
+    }
+
+    /// Whether people know a task by it.
+    pub(super) fn is_task_id(&self) -> bool {
+        self.task.is_some_and(|task| task.name == ID)
     }
 
     /// The declaration that people are told of.
@@ -66,11 +83,15 @@ impl<'r> Slots<'r> {
                 }
             }
         }
+        slots.unique =
+            slots.places(|slot| slot.is_task_id() || slot.main().is_some_and(|main| main.unique.is_some()));
+        slots.required = slots.places(Slot::is_required);
         slots
     }
 
     pub(super) fn of_loop(class: &'r LoopClass) -> Self {
-        Self { what: "loop", name: class.name(), ..Self::own(&class.declaration().properties) }
+        let slots = Self { what: "loop", name: class.name(), ..Self::own(&class.declaration().properties) };
+        Self { required: slots.places(Slot::is_required), ..slots }
     }
 
     fn own(properties: &'r [PropertyDeclaration]) -> Self {
@@ -80,9 +101,16 @@ impl<'r> Slots<'r> {
             name: "",
             all: properties.iter().map(|own| Slot { own: Some(own), task: None }).collect(),
             by_name: places.map(|(place, own)| (own.name.as_str(), place)).collect(),
+            unique: Vec::new(),
+            required: Vec::new(),
             presets: &[],
             is_passive: false,
         }
+    }
+
+    fn places(&self, of: impl Fn(&Slot<'r>) -> bool) -> Vec<usize> {
+        let slots = self.all.iter().enumerate().filter(|(_, slot)| of(slot));
+        slots.map(|(place, _)| place).collect()
     }
 
     /// The place of the property of this name.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::classes::ClassIndex;
+use super::classes::{ClassIndex, Fitting};
 use super::fleet::Fleet;
 use super::offer::{Offer, Side};
 use super::report::{Report, escaped, list, replacing};
@@ -13,7 +13,7 @@ use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
 
 /// A service of a component of a class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Provider {
     pub(super) member: usize,
     /// The place of the service in the class.
@@ -110,13 +110,21 @@ impl<'t> Uri<'t> {
     }
 }
 
-/// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group.
-pub(super) fn spread<'t>(text: &'t Text, scope: usize, fleet: &Fleet<'_>) -> Vec<Cow<'t, Text>> {
+/// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with its place.
+pub(super) fn spread<'t>(
+    text: &'t Text,
+    scope: usize,
+    fleet: &'t Fleet<'_>,
+) -> impl Iterator<Item = (Cow<'t, Text>, Option<usize>)> + use<'t> {
     let (component, _) = parts(text);
-    let Some(members) = fleet.group(scope, component) else { return vec![Cow::Borrowed(text)] };
+    let members = fleet.group(scope, component);
+    let itself = members.is_none().then_some((Cow::Borrowed(text), None));
     let rest = &text[component.len()..];
-    let named = members.iter().map(|member| format!("{}{rest}", fleet.members[*member].component.name));
-    named.map(|name| Cow::Owned(Text::new(name.into(), text.location))).collect()
+    let named = members.into_iter().flatten().map(move |&member| {
+        let name = format!("{}{rest}", fleet.members[member].component.name);
+        (Cow::Owned(Text::new(name.into(), text.location)), Some(member))
+    });
+    itself.into_iter().chain(named)
 }
 
 /// The service that a target in a scope leads to, for a reference with this interface, or with any. Faults are reported.
@@ -131,7 +139,7 @@ pub(super) fn target(
     report: &mut Report<'_>,
 ) -> Target {
     // An expression that is still there has a fault, which is reported.
-    if is_address(text) && report.assumes || fleet.scopes[scope].is_faulty && has_expression(text) {
+    if report.assumes && is_address(text) || fleet.scopes[scope].is_faulty && has_expression(text) {
         return Target::Open;
     }
     let Some(uri) = Uri::of(text, 3, report) else { return Target::Wrong };
@@ -246,6 +254,11 @@ fn only_service(
     classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Target {
+    if let Some(class) = fleet.class_of(member, classes)
+        && let Fitting::One(service) = class.fitting(interface)
+    {
+        return Target::Service(Provider { member, service });
+    }
     if fleet.service_names(member, classes).is_none() {
         return Target::Open;
     }

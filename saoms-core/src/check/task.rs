@@ -57,7 +57,7 @@ fn settings(
         if class
             .slots
             .place(name)
-            .is_some_and(|place| class.slots.all[place].task.is_some() && checked.given[place].is_none())
+            .is_some_and(|place| class.slots.all[place].task.is_some() && checked.at(place).is_none())
         {
             values.push((name.clone(), value.clone()));
         }

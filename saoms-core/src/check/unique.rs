@@ -1,28 +1,28 @@
 //! Values that must not occur twice in a fleet.
 
-use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::fmt;
 
 use saoms_api::PropertyValue;
 use saoms_api::declaration::{PropertyKind, Scalar, parse_scalar};
+use smol_str::SmolStr;
 
 use super::classes::ClassIndex;
 use super::fleet::Member;
 use super::properties::Checked;
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::hash::Map;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
-
-/// The task property that people know a task by.
-const ID: &str = "ID";
 
 /// Collects values that components must not share.
 #[derive(Default)]
 pub(super) struct Unique<'a> {
     /// The first user of a value, by the word that the properties share.
-    seen: HashMap<(&'a str, String), Seen<'a>>,
+    seen: Map<(&'a str, Canonical), Seen<'a>>,
     /// The first task of an ID.
-    tasks: HashMap<String, Seen<'a>>,
+    tasks: Map<Canonical, Seen<'a>>,
 }
 
 #[derive(Clone, Copy)]
@@ -46,23 +46,20 @@ impl<'a> Unique<'a> {
             return;
         }
         let component = member.path();
-        for (slot, given) in class.slots.all.iter().zip(&checked.given) {
+        for &place in &class.slots.unique {
+            let slot = &class.slots.all[place];
             let Some(declaration) = slot.main() else { continue };
             let word = declaration.unique.as_deref();
-            let is_task_id = slot.task.is_some_and(|task| task.name == ID);
-            if word.is_none() && !is_task_id {
-                continue;
-            }
-            let (value, place) = match given {
+            let (value, place) = match checked.at(place) {
                 Some(given) => (Some(&given.value), given.place),
                 None => (class.slots.preset(&declaration.name), member.component.name.location),
             };
-            let Some(value) = value.and_then(|value| canonical(value, declaration)) else { continue };
+            let Some(value) = value.and_then(|value| Canonical::of(value, declaration)) else { continue };
             let seen = Seen { component, place, is_declared: word };
             if let Some(word) = word {
-                self.declared(word, &value, seen, declaration, report);
+                self.declared(word, value.clone(), seen, declaration, report);
             }
-            if is_task_id {
+            if slot.is_task_id() {
                 self.task(value, seen, report);
             }
         }
@@ -71,21 +68,25 @@ impl<'a> Unique<'a> {
     fn declared(
         &mut self,
         word: &'a str,
-        value: &str,
+        value: Canonical,
         seen: Seen<'a>,
         declaration: &PropertyDeclaration,
         report: &mut Report<'_>,
     ) {
-        let Some(first) = self.seen.get(&(word, value.to_owned())) else {
-            self.seen.insert((word, value.to_owned()), seen);
-            return;
+        let entry = match self.seen.entry((word, value)) {
+            Entry::Occupied(entry) => entry,
+            Entry::Vacant(entry) => {
+                entry.insert(seen);
+                return;
+            }
         };
+        let ((_, value), first) = (entry.key(), entry.get());
         let message = format!(
             "components {} and {} have the same {} {}",
             quoted(first.component),
             quoted(seen.component),
             quoted(&declaration.name),
-            quoted(value)
+            quoted(&value.to_string())
         );
         report.push(
             Diagnostic::new(&codes::NOT_UNIQUE, seen.place, message)
@@ -95,11 +96,15 @@ impl<'a> Unique<'a> {
     }
 
     /// Tasks that share an ID run all the same, but people cannot tell them apart.
-    fn task(&mut self, value: String, seen: Seen<'a>, report: &mut Report<'_>) {
-        let Some(first) = self.tasks.get(&value) else {
-            self.tasks.insert(value, seen);
-            return;
+    fn task(&mut self, value: Canonical, seen: Seen<'a>, report: &mut Report<'_>) {
+        let entry = match self.tasks.entry(value) {
+            Entry::Occupied(entry) => entry,
+            Entry::Vacant(entry) => {
+                entry.insert(seen);
+                return;
+            }
         };
+        let (value, first) = (entry.key(), entry.get());
         if seen.is_declared.is_some() && seen.is_declared == first.is_declared {
             return;
         }
@@ -107,7 +112,7 @@ impl<'a> Unique<'a> {
             "components {} and {} share the ID {}",
             quoted(first.component),
             quoted(seen.component),
-            quoted(&value)
+            quoted(&value.to_string())
         );
         report.push(
             Diagnostic::new(&codes::TASK_ID_SHARED, seen.place, message)
@@ -117,14 +122,34 @@ impl<'a> Unique<'a> {
     }
 }
 
-/// A text that is equal for equal values: `07` and `7` are one number.
-fn canonical(value: &PropertyValue, declaration: &PropertyDeclaration) -> Option<String> {
-    let PropertyValue::Text(text) = value else { return None };
-    Some(match parse_scalar(declaration.kind, text)? {
-        Scalar::Integer(number) if declaration.kind == PropertyKind::Integer => number.to_string(),
-        Scalar::Float(number) => number.to_string(),
-        Scalar::Duration(duration) => saoms_api::format_duration(duration),
-        Scalar::Boolean(value) => value.to_string(),
-        _ => text.trim().to_owned(),
-    })
+/// What is equal for equal values: `07` and `7` are one number.
+#[derive(Clone, PartialEq, Eq, Hash)]
+enum Canonical {
+    Integer(i128),
+    Text(SmolStr),
+}
+
+impl Canonical {
+    fn of(value: &PropertyValue, declaration: &PropertyDeclaration) -> Option<Self> {
+        let PropertyValue::Text(text) = value else { return None };
+        if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
+            return Some(Self::Text(text.trim().into()));
+        }
+        Some(match parse_scalar(declaration.kind, text)? {
+            Scalar::Integer(number) => Self::Integer(number),
+            Scalar::Float(number) => Self::Text(number.to_string().into()),
+            Scalar::Duration(duration) => Self::Text(saoms_api::format_duration(duration).into()),
+            Scalar::Boolean(value) => Self::Text(value.to_string().into()),
+            Scalar::Text(text) => Self::Text(text.into()),
+        })
+    }
+}
+
+impl fmt::Display for Canonical {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Integer(number) => number.fmt(out),
+            Self::Text(text) => text.fmt(out),
+        }
+    }
 }

@@ -10,6 +10,7 @@ use super::instance::Instance;
 use super::raw::{Piece, Raw};
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
+use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
 use crate::xml::Element;
@@ -41,12 +42,27 @@ pub(super) struct Use {
 
 /// Converts values, and reports those that are wrong.
 #[derive(Default)]
-pub(super) struct Values {
+pub(super) struct Values<'a> {
+    /// The first property at each place of a class, empty between two components: its memory is used again for each of them.
+    first: Vec<Option<&'a Property>>,
     /// The faults in values that many components may use, so that each is reported once.
     shared: HashSet<(Location, &'static str, String)>,
 }
 
-impl Values {
+impl<'a> Values<'a> {
+    /// No property yet at each of so many places.
+    pub(super) fn first(&mut self, places: usize) -> Vec<Option<&'a Property>> {
+        let mut first = std::mem::take(&mut self.first);
+        first.clear();
+        first.resize(places, None);
+        first
+    }
+
+    /// Takes it back.
+    pub(super) fn keep(&mut self, first: Vec<Option<&'a Property>>) {
+        self.first = first;
+    }
+
     /// The value of a property with one or more declarations, all of which have to accept it. `None` when there is a
     /// fault, which is reported.
     pub(super) fn convert(
@@ -79,7 +95,7 @@ impl Values {
             }
             None => {
                 let nothing = Text::new("".into(), used.property);
-                self.text(&nothing, path, declarations, used, report)
+                self.text(&nothing, path, declarations.iter().copied(), used, report)
             }
         }
     }
@@ -116,20 +132,21 @@ impl Values {
                 self.report(one.help("write each as an element inside"), path, main, used, report);
                 None
             }
-            (Piece::Text(text), _) => self.text(&text, path, declarations, used, report),
+            (Piece::Text(text), _) => self.text(&text, path, declarations.iter().copied(), used, report),
         }
     }
 
-    fn text(
+    /// The value of a property that takes one text.
+    pub(super) fn text<'d>(
         &mut self,
         text: &Text,
         path: Path<'_>,
-        declarations: &[&PropertyDeclaration],
+        declarations: impl Iterator<Item = &'d PropertyDeclaration>,
         used: Use,
         report: &mut Report<'_>,
     ) -> Option<PropertyValue> {
         for declaration in declarations {
-            if let Err(message) = declaration.check(text) {
+            if let Err(message) = declaration.allows(text) {
                 let one = wrong(text, path, declaration, &message);
                 self.report(one, path, declaration, used, report);
                 return None;

@@ -3,8 +3,7 @@
 //! A reference of a component of a class collects its targets from the inside out: those of its own component, and those of
 //! every component around it that a composite's reference promotes it to.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::HashSet;
 
 use super::autowire::Autowire;
 use super::circle::Circles;
@@ -17,6 +16,7 @@ use super::promote::{Place, Promoted};
 use super::report::{Report, list};
 use super::target::{Provider, Target, Uri, parts, spread, target};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::hash::Map;
 use crate::model::{Multiplicity, Reference};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
@@ -38,13 +38,31 @@ struct End {
 /// A `<wire>` that starts from a reference.
 #[derive(Clone, Copy)]
 struct Wire<'f> {
+    /// The name of the reference.
+    name: &'f str,
     target: &'f Text,
     scope: usize,
     is_replacing: bool,
 }
 
 /// The providers of every reference of every component, in the order of the class.
-pub(super) type Wiring = Vec<Vec<Vec<Provider>>>;
+#[derive(Default)]
+pub(super) struct Wiring {
+    providers: Vec<Provider>,
+    /// Where those of each reference end.
+    references: Vec<usize>,
+    /// Where the references of each component end.
+    members: Vec<usize>,
+}
+
+impl Wiring {
+    /// The providers of each reference of a component.
+    pub(super) fn of(&self, member: usize) -> impl Iterator<Item = &[Provider]> {
+        let before = |place: usize, ends: &[usize]| place.checked_sub(1).map_or(0, |before| ends[before]);
+        let references = before(member, &self.members)..self.members[member];
+        references.map(move |place| &self.providers[before(place, &self.references)..self.references[place]])
+    }
+}
 
 /// Resolves all targets and wires, and checks what they come to.
 pub(super) fn check(
@@ -56,39 +74,39 @@ pub(super) fn check(
     let wires = wires(fleet, classes, report);
     let mut all = Wires { fleet, classes, promoted, wires, autowire: Autowire::default() };
     let sources = given::promoted(fleet);
-    let mut circles = Circles::new(fleet.members.len());
-    let mut wiring = Wiring::with_capacity(fleet.members.len());
+    let mut circles = Circles::default();
+    let mut wiring = Wiring { members: Vec::with_capacity(fleet.members.len()), ..Wiring::default() };
     for member in 0..fleet.members.len() {
         report.about(&fleet.members[member]);
         let Some(class) = fleet.class_of(member, classes) else {
             all.given(member, report);
-            let is_wired = |name| all.wires.contains_key(&(member, name));
+            let is_wired = |name: &str| all.wires_of(member).iter().any(|wire| wire.name == name);
             given::unwired(member, fleet, &sources, is_wired, report);
-            wiring.push(Vec::new());
+            wiring.members.push(wiring.references.len());
             continue;
         };
-        let mut providers = Vec::with_capacity(class.references.len());
         for &declared in &class.references {
             let ends = all.of_class(member, declared, report);
             for end in &ends {
                 circles.add(member, &declared.name, end.provider, end.place, fleet, classes);
             }
-            providers.push(ends.iter().map(|end| end.provider).collect());
+            wiring.providers.extend(ends.iter().map(|end| end.provider));
+            wiring.references.push(wiring.providers.len());
         }
-        wiring.push(providers);
+        wiring.members.push(wiring.references.len());
     }
     report.about_all();
     circles.check(fleet, report);
     wiring
 }
 
-/// The `<wire>` elements of all composites by the reference they start from.
+/// The `<wire>` elements of all composites by the component they start from.
 fn wires<'f>(
     fleet: &'f Fleet<'_>,
     classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
-) -> HashMap<(usize, &'f str), Vec<Wire<'f>>> {
-    let mut all: HashMap<(usize, &str), Vec<Wire<'f>>> = HashMap::new();
+) -> Map<usize, Vec<Wire<'f>>> {
+    let mut all: Map<usize, Vec<Wire<'f>>> = Map::default();
     for (place, unit) in fleet.units.iter().enumerate() {
         let scope = unit.scope;
         for wire in unit.composites.iter().flat_map(|composite| &composite.wires) {
@@ -98,15 +116,15 @@ fn wires<'f>(
                 continue;
             }
             let is_replacing = wire.replace.as_ref().is_some_and(|replace| replace.value);
-            for one in spread(source, scope, fleet) {
+            for (one, _) in spread(source, scope, fleet) {
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
                     // Both ends can be wrong.
-                    for to in spread(to, scope, fleet) {
+                    for (to, _) in spread(to, scope, fleet) {
                         target(&to, scope, None, fleet, classes, report);
                     }
                     continue;
                 };
-                all.entry((member, name)).or_default().push(Wire { target: to, scope, is_replacing });
+                all.entry(member).or_default().push(Wire { name, target: to, scope, is_replacing });
             }
         }
     }
@@ -169,7 +187,7 @@ struct Wires<'f, 'a> {
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
     promoted: &'f Promoted<'f>,
-    wires: HashMap<(usize, &'f str), Vec<Wire<'f>>>,
+    wires: Map<usize, Vec<Wire<'f>>>,
     autowire: Autowire<'f>,
 }
 
@@ -183,12 +201,10 @@ impl<'f, 'a> Wires<'f, 'a> {
     ) -> Vec<End> {
         let place = (member, declared.name.as_str());
         let Ends { mut all, is_unknown } = self.ends(place, &declared.interface, report);
-        let mut seen: Vec<Provider> = Vec::new();
-        all.retain(|end| {
-            let is_new = !seen.contains(&end.provider);
-            seen.push(end.provider);
-            is_new
-        });
+        if all.len() > 1 {
+            let mut seen: HashSet<Provider> = HashSet::new();
+            all.retain(|end| seen.insert(end.provider));
+        }
         if is_unknown {
             return Vec::new();
         }
@@ -203,6 +219,11 @@ impl<'f, 'a> Wires<'f, 'a> {
             _ => {}
         }
         all
+    }
+
+    /// The wires from the references of a component.
+    fn wires_of(&self, member: usize) -> &[Wire<'f>] {
+        self.wires.get(&member).map_or(&[], Vec::as_slice)
     }
 
     /// How many targets a reference of a component of a class can have.
@@ -225,34 +246,29 @@ impl<'f, 'a> Wires<'f, 'a> {
                 let given = reference.multiplicity.as_ref().map(|given| given.value);
                 let declared =
                     own.map(|own| own.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value));
-                if let ([first, second, ..], Some(most)) = (&level.places[..], given.or(declared))
+                if let (Some(places), Some(most)) = (level.written.first_two, given.or(declared))
                     && !most.is_many()
                 {
-                    let places = (*first, *second);
                     // In SCA 1.0 a warning: whoever implements it may take the first.
                     let is_1_1 = fleet.members[member].composite.version.is_1_1();
                     let severity = if is_1_1 { Severity::Error } else { Severity::Warning };
-                    let count = level.places.len();
+                    let count = level.written.count;
                     self.too_many((member, &reference.name), most, places, count, severity, report);
                 }
             }
-            for (&(_, name), wires) in self.wires.iter().filter(|((from, _), _)| *from == member) {
-                if component.reference(name).is_none() {
-                    for wire in wires {
-                        target(wire.target, wire.scope, None, fleet, self.classes, report);
-                    }
-                }
+            for wire in self.wires_of(member).iter().filter(|wire| component.reference(wire.name).is_none()) {
+                target(wire.target, wire.scope, None, fleet, self.classes, report);
             }
             return;
         };
         for name in names {
             let ends = self.level((member, name), None, report);
             let multiplicity = fleet.multiplicity_of((member, name));
-            if let [first, second, ..] = ends.places[..]
+            if let Some(places) = ends.written.first_two
                 && !multiplicity.is_many()
             {
-                let count = ends.places.len();
-                self.too_many((member, name), multiplicity, (first, second), count, Severity::Error, report);
+                let count = ends.written.count;
+                self.too_many((member, name), multiplicity, places, count, Severity::Error, report);
             }
         }
     }
@@ -281,7 +297,7 @@ impl<'f, 'a> Wires<'f, 'a> {
             ends.all.extend(around.all);
             ends.is_unknown |= around.is_unknown;
         }
-        let has_none = ends.all.is_empty() && !ends.is_unknown && level.places.is_empty();
+        let has_none = ends.all.is_empty() && !ends.is_unknown && level.written.count == 0;
         if has_none && self.is_autowired(place, reference) {
             return self.autowired(place, reference, interface, report);
         }
@@ -297,14 +313,13 @@ impl<'f, 'a> Wires<'f, 'a> {
     ) -> Level {
         let (fleet, classes) = (self.fleet, self.classes);
         let scope = fleet.members[member].scope;
-        let wires = self.wires.get(&(member, name)).map_or(&[][..], Vec::as_slice);
-        let is_replaced = wires.iter().any(|wire| wire.is_replacing);
+        let wires = self.wires_of(member).iter().filter(|wire| wire.name == name);
+        let is_replaced = wires.clone().any(|wire| wire.is_replacing);
         let mut level = Level::default();
         let mut add = |text: &Text, scope: usize, counts: bool| {
-            for one in spread(text, scope, fleet) {
+            for (one, replica) in spread(text, scope, fleet) {
                 // A group stands for the others.
-                let is_own = |one: &Text| fleet.find(scope, parts(one).0) == Some(member);
-                if matches!(&one, Cow::Owned(one) if is_own(one)) {
+                if replica == Some(member) {
                     continue;
                 }
                 let found = target(&one, scope, interface, fleet, classes, report);
@@ -316,7 +331,7 @@ impl<'f, 'a> Wires<'f, 'a> {
                     Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
                 }
                 if counts {
-                    level.places.push(text.location);
+                    level.written.add(text.location);
                 }
             }
         };
@@ -460,8 +475,26 @@ impl<'f, 'a> Wires<'f, 'a> {
 #[derive(Default)]
 struct Level {
     ends: Ends,
-    /// Where the targets that count are written.
-    places: Vec<Location>,
+    /// The targets that count.
+    written: Targets,
+}
+
+/// How many targets are written for a reference, and where.
+#[derive(Default)]
+struct Targets {
+    count: usize,
+    first: Option<Location>,
+    first_two: Option<(Location, Location)>,
+}
+
+impl Targets {
+    fn add(&mut self, place: Location) {
+        self.count += 1;
+        match self.first {
+            None => self.first = Some(place),
+            Some(first) => _ = self.first_two.get_or_insert((first, place)),
+        }
+    }
 }
 
 /// Whether the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1): only with

@@ -1,6 +1,6 @@
 use saoms_api::{Phase, Record, Value};
 
-use crate::bus::fold;
+use crate::hash::fold;
 
 /// A digest of a record: its phase, its text and its values, the same on every machine.
 pub(super) fn fingerprint(phase: Phase, record: &Record) -> u64 {

@@ -10,6 +10,16 @@ use crate::source::{Located, Text};
 use crate::xml::{Attribute, Element};
 
 impl Loader<'_> {
+    /// Whether an element of this kind has no attribute but these usual ones, which it can have: there is nothing else to read. The others
+    /// of one that has more are checked.
+    pub(super) fn is_plain(&mut self, element: Element<'_>, kind: &'static Kind, usual: &[&str]) -> bool {
+        let is_plain = element.has_only(usual);
+        if !is_plain {
+            self.check_attributes(element, kind);
+        }
+        is_plain
+    }
+
     /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
     pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
         let mut free: Option<Vec<&'static str>> = None;

@@ -26,6 +26,10 @@ impl Loader<'_> {
     /// Whose an element is. One of no namespace, or of another version of SCA than the root, is reported.
     pub(super) fn family(&mut self, element: Element<'_>) -> Family {
         let root = element.document().root();
+        // The root is of SCA, or counts as that.
+        if element.shares_namespace(root) {
+            return Family::Sca;
+        }
         match element.namespace() {
             namespace if namespace == self.namespace => Family::Sca,
             SAOMS_NAMESPACE => Family::Own,

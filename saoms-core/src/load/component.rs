@@ -7,32 +7,40 @@ use super::vocabulary::{
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Component, Implementation, ImplementationKind, Origin, Replicas, SAOMS_NAMESPACE};
+use crate::model::{
+    Component, Implementation, ImplementationKind, Origin, Policy, Replicas, SAOMS_NAMESPACE,
+};
 use crate::source::Text;
 use crate::xml::Element;
 
 impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> Component {
-        self.check_attributes(element, &COMPONENT);
+        let is_plain = self.is_plain(element, &COMPONENT, &["name"]);
         self.no_text(element);
-        let condition = self.own(element, "if").map(Box::new);
-        let replicas = self.replicas(element);
+        let replicas = if is_plain { None } else { self.replicas(element) };
         self.is_replicated = replicas.is_some();
         let mut component = Component {
             origin: Origin::of(element),
             name: self.name(element),
-            path: self.path(element),
-            condition,
+            path: None,
+            condition: None,
             replicas,
-            autowire: self.boolean(element, "autowire"),
-            constraining_type: self.optional(element, "constrainingType").map(Box::new),
+            autowire: None,
+            constraining_type: None,
             implementation: None,
             properties: Vec::new(),
             services: Vec::new(),
             references: Vec::new(),
             loops: Vec::new(),
-            policy: self.policy(element),
+            policy: Policy::default(),
         };
+        if !is_plain {
+            component.path = self.path(element);
+            component.condition = self.own(element, "if").map(Box::new);
+            component.autowire = self.boolean(element, "autowire");
+            component.constraining_type = self.optional(element, "constrainingType").map(Box::new);
+            component.policy = self.policy(element);
+        }
         let mut has_faulty = false;
         for child in element.children() {
             let family = self.family(child);
@@ -146,12 +154,15 @@ impl Loader<'_> {
                 }
             }
         };
-        Some(Implementation { origin: Origin::of(element), kind, policy: self.policy(element) })
+        let policy = if element.has_only(&["class"]) { Policy::default() } else { self.policy(element) };
+        Some(Implementation { origin: Origin::of(element), kind, policy })
     }
 
     /// Checks attributes, text and children of an element that the model keeps without its children.
     pub(super) fn parts_of(&mut self, element: Element<'_>, kind: &'static Kind) {
-        self.check_attributes(element, kind);
+        if !element.has_only(&[]) {
+            self.check_attributes(element, kind);
+        }
         self.no_text(element);
         self.leaf(element, kind);
     }

@@ -91,15 +91,15 @@ impl Loader<'_> {
     }
 
     fn wire(&mut self, element: Element<'_>) -> Wire {
-        self.check_attributes(element, &WIRE);
+        let is_plain = self.is_plain(element, &WIRE, &["source", "target"]);
         self.no_text(element);
         self.leaf(element, &WIRE);
         Wire {
             origin: Origin::of(element),
             source: self.required(element, "source"),
             target: self.required(element, "target"),
-            replace: self.boolean(element, "replace"),
-            condition: self.own(element, "if"),
+            replace: if is_plain { None } else { self.boolean(element, "replace") },
+            condition: if is_plain { None } else { self.own(element, "if") },
         }
     }
 }

@@ -8,7 +8,7 @@ use super::vocabulary::{
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
-    Binding, Callback, Interface, InterfaceKind, Origin, Reference, ReferenceDetails, Service,
+    Binding, Callback, Interface, InterfaceKind, Origin, Policy, Reference, ReferenceDetails, Service,
 };
 use crate::source::Text;
 use crate::xml::Element;
@@ -23,32 +23,38 @@ struct Contract {
 
 impl Loader<'_> {
     pub(super) fn service(&mut self, element: Element<'_>, kind: &'static Kind) -> Service {
-        self.check_attributes(element, kind);
+        let is_plain = self.is_plain(element, kind, &["name"]);
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_SERVICE);
         let promote = if is_promoting { self.required(element, "promote") } else { None };
         let Contract { interface, bindings, callback } = self.contract(element, kind);
-        let policy = self.policy(element);
+        let policy = if is_plain { Policy::default() } else { self.policy(element) };
         Service { origin: Origin::of(element), name, promote, interface, bindings, callback, policy }
     }
 
     pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> Reference {
-        self.check_attributes(element, kind);
+        let is_plain = self.is_plain(element, kind, &["name", "target"]);
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_REFERENCE);
         let promote = if is_promoting { self.promoted(element) } else { Vec::new() };
         let Contract { interface, bindings, callback } = self.contract(element, kind);
-        Reference {
+        let mut reference = Reference {
             origin: Origin::of(element),
             name,
             targets: self.list(element, "target"),
-            multiplicity: self.multiplicity(element),
-            details: self.reference_details(element, promote),
+            multiplicity: None,
+            details: None,
             interface,
             bindings,
             callback,
-            policy: self.policy(element),
+            policy: Policy::default(),
+        };
+        if !is_plain {
+            reference.multiplicity = self.multiplicity(element);
+            reference.details = self.reference_details(element, promote);
+            reference.policy = self.policy(element);
         }
+        reference
     }
 
     /// What few references have; `None` for the others.

@@ -10,7 +10,7 @@ use crate::xml::{Element, ElementId};
 
 impl Loader<'_> {
     pub(super) fn property(&mut self, element: Element<'_>, kind: &'static Kind) -> Property {
-        self.check_attributes(element, kind);
+        let is_plain = self.is_plain(element, kind, &["name", "value"]);
         let name = self.name(element);
         let mut values = Vec::new();
         let mut content = Vec::new();
@@ -30,7 +30,7 @@ impl Loader<'_> {
             name,
             value: element.attribute("value").map(crate::xml::Attribute::trimmed),
             text: element.trimmed_text(),
-            details: self.details(element, values, content),
+            details: self.details(element, is_plain, values, content),
         }
     }
 
@@ -38,12 +38,11 @@ impl Loader<'_> {
     fn details(
         &mut self,
         element: Element<'_>,
+        is_plain: bool,
         values: Vec<PropertyValue>,
         content: Vec<ElementId>,
     ) -> Option<Box<PropertyDetails>> {
-        let is_usual = |name| matches!(name, "name" | "value");
-        let has_usual = element.attributes().all(|attribute| is_usual(attribute.name()));
-        if has_usual && values.is_empty() && content.is_empty() {
+        if is_plain && values.is_empty() && content.is_empty() {
             return None;
         }
         Some(Box::new(PropertyDetails {

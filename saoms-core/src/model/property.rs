@@ -124,6 +124,14 @@ impl Property {
         (all.next().is_none() && self.content().is_empty()).then_some(first)
     }
 
+    /// The one text that it gives directly, where it gives nothing else and leads nowhere: what most properties are.
+    pub(crate) fn only_text(&self) -> Option<&Text> {
+        match (&self.details, &self.value, &self.text) {
+            (None, Some(text), None) | (None, None, Some(text)) => Some(text),
+            _ => None,
+        }
+    }
+
     /// Whether the property gives a value in any way: directly, by `source`, or by `file`.
     pub fn has_value(&self) -> bool {
         self.value.is_some()

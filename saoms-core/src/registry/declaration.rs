@@ -123,6 +123,14 @@ impl PropertyDeclaration {
         self.with_rule(|rule| rule.check(text))
     }
 
+    /// As [`check`](Self::check), where the value is not asked for.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn allows(&self, text: &str) -> Result<(), String> {
+        self.with_rule(|rule| rule.allows(text))
+    }
+
     /// What is expected, as in `a whole number from 1 to 99 [%]`.
     pub fn expected(&self) -> String {
         if self.kind == PropertyKind::Complex {

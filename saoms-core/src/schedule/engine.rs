@@ -12,7 +12,8 @@ use super::settings::{ClockKind, Settings, nanos};
 use super::slot::{NEVER, Policy, Slot, State, Wish};
 use super::trace::{Step, Trace};
 use crate::assembly::{Assembly, Loss, Overrun};
-use crate::bus::{Bus, fold};
+use crate::bus::Bus;
+use crate::hash::fold;
 use crate::journal::Stream;
 
 /// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives

@@ -1,6 +1,6 @@
 use saoms_api::SharedMessage;
 
-use crate::bus::fold;
+use crate::hash::fold;
 use crate::journal::Head;
 
 /// The digest of everything that happens in a run: who did what when, in integers.

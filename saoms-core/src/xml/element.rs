@@ -57,6 +57,11 @@ impl<'a> Element<'a> {
         &self.document.namespaces[self.node().namespace as usize]
     }
 
+    /// Whether two elements of one document are in the same namespace.
+    pub(crate) fn shares_namespace(self, other: Self) -> bool {
+        self.node().namespace == other.node().namespace
+    }
+
     /// From the `<` of the start tag to behind the `>` of the end tag.
     pub fn span(self) -> Span {
         Span::new(self.node().start, self.node().end)
@@ -151,6 +156,14 @@ impl<'a> Element<'a> {
     /// The attribute of this name in no namespace.
     pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
         self.attributes().find(|one| one.raw.namespace == NO_NAMESPACE && one.name() == name)
+    }
+
+    /// Whether it has no attribute but some of these, in no namespace, and declares none: what most elements of a large file are like.
+    pub(crate) fn has_only(self, names: &[&str]) -> bool {
+        let document = self.document;
+        self.raw_attributes()
+            .iter()
+            .all(|raw| raw.namespace == NO_NAMESPACE && names.contains(&Attribute { document, raw }.name()))
     }
 
     /// The attribute of this name in this namespace.

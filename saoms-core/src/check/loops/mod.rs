@@ -115,7 +115,7 @@ fn resolved<'a>(
     planned: &[Planned<'a>],
     member: &Member<'a>,
     parameters: &mut Parameters<'a>,
-    values: &mut Values,
+    values: &mut Values<'a>,
     report: &mut Report<'_>,
 ) -> Option<Resolved<'a>> {
     let mut specs = Vec::with_capacity(planned.len());
