@@ -65,7 +65,7 @@ impl<'a> Writer<'a> {
     /// Writes an element, of one that is laid out only the start tag. Gives the place up to which elements are done.
     fn element(&mut self, element: Element<'a>) -> u32 {
         let span = element.span();
-        while let Some(outer) = self.open.pop_if(|outer| outer.span().end <= span.start) {
+        while let Some(&outer) = self.open.last().filter(|outer| outer.span().end <= span.start) {
             self.close(outer);
         }
         let blank = self.gap(span.start);
@@ -111,15 +111,17 @@ impl<'a> Writer<'a> {
         blank
     }
 
+    /// Writes the end of the element that was opened last; the comments before its end tag still stand in it.
     fn close(&mut self, element: Element<'a>) {
         let blank = self.gap(element.content_span().end);
+        self.open.pop();
         self.lines.next(self.open.len(), blank);
         tag::end(element, &mut self.lines);
         self.at = element.span().end;
     }
 
     fn finish(mut self) -> String {
-        while let Some(outer) = self.open.pop() {
+        while let Some(&outer) = self.open.last() {
             self.close(outer);
         }
         self.gap(self.text.len() as u32);

@@ -92,6 +92,38 @@ fn comments_stay_on_their_line_and_blank_lines_are_kept_once() {
 }
 
 #[test]
+fn the_last_comment_of_an_element_stands_in_it() {
+    test(
+        "<a>
+<b><c/> <!-- beside c -->
+<!-- <d/> -->
+
+<?last of b?> </b>
+<e><!-- alone --></e><f>
+<!-- only child -->
+</f>
+<!-- <g/> --></a>
+<!-- behind -->",
+        expect![[r#"
+            <a>
+              <b>
+                <c/> <!-- beside c -->
+                <!-- <d/> -->
+
+                <?last of b?>
+              </b>
+              <e><!-- alone --></e>
+              <f>
+            <!-- only child -->
+            </f>
+              <!-- <g/> -->
+            </a>
+            <!-- behind -->
+        "#]],
+    );
+}
+
+#[test]
 fn white_space_that_means_something_stays() {
     test(
         &composite(
