@@ -50,20 +50,58 @@ impl Editor {
         Ok(milliseconds(self.opened))
     }
 
+    /// Types something, waits for the diagnostics of the text as it is then, and takes it back; the time until then, in ms.
+    pub(crate) fn check(&mut self, text: &str, at: usize, typed: &str) -> Outcome<f64> {
+        let (start, end) = places(text, at, typed.len());
+        let begun = Instant::now();
+        self.change(&start, &start, typed)?;
+        self.shown()?;
+        let took = milliseconds(begun);
+        self.change(&start, &end, "")?;
+        // The next check waits for no other one.
+        self.shown()?;
+        Ok(took)
+    }
+
+    /// Waits for the diagnostics of the text as it is.
+    fn shown(&mut self) -> Outcome<()> {
+        let version = self.next;
+        loop {
+            let message = self.read()?;
+            let is_shown = message["method"] == "textDocument/publishDiagnostics";
+            if is_shown && message["params"]["version"] == version {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Asks a question about a place; the time until the answer, in ms.
+    pub(crate) fn question(&mut self, method: &str, text: &str, at: usize) -> Outcome<f64> {
+        let (place, _) = places(text, at, 0);
+        let document = json!({ "uri": self.uri });
+        let context = json!({ "includeDeclaration": true });
+        // Each question takes what it knows.
+        let asked =
+            json!({ "textDocument": document, "position": place, "newName": "Another", "context": context });
+        let begun = Instant::now();
+        let answer = self.ask(method, &asked)?;
+        let took = milliseconds(begun);
+        if answer["result"].is_null() {
+            return Err(format!("{method} has no answer: {answer}").into());
+        }
+        Ok(took)
+    }
+
     /// Types something, asks what can be written there, and takes it back; the time from typing to the answer, in ms.
     pub(crate) fn complete(&mut self, text: &str, at: usize, typed: &str) -> Outcome<f64> {
-        let before = &text[..at];
-        let line = before.matches('\n').count();
-        let column = at - before.rfind('\n').map_or(0, |found| found + 1);
-        let place = |column: usize| json!({ "line": line, "character": column });
-        let (start, end) = (place(column), place(column + typed.len()));
+        let (start, end) = places(text, at, typed.len());
         let begun = Instant::now();
         self.change(&start, &start, typed)?;
         let asked = json!({ "textDocument": { "uri": self.uri }, "position": end });
         let answer = self.ask("textDocument/completion", &asked)?;
         let took = milliseconds(begun);
         if answer["result"]["items"].as_array().is_none_or(Vec::is_empty) {
-            return Err(format!("nothing can be written at {line}:{column}: {answer}").into());
+            return Err(format!("nothing can be written at {start}: {answer}").into());
         }
         self.change(&start, &end, "")?;
         Ok(took)
@@ -122,6 +160,15 @@ impl Editor {
         self.output.read_exact(&mut bytes)?;
         Ok(serde_json::from_slice(&bytes)?)
     }
+}
+
+/// A place of a text, which is ASCII, and that so many characters behind it.
+fn places(text: &str, at: usize, length: usize) -> (Value, Value) {
+    let before = &text[..at];
+    let line = before.matches('\n').count();
+    let column = at - before.rfind('\n').map_or(0, |found| found + 1);
+    let place = |column: usize| json!({ "line": line, "character": column });
+    (place(column), place(column + length))
 }
 
 fn milliseconds(since: Instant) -> f64 {

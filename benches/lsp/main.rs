@@ -33,6 +33,13 @@ struct Arguments {
     bench: bool,
 }
 
+/// The row of the first diagnostics.
+const OPENED: &str = "diagnostics after opening";
+/// What the rows of completion end with.
+const COMPLETED: &str = "typed and completed";
+/// How often a check is waited for.
+const CHECKS: usize = 10;
+
 /// The most time that an answer about 1,000 components may take, in ms.
 const GOAL_MS: f64 = 50.0;
 /// The size that the goal is for.
@@ -46,6 +53,9 @@ const PLACES: [(&str, &str, &str); 5] = [
     ("value of a property", "<property name=\"period\">", "1"),
     ("component in a target", "<reference name=\"world\" target=\"", "W"),
 ];
+
+/// The questions about the name of the world in a target of the last robot, which thousands name.
+const QUESTIONS: [&str; 5] = ["hover", "definition", "references", "rename", "documentSymbol"];
 
 #[derive(Serialize)]
 struct Row {
@@ -67,13 +77,11 @@ fn main() -> Outcome<()> {
         measure(size, arguments.rounds, &mut rows)?;
     }
     let mut page = format!("The language server. {}.\n\n", common::description());
-    page.push_str(
-        "| components | typed and answered | median ms | worst ms |\n| ---: | --- | ---: | ---: |\n",
-    );
+    page.push_str("| components | what | median ms | worst ms |\n| ---: | --- | ---: | ---: |\n");
     for Row { components, what, median_ms, worst_ms } in &rows {
         writeln!(page, "| {components} | {what} | {median_ms:.1} | {worst_ms:.1} |")?;
     }
-    let judged = rows.iter().filter(|row| row.components <= GOAL_SIZE && row.what != "diagnostics");
+    let judged = rows.iter().filter(|row| row.components <= GOAL_SIZE && row.what.ends_with(COMPLETED));
     let worst = judged.map(|row| row.worst_ms).fold(0.0, f64::max);
     writeln!(
         page,
@@ -96,13 +104,24 @@ fn measure(size: u32, rounds: usize, rows: &mut Vec<Row>) -> Outcome<()> {
             worst_ms: times.iter().copied().fold(0.0, f64::max),
         });
     };
-    row("diagnostics", &[editor.diagnostics()?]);
+    row(OPENED, &[editor.diagnostics()?]);
     for (what, before, typed) in PLACES {
         let component = text.rfind("<component").ok_or("no component")?;
         let found = text[component..].find(before).ok_or("no such place")?;
         let at = component + found + before.len();
         let times: Outcome<Vec<f64>> = (0..rounds).map(|_| editor.complete(&text, at, typed)).collect();
+        row(&format!("{what} {COMPLETED}"), &times?);
+    }
+    let world = text.rfind("target=\"World").ok_or("no target")? + "target=\"".len();
+    for what in QUESTIONS {
+        let method = format!("textDocument/{what}");
+        let times: Outcome<Vec<f64>> =
+            (0..rounds).map(|_| editor.question(&method, &text, world + 1)).collect();
         row(what, &times?);
     }
+    // The blank says nothing new, and the text is another one.
+    let times: Outcome<Vec<f64>> =
+        (0..CHECKS.min(rounds)).map(|_| editor.check(&text, world - 8, " ")).collect();
+    row("diagnostics after a change", &times?);
     editor.close()
 }

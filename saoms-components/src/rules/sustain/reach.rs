@@ -20,10 +20,16 @@ pub(super) fn out_of_reach(
         for block in farthest(area, spot.value) {
             let mut nearest = None;
             let mut is_reached = false;
-            for range in ranges {
+            // Of thousands of robots, the one that reached the last piece, or one that is written behind it, as a rule reaches this one.
+            let (before, behind) = ranges.split_at(ways.reached.min(ranges.len()));
+            for (place, range) in behind.iter().chain(before).enumerate() {
                 // What no way leads to is told by another rule.
                 let Some(moves) = ways.moves(range.charger, block)? else { continue };
-                is_reached |= range.reaches(moves);
+                is_reached = range.reaches(moves);
+                if is_reached {
+                    ways.reached = (ways.reached + place) % ranges.len();
+                    break;
+                }
                 nearest = Some(nearest.map_or(moves, |nearest: u32| nearest.min(moves)));
             }
             let Some(nearest) = nearest.filter(|_| !is_reached) else { continue };
@@ -56,6 +62,8 @@ pub(super) struct Ways<'m> {
     /// The moves to a block from all others, row by row.
     known: HashMap<Block, Vec<u32>>,
     left: usize,
+    /// The robot that reached the last block.
+    reached: usize,
 }
 
 /// How many blocks are searched at most, for all luggage together: a check must not take longer than the run.
@@ -66,7 +74,7 @@ const NO_WAY: u32 = u32::MAX;
 
 impl<'m> Ways<'m> {
     pub(super) fn on(map: &'m Map) -> Ways<'m> {
-        Ways { map, known: HashMap::new(), left: SEARCHED }
+        Ways { map, known: HashMap::new(), left: SEARCHED, reached: 0 }
     }
 
     /// The outer `None` says that too much was searched already, the inner one that no way leads there.
