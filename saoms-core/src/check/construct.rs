@@ -4,8 +4,9 @@ use super::classes::ClassIndex;
 use super::findings::{Subject, diagnostic};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::registry::LoopClass;
-use saoms_api::{Failure, contain::contained};
+use crate::registry::{LoopClass, PropertyDeclaration};
+use saoms_api::declaration::PropertyKind;
+use saoms_api::{Failure, Finding, PropertyValue, contain::contained};
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
 pub(super) fn component(
@@ -33,6 +34,79 @@ pub(super) fn looping(
     judge(|| class.construct(subject.values).map(drop), subject, class.name(), report);
 }
 
+/// The same for a component of which some values are not known, for faults that are reported: `unsure` are the places of these
+/// properties. Told is what the constructor finds about the others whichever values those have, from one end of what is allowed to the
+/// other, so that a wrong value has no consequences.
+pub(super) fn partly(
+    subject: Subject<'_>,
+    class: &ClassIndex<'_>,
+    unsure: &[usize],
+    without_plugin_code: bool,
+    report: &mut Report<'_>,
+) {
+    let unsure: Vec<&PropertyDeclaration> =
+        unsure.iter().filter_map(|place| class.slots.all[*place].own).collect();
+    if unsure.is_empty() {
+        return component(subject, class, without_plugin_code, report);
+    }
+    if without_plugin_code && class.class.origin().is_some() {
+        return;
+    }
+    let ends: Option<Vec<[String; 2]>> = unsure.iter().map(|one| ends(one)).collect();
+    let Some(ends) = ends else { return };
+    let is_unsure = |name: &str| unsure.iter().any(|one| one.name == name);
+    let with = |end: usize| {
+        let known = subject.values.iter().filter(|(name, _)| !is_unsure(name)).cloned();
+        let assumed = unsure.iter().zip(&ends);
+        let assumed = assumed.map(|(one, ends)| (one.name.clone(), PropertyValue::Text(ends[end].clone())));
+        known.chain(assumed).collect()
+    };
+    let mut tries: Vec<Vec<(String, PropertyValue)>> = vec![with(0), with(1)];
+    if unsure.iter().all(|one| !one.required) {
+        tries.push(subject.values.to_vec());
+    }
+    let mut found: Option<Vec<Finding>> = None;
+    for values in tries.iter().rev() {
+        let Err(failure) = contained(|| class.class.construct(values).map(drop)).and_then(|result| result)
+        else {
+            return;
+        };
+        match &mut found {
+            None => found = Some(failure.findings().to_vec()),
+            Some(found) => found.retain(|one| failure.findings().contains(one)),
+        }
+    }
+    let is_given = |finding: &Finding| {
+        let name = finding.place().property_name();
+        name.is_some_and(|name| !is_unsure(name) && subject.written.iter().any(|one| one.property == name))
+    };
+    let found: Vec<Finding> = found.unwrap_or_default().into_iter().filter(is_given).collect();
+    tell(&found, subject, class.class.name(), report);
+}
+
+/// The values at both ends of what a property allows; `None` where it has none.
+fn ends(declaration: &PropertyDeclaration) -> Option<[String; 2]> {
+    /// Numbers beyond this are as good as this: constructors may make room for them.
+    const LARGE: f64 = 1_000_000.0;
+    if declaration.many {
+        return None;
+    }
+    if let [first, .., last] = &declaration.allowed[..] {
+        return Some([first.clone(), last.clone()]);
+    }
+    if declaration.kind == PropertyKind::Boolean {
+        return Some(["false".to_owned(), "true".to_owned()]);
+    }
+    let least = declaration.min.clone()?;
+    let most = declaration.max.clone()?;
+    let most = match most.parse::<f64>() {
+        Ok(number) if number > LARGE => LARGE.to_string(),
+        _ => most,
+    };
+    let fits = |text: &String| declaration.check(text).is_ok();
+    (declaration.is_number() && fits(&least) && fits(&most)).then_some([least, most])
+}
+
 /// What a constructor finds is shown at the values that it is about, any other judgement at the name.
 fn judge(
     construct: impl FnOnce() -> Result<(), Failure>,
@@ -41,19 +115,23 @@ fn judge(
     report: &mut Report<'_>,
 ) {
     let Err(failure) = contained(construct).and_then(|result| result) else { return };
-    let help = format!("{} says what its properties mean", quoted(&format!("saoms components {class}")));
     if failure.findings().is_empty() {
         let message = format!("{} {}: {failure}", subject.what, quoted(subject.name));
-        report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help));
+        report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help(class)));
         return;
     }
-    for finding in failure.findings() {
+    tell(failure.findings(), subject, class, report);
+}
+
+fn tell(findings: &[Finding], subject: Subject<'_>, class: &str, report: &mut Report<'_>) {
+    for finding in findings {
         let one = diagnostic(&codes::CONSTRUCTION, Severity::Error, finding, subject, &|_| None, report);
         let Some(one) = one else { continue };
-        report.push(if one.help.is_empty() && one.suggestions.is_empty() {
-            one.help(help.clone())
-        } else {
-            one
-        });
+        let is_plain = one.help.is_empty() && one.suggestions.is_empty();
+        report.push(if is_plain { one.help(help(class)) } else { one });
     }
+}
+
+fn help(class: &str) -> String {
+    format!("{} says what its properties mean", quoted(&format!("saoms components {class}")))
 }

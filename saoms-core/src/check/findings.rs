@@ -2,6 +2,7 @@
 
 use saoms_api::{Finding, Place, PropertyValue};
 
+use super::fleet::Member;
 use super::properties::Written;
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
@@ -18,6 +19,18 @@ pub(super) struct Subject<'a> {
     pub(super) values: &'a [(String, PropertyValue)],
     /// Where the composite gives them.
     pub(super) written: &'a [Written<'a>],
+}
+
+impl<'a> Subject<'a> {
+    /// A component with its values.
+    pub(super) fn of(
+        member: &Member<'a>,
+        values: &'a [(String, PropertyValue)],
+        written: &'a [Written<'a>],
+    ) -> Self {
+        let name = &member.component.name;
+        Self { what: "component", name: name.as_str(), at: name.location, values, written }
+    }
 }
 
 /// The diagnostic for a finding about these components; `own` is the one that a place without a component is in. `None` where there were

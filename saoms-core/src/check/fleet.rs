@@ -118,6 +118,11 @@ impl<'a> Member<'a> {
         !matches!(self.kind, Kind::Composite(_))
     }
 
+    /// Whether a table that is not known may give it other values.
+    pub(super) fn has_open_values(&self) -> bool {
+        self.instance.and_then(|instance| instance.partial).is_some_and(|partial| partial.has_table)
+    }
+
     pub(super) fn set_path(&mut self, path: String) {
         self.path = Some(path.into());
     }

@@ -148,7 +148,7 @@ fn examine<T>(
     let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
     let (checked, loops) = absent::remove(&mut fleet, checked, loops);
-    let resolved = components(&fleet, &classes, checked, loops, report);
+    let (resolved, halves) = components(&fleet, &classes, checked, loops, report);
     written::check(&fleet, report);
     contracts::check(&fleet, &classes, report);
     described::check(&fleet, &classes, report);
@@ -163,6 +163,14 @@ fn examine<T>(
             for (class, subject) in resolved.loops.changed() {
                 construct::looping(subject, class, without, report);
             }
+        }
+    }
+    for Half { member, values, written, unsure } in &halves {
+        let member = &fleet.members[*member];
+        if let Kind::Class(class) = member.kind {
+            report.about(member);
+            let subject = Subject::of(member, values, written);
+            construct::partly(subject, &classes[class], unsure, options.without_plugin_code, report);
         }
     }
     report.about_all();
@@ -207,16 +215,19 @@ struct Resolved<'r> {
     loops: loops::Resolved<'r>,
 }
 
+/// What is known of the properties of a component with a fault.
+struct Half<'r> {
+    /// The place of the component.
+    member: usize,
+    values: Vec<(String, PropertyValue)>,
+    written: Vec<Written<'r>>,
+    /// The places of the properties whose values are not known.
+    unsure: Vec<usize>,
+}
+
 impl Resolved<'_> {
     fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
-        let name = &member.component.name;
-        Subject {
-            what: "component",
-            name: name.as_str(),
-            at: name.location,
-            values: &self.values,
-            written: &self.written,
-        }
+        Subject::of(member, &self.values, &self.written)
     }
 }
 
@@ -253,18 +264,20 @@ fn properties<'a>(
     all
 }
 
-/// Checks everything else about components that needs no look at wires; `None` for one with a fault.
+/// Checks everything else about components that needs no look at wires; `None` for one with a fault, of which what is known stands in
+/// the second list.
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
     checked: Vec<Option<Checked>>,
     loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
-) -> Vec<Option<Box<Resolved<'a>>>> {
+) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half<'a>>) {
+    let mut halves = Vec::new();
     let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
     let mut all = Vec::with_capacity(fleet.members.len());
-    for ((member, checked), loops) in fleet.members.iter().zip(checked).zip(loops) {
+    for (place, ((member, checked), loops)) in fleet.members.iter().zip(checked).zip(loops).enumerate() {
         report.about(member);
         let (Kind::Class(index), Some(checked)) = (member.kind, checked) else {
             all.push(None);
@@ -281,16 +294,23 @@ fn components<'f, 'a>(
         let renamed = renamed.unwrap_or_default();
         let task = task.and_then(|task| task.settings);
         let sound = checked.is_sound && is_periodic == task.is_some();
-        all.push(loops.filter(|_| sound).map(|loops| {
-            let mut values = checked.values(&class.slots, |slot| slot.own);
-            let absent =
-                class.class.presets().iter().filter(|(name, _)| checked.get(&class.slots, name).is_none());
-            values.extend(absent.cloned());
-            Box::new(Resolved { values, written: checked.places(&class.slots), task, renamed, loops })
-        }));
+        let mut values = checked.values(&class.slots, |slot| slot.own);
+        let absent =
+            class.class.presets().iter().filter(|(name, _)| checked.get(&class.slots, name).is_none());
+        values.extend(absent.cloned());
+        let written = checked.places(&class.slots);
+        let resolved = match loops.filter(|_| sound) {
+            Some(loops) => Some(Box::new(Resolved { values, written, task, renamed, loops })),
+            None if member.has_open_values() => None,
+            None => {
+                halves.push(Half { member: place, values, written, unsure: checked.unsure });
+                None
+            }
+        };
+        all.push(resolved);
     }
     report.about_all();
-    all
+    (all, halves)
 }
 
 /// A fleet without errors. Components of it may have no class where that is taken as given.

@@ -66,6 +66,8 @@ pub(super) struct Checked {
     given: Vec<Given>,
     /// Whether there was no fault, so that the component can be constructed.
     pub(super) is_sound: bool,
+    /// The places of the properties whose values cannot be known for such faults.
+    pub(super) unsure: Vec<usize>,
 }
 
 impl Checked {
@@ -150,12 +152,15 @@ pub(super) fn check<'a>(
     let mut first = values.first(slots.all.len());
     // Those whose `source` is right, and has no value.
     let mut unset: Vec<&Text> = Vec::new();
+    let mut unsure: Vec<usize> = Vec::new();
+    let mut unknown: Vec<&str> = Vec::new();
     let mut is_sound = true;
     for property in giver.properties {
         let is_hidden =
             member.instance.is_some_and(|one| one.partial.is_some() && has_expression(&property.name));
         if property.name.is_empty() || is_hidden {
             is_sound = false;
+            unknown.push("");
             continue;
         }
         let Some(place) = slots.place(&property.name) else {
@@ -164,11 +169,13 @@ pub(super) fn check<'a>(
                 let _ = parameters.resolve(member.unit, source, report);
             }
             is_sound = false;
+            unknown.push(&property.name);
             continue;
         };
         if let Some(first) = first[place] {
             report.push(given_twice(property, first));
             is_sound = false;
+            unsure.push(place);
             continue;
         }
         first[place] = Some(property);
@@ -181,7 +188,10 @@ pub(super) fn check<'a>(
                 }
                 given.push(value);
             }
-            Err(()) => is_sound = false,
+            Err(()) => {
+                is_sound = false;
+                unsure.push(place);
+            }
         }
     }
     for (default, document) in giver.defaults() {
@@ -196,7 +206,10 @@ pub(super) fn check<'a>(
             .and_then(|found| converted(default, found, used, (place, &slots.all[place]), values, report))
         {
             Ok(value) => given.push(value),
-            Err(()) => is_sound = false,
+            Err(()) => {
+                is_sound = false;
+                unsure.push(place);
+            }
         }
     }
     given.sort_unstable_by_key(|given| given.slot);
@@ -211,6 +224,7 @@ pub(super) fn check<'a>(
             continue;
         }
         is_sound = false;
+        unsure.push(place);
         // What is given wrongly is reported already.
         match first[place] {
             None => report_missing(giver, declaration, slots, report),
@@ -223,7 +237,20 @@ pub(super) fn check<'a>(
         }
     }
     values.keep(first);
-    Checked { given, is_sound: is_sound && !member.is_partial }
+    unsure.extend(unknown.iter().flat_map(|name| meant(name, slots, &given)));
+    unsure.sort_unstable();
+    unsure.dedup();
+    Checked { given, is_sound: is_sound && !member.is_partial, unsure }
+}
+
+/// The places of the properties that an unknown name may stand for: the one that is spelt alike, or else any number that is not given.
+fn meant(name: &str, slots: &Slots<'_>, given: &[Given]) -> Vec<usize> {
+    if let Some(place) = nearest(name, slots.names()).and_then(|near| slots.place(near)) {
+        return vec![place];
+    }
+    let open = slots.all.iter().enumerate().filter(|(place, _)| given.iter().all(|one| one.slot != *place));
+    let numbers = open.filter(|(_, slot)| slot.own.is_some_and(PropertyDeclaration::is_number));
+    numbers.map(|(place, _)| place).collect()
 }
 
 /// The value of a property; `None` when its `source` has none.
@@ -293,8 +320,7 @@ fn report_missing(
     slots: &Slots<'_>,
     report: &mut Report<'_>,
 ) {
-    let partial = giver.member.instance.and_then(|instance| instance.partial);
-    if partial.is_some_and(|partial| partial.has_table) {
+    if giver.member.has_open_values() {
         return;
     }
     let name = declaration.name.as_str();

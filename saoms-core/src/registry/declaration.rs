@@ -131,6 +131,11 @@ impl PropertyDeclaration {
         self.with_rule(|rule| rule.allows(text))
     }
 
+    /// Whether it is a number or a duration.
+    pub(crate) fn is_number(&self) -> bool {
+        matches!(self.kind, PropertyKind::Integer | PropertyKind::Float | PropertyKind::Duration)
+    }
+
     /// What is expected, as in `a whole number from 1 to 99 [%]`.
     pub fn expected(&self) -> String {
         if self.kind == PropertyKind::Complex {

@@ -23,6 +23,7 @@ pub(crate) fn registry() -> Registry {
         Registration::of::<Tracker>(),
         Registration::of::<Fragile>(),
         Registration::of::<Reader>(),
+        Registration::of::<Board>(),
         Registration::of::<Conductor>(),
         Registration::of::<Dispatcher>(),
         Registration::of::<Picker>(),
@@ -304,6 +305,47 @@ impl Component for Reader {
                 }
                 findings.push(finding);
             }
+        }
+        if findings.is_empty() { Ok(Self) } else { Err(findings.into()) }
+    }
+}
+
+#[derive(Properties)]
+pub(crate) struct BoardProperties {
+    #[property(default = 8, range = 1..=100)]
+    width: u32,
+    #[property(default = 8, range = 1..=100)]
+    height: u32,
+    /// Where its marks are: `x,y`.
+    marks: Vec<String>,
+    label: Option<String>,
+}
+
+/// Has marks that lie on it.
+#[derive(Class)]
+#[class(name = "example.Board", periodic)]
+pub(crate) struct Board;
+
+impl Component for Board {
+    type Properties = BoardProperties;
+
+    fn new(properties: BoardProperties) -> Result<Self, Failure> {
+        let BoardProperties { width, height, marks, label } = properties;
+        let judge = |text: &String| {
+            let (x, y) = text.split_once(',').ok_or("is no mark")?;
+            let (x, y): (u32, u32) =
+                (x.parse().map_err(|_| "has no column")?, y.parse().map_err(|_| "has no row")?);
+            if x < width && y < height { Ok(()) } else { Err("is beside the board") }
+        };
+        let judged = marks.iter().enumerate().map(|(place, text)| (place, text, judge(text)));
+        let mut findings: Vec<Finding> = judged
+            .filter_map(|(place, text, judged): (usize, &String, Result<(), &str>)| {
+                let place = Place::property("marks").part(place, 0..text.len());
+                Some(Finding::new(place, format!("`{text}` {}", judged.err()?)))
+            })
+            .collect();
+        if label.as_deref() == Some("dark") {
+            findings.push(Finding::new(Place::property("label"), "it is too dark"));
         }
         if findings.is_empty() { Ok(Self) } else { Err(findings.into()) }
     }

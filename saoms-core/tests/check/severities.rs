@@ -157,7 +157,7 @@ fn errors_that_make_a_fleet_impossible_stay() {
     expect![[r#"
         2:110-121 error S3001: there is no class `example.Gsp`
           2:146-151 not set to `warning`
-          help: looked among the 20 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           help: its severity cannot be lowered: nothing can run with it
           fix: replace `example.Gsp` with `example.Gps` [2:110-121 "example.Gps"]
     "#]]

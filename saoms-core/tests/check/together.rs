@@ -89,3 +89,62 @@ fn a_faulty_expression_hides_nothing_else() {
           help: the components are `C`
     "#]].assert_eq(&by_condition);
 }
+
+/// A board with these properties, and marks of which one is beside any board, one beside one of the usual size, and one is none.
+fn board(properties: &str) -> String {
+    of(&format!(
+        "<component name=\"B\"><implementation.java class=\"example.Board\"/><property name=\"ID\">B</property>
+<property name=\"marks\"><value>300,1</value><value>1,20</value><value>x</value></property><property name=\"label\">dark</property>
+{properties}</component>"
+    ))
+}
+
+#[test]
+fn a_wrong_value_hides_nothing_that_the_constructor_finds_in_others() {
+    expect![[r#"
+        3:31-36 error S3014: component `B`: property `marks`: `300,1` is beside the board
+          help: `saoms components example.Board` says what its properties mean
+        3:51-55 error S3014: component `B`: property `marks`: `1,20` is beside the board
+          help: `saoms components example.Board` says what its properties mean
+        3:70-71 error S3014: component `B`: property `marks`: `x` is no mark
+          help: `saoms components example.Board` says what its properties mean
+        3:113-117 error S3014: component `B`: property `label`: it is too dark
+          help: `saoms components example.Board` says what its properties mean
+        4:25-29 error S3007: property `period`: `10Hz` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `period`: From one due execution to the next; a number without a unit is in ms
+    "#]].assert_eq(&board("<property name=\"period\">10Hz</property>"));
+    expect![[r#"
+        3:31-36 error S3014: component `B`: property `marks`: `300,1` is beside the board
+          help: `saoms components example.Board` says what its properties mean
+        3:70-71 error S3014: component `B`: property `marks`: `x` is no mark
+          help: `saoms components example.Board` says what its properties mean
+        3:113-117 error S3014: component `B`: property `label`: it is too dark
+          help: `saoms components example.Board` says what its properties mean
+        4:53-59 error S3004: class `example.Board` has no property `heigth`
+          fix: replace `heigth` with `height` [4:53-59 "height"]
+        4:90-96 error S3004: class `example.Board` has no property `heigth`
+          fix: replace `heigth` with `height` [4:90-96 "height"]
+    "#]].assert_eq(&board(
+        "<property name=\"period\">1</property><property name=\"heigth\">30</property><property name=\"heigth\">30</property>",
+    ));
+    expect![[r#"
+        3:31-36 error S3014: component `B`: property `marks`: `300,1` is beside the board
+          help: `saoms components example.Board` says what its properties mean
+        3:51-55 error S3014: component `B`: property `marks`: `1,20` is beside the board
+          help: `saoms components example.Board` says what its properties mean
+        3:70-71 error S3014: component `B`: property `marks`: `x` is no mark
+          help: `saoms components example.Board` says what its properties mean
+        3:113-117 error S3014: component `B`: property `label`: it is too dark
+          help: `saoms components example.Board` says what its properties mean
+        4:60-62 error S3007: property `width`: `3O` is not a whole number: expected a whole number from 1 to 100
+          help: the default is `8`
+    "#]]
+        .assert_eq(&board("<property name=\"period\">1</property><property name=\"width\">3O</property>"));
+    // A label may say anything.
+    expect![[r#"
+        4:53-58 error S3005: the property `label` is given twice
+          3:106-111 first here
+          help: keep one of them
+    "#]]
+    .assert_eq(&board("<property name=\"period\">1</property><property name=\"label\" value=\"bright\"/>"));
+}
