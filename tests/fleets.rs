@@ -83,7 +83,7 @@ fn a_thousand_robots_are_too_many_for_the_queues_that_forty_fit_into() {
     let output = saoms(&["check", "--wiring", &path], &[]);
     let (_, shown) = text(&output);
     assert_eq!(output.status.code(), Some(0), "{shown}");
-    assert!(shown.contains("warning[S4013]") && shown.contains("of topic `ELMSTOPIC`"), "{shown}");
+    assert!(shown.contains("note[S4013]") && shown.contains("of topic `ELMSTOPIC`"), "{shown}");
     let (_, shown) = text(&saoms(&["check", "--wiring", &path, "--set", "robots=40"], &[]));
     assert!(!shown.contains("S4013"), "{shown}");
 }

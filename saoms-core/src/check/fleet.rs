@@ -207,7 +207,7 @@ impl<'a> Fleet<'a> {
 }
 
 /// Whether a name is like a pattern, in which `*` stands for anything.
-fn is_like(name: &str, pattern: &str) -> bool {
+pub(super) fn is_like(name: &str, pattern: &str) -> bool {
     let (Some((first, rest)), mut left) = (pattern.split_once('*'), name) else { return name == pattern };
     let Some(behind) = left.strip_prefix(first) else { return false };
     left = behind;

@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use super::fleet::is_like;
 use super::instance::{INDEX, Instance};
 use super::names::Names;
 use super::report::Report;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
-use crate::expression::{self, Expression, Fault, Problem, Value, boolean, integer, parse, render};
+use crate::expression::{self, Expression, Fault, Problem, Value, boolean, integer, parse, pattern, render};
 use crate::model::{Component, Replicas, Table};
 use crate::source::Text;
 
@@ -125,22 +126,34 @@ impl<'a> Plan<'a> {
                 Some(by_name) => by_name.get(row.key.as_str()).copied(),
                 None => row.key.parse().ok().filter(|index| (self.next..=last).contains(index)),
             };
-            let is_number = by_name.is_some() || row.key.parse::<i64>().is_ok();
             let Some(index) = found else {
-                is_sound &= is_number;
+                let is_possible = match by_name {
+                    Some(_) => self.is_possible(&row.key),
+                    None => row.key.parse::<i64>().is_ok(),
+                };
+                is_sound &= is_possible;
                 let message = format!("there is no replica {}", quoted(&row.key));
                 let one = match &by_name {
+                    Some(_) if is_possible => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
+                        .help("there would be one if `saoms:count` were larger"),
                     Some(by_name) => {
-                        let mut names: Vec<&str> = by_name.keys().map(String::as_str).collect();
+                        let is_free = |name: &&str| table.rows.iter().all(|row| row.key != **name);
+                        let mut names: Vec<&str> =
+                            by_name.keys().map(String::as_str).filter(is_free).collect();
                         names.sort_unstable();
-                        let known = ("the replicas are", names.iter().copied());
-                        report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known)
+                        let known = ("the table says nothing of", names.iter().copied());
+                        let one =
+                            report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known);
+                        match one.suggestions.is_empty() {
+                            true => one.help(format!("they are called {}", quoted(&self.component.name))),
+                            false => one,
+                        }
                     }
                     None => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
                         .help(format!("the indices go from {} to {last}", self.next)),
                 };
                 // Fewer robots than the table knows are no mistake where the number is set from outside.
-                let severity = if is_number { Severity::Warning } else { Severity::Error };
+                let severity = if is_possible { Severity::Warning } else { Severity::Error };
                 report.push(one.severity(severity));
                 continue;
             };
@@ -153,6 +166,24 @@ impl<'a> Plan<'a> {
             self.rows.insert(index, place);
         }
         is_sound
+    }
+
+    /// Whether there can be a replica of this name, were there more of them.
+    fn is_possible(&self, name: &str) -> bool {
+        let pattern = pattern(&self.component.name);
+        let Some((before, behind)) = pattern.split_once('*') else { return false };
+        let number = |name: &str| {
+            let number = name.strip_prefix(before)?.strip_suffix(behind)?;
+            number.parse::<i64>().ok()
+        };
+        if behind.contains('*') {
+            return is_like(name, &pattern);
+        }
+        let Some(index) = number(name) else { return false };
+        // Where the number is the index, it is written in one way.
+        let instance = self.instance(index);
+        let rendered = render(&self.component.name, &mut |name| instance.value(name));
+        rendered.is_ok_and(|rendered| rendered == name || number(&rendered) != Some(index))
     }
 
     /// The index of each name.

@@ -1,6 +1,6 @@
 //! What topics come to in the fleet as a whole: nobody at the other end, names that are nearly the same, queues that overflow.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
 use saoms_api::{TopicKind, format_duration};
@@ -23,17 +23,22 @@ pub(super) fn check(assembly: &Assembly, places: &[Place], report: &mut Report<'
     let is_lone = |topic: &&Topic| topic.writers.is_empty() || topic.readers.is_empty();
     let mut lone: HashMap<&str, &Topic> =
         traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
+    let mut told: HashSet<&str> = HashSet::new();
     for topic in &traffic.topics {
         if lone.contains_key(topic.name.as_str())
             && let Some(meant) = all.meant(topic, &traffic)
         {
-            lone.remove(topic.name.as_str());
-            lone.remove(meant.name.as_str());
+            for name in [topic.name.as_str(), meant.name.as_str()] {
+                lone.remove(name);
+                told.insert(name);
+            }
             all.near(topic, meant, report);
         }
     }
     for topic in &traffic.topics {
-        if let Some(meant) = all.left(topic, &traffic) {
+        if !told.contains(topic.name.as_str())
+            && let Some(meant) = all.left(topic, &traffic).or_else(|| all.missed(topic, &traffic))
+        {
             all.alone(topic, meant, report);
         }
         if lone.contains_key(topic.name.as_str()) {
@@ -108,11 +113,43 @@ impl All<'_> {
         candidates.into_iter().find(|other| other.name == name)
     }
 
+    /// The topic that those who use this one meant by a `topicRename`: of the same messages, with nearly its name, which is the one that it has
+    /// without renaming. Names that only add something to another one, or differ in their numbers, keep parts of a fleet apart.
+    fn missed<'t>(&self, topic: &Topic, traffic: &'t Traffic) -> Option<&'t Topic> {
+        if topic.writers.is_empty()
+            || topic.readers.is_empty()
+            || !topic.ends().all(|end| self.is_renamed(end, topic))
+        {
+            return None;
+        }
+        let fits = |other: &&Topic| {
+            other.name != topic.name
+                && other.message == topic.message
+                && other.kind == topic.kind
+                && other.ends().any(|end| !self.is_renamed(end, other))
+                && !is_apart(&topic.name, &other.name)
+        };
+        let candidates: Vec<&Topic> = traffic.topics.iter().filter(fits).collect();
+        let name = nearest(&topic.name, candidates.iter().map(|other| other.name.as_str()))?;
+        candidates.into_iter().find(|other| other.name == name)
+    }
+
+    fn is_renamed(&self, end: &End, topic: &Topic) -> bool {
+        self.places[end.component].renamed.iter().any(|(name, _)| *name == topic.name)
+    }
+
     fn alone(&self, topic: &Topic, meant: &Topic, report: &mut Report<'_>) {
         let (Some(end), Some(other)) = (topic.writers.first(), meant.ends().next()) else { return };
+        let mut users: Vec<End> = topic.ends().copied().collect();
+        users.sort_by_key(|end| end.component);
+        users.dedup_by_key(|end| end.component);
+        let hear = match users.len() {
+            1 => "hears nobody but itself",
+            _ => "hear nobody but each other",
+        };
         let message = format!(
-            "component {} hears nobody but itself on topic {}: others use {}",
-            quoted(&self.assembly.components[end.component].path),
+            "{} {hear} on topic {}: others use {}",
+            self.who(&users),
             quoted(&topic.name),
             quoted(&meant.name)
         );
@@ -175,19 +212,25 @@ impl All<'_> {
             if overflows && task.loss == Loss::Fail && !told.contains(&("queue", reader.period)) {
                 told.push(("queue", reader.period));
                 let message = format!(
-                    "up to {burst} messages of topic {} come between two executions of {}, and {} find room",
+                    "up to {burst} messages of topic {} can come between two executions of {}, and {} find room",
                     quoted(&topic.name),
                     self.who(&readers),
                     task.queue
                 );
                 let parts: u32 = topic.writers.iter().map(|writer| writer.parts).sum();
+                let in_all = match parts as usize == topic.writers.len() {
+                    true => String::new(),
+                    false => format!(", {parts} components and loops in all"),
+                };
                 let writers = self.who_does(&topic.writers, "publishes");
                 let one = Diagnostic::new(&codes::QUEUE, self.at(reader, topic), message);
                 report.push(
                     one.help(format!(
-                        "{writers} it, {parts} components and loops in all: that is one message of each in each execution"
+                        "{writers} it{in_all}: so many come where each sends one in each execution, and fewer as a rule"
                     ))
-                    .help(format!("give the readers a `queue` of {burst} or more, or a shorter `period`")),
+                    .help(format!(
+                        "where a run says that messages were lost, give the readers a `queue` of {burst}, or a shorter `period`"
+                    )),
                 );
             }
             if let (Some(fastest), Some(period)) = (fastest, reader.period)
@@ -207,6 +250,16 @@ impl All<'_> {
             }
         }
     }
+}
+
+/// Whether two names are different on purpose: one adds something to the other, or they differ in their numbers.
+fn is_apart(one: &str, other: &str) -> bool {
+    let (one, other) = (one.to_lowercase(), other.to_lowercase());
+    let without_numbers = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
+    let adds = |long: &str, short: &str| long != short && (long.starts_with(short) || long.ends_with(short));
+    adds(&one, &other)
+        || adds(&other, &one)
+        || one != other && without_numbers(&one) == without_numbers(&other)
 }
 
 fn article(word: &str) -> &'static str {

@@ -64,6 +64,7 @@ codes! {
     MISSING_IMPLEMENTATION = "S1010" Error "missing-implementation" ("ASM13001"): "A component has no implementation.";
     ATTRIBUTE_VALUE = "S1011" Error "attribute-value" ("ASM13001"): "The value of an attribute is of the wrong form.";
     MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001"): "There is text where none belongs.";
+    NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and what is in it is passed over.";
     // S20: names, composite properties, services, references and wires.
     COMPOSITE_REPEATED = "S2001" Error "composite-repeated" ("ASM60001"): "Two composites of one namespace have one name.";
     COMPONENT_REPEATED = "S2002" Error "component-repeated" ("ASM50001"): "Two components have one name.";
@@ -145,7 +146,7 @@ codes! {
     TOPIC_UNREAD = "S4010" Note "topic-unread": "A topic is published that nobody reads. Told by `saoms check --wiring`.";
     TOPIC_UNWRITTEN = "S4011" Warning "topic-unwritten": "A topic is read that nobody publishes. Told by `saoms check --wiring`.";
     TOPIC_NEAR = "S4012" Warning "topic-near": "A topic has one end or one user alone, and there is another one with nearly its name. Told by `saoms check --wiring`.";
-    QUEUE = "S4013" Warning "queue": "More messages can come between two executions of a reader than its queue takes. Told by `saoms check --wiring`.";
+    QUEUE = "S4013" Note "queue": "More messages can come between two executions of a reader than its queue takes. Told by `saoms check --wiring`.";
     READER_FASTER = "S4014" Note "reader-faster": "A topic is read more often than anybody publishes it. Told by `saoms check --wiring`.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A loop is named that the component does not have.";

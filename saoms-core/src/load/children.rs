@@ -65,6 +65,10 @@ impl Loader<'_> {
     /// Reports an element of SCA, or of SAOMS, that cannot be where it is.
     pub(super) fn unexpected(&mut self, element: Element<'_>, parent: &'static Kind, family: Family) {
         let name = element.local_name();
+        if family == Family::Sca && element.namespace() != self.namespace {
+            // Of another version, which is reported: nobody knows what it would be in this one.
+            return;
+        }
         if family == Family::Sca && is_own_alone(name) {
             return self.own_without_namespace(element);
         }

@@ -18,6 +18,7 @@ mod imports;
 mod looping;
 mod missing;
 mod named;
+mod near;
 mod property;
 mod read;
 mod root;
@@ -40,7 +41,7 @@ pub use shelf::composites_near;
 pub use table::table;
 pub use values::read_values;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::model::{Composite, Property, Reference, Service, SeverityRule, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
@@ -87,16 +88,33 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
             severities: Vec::new(),
         };
         if loader.root(document.root()) {
+            loader.near_namespaces(&document);
             composite = Some(loader.composite(&Arc::new(document)));
         }
     }
     match fault {
         None => composite,
         Some(fault) => {
-            diagnostics.push(fault);
+            if !contradicts(&fault, sources, diagnostics) {
+                diagnostics.push(fault);
+            }
             None
         }
     }
+}
+
+/// Whether a fault is that an end tag does not fit a start tag, whose name is told to be wrong, and of which the end tag has the right one.
+fn contradicts(fault: &Diagnostic, sources: &Sources, diagnostics: &Diagnostics) -> bool {
+    if fault.code != &codes::XML_TAG_MISMATCH {
+        return false;
+    }
+    let end = sources.snippet(fault.location);
+    let right = end.strip_prefix("</").and_then(|name| name.strip_suffix('>')).unwrap_or(end).trim_end();
+    diagnostics.iter().filter(|one| one.code == &codes::UNKNOWN_ELEMENT).any(|one| {
+        let mut edits = one.suggestions.iter().flat_map(|suggestion| &suggestion.edits);
+        fault.labels.iter().any(|label| label.location == one.location)
+            && edits.any(|edit| edit.location == one.location && edit.replacement == right)
+    })
 }
 
 /// What the parts of the loader share.

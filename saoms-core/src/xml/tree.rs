@@ -76,6 +76,11 @@ impl Document {
         &self.text
     }
 
+    /// All namespaces that are declared.
+    pub(crate) fn namespaces(&self) -> impl Iterator<Item = &str> {
+        self.namespaces.iter().map(AsRef::as_ref)
+    }
+
     /// The one element that holds all others.
     pub fn root(&self) -> Element<'_> {
         self.element(ElementId::ROOT)

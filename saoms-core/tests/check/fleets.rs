@@ -278,14 +278,22 @@ fn tables_say_what_differs() {
     "#]]
     .assert_eq(&found("index,colour,sped\n1,rde,\n5,red,\n1,blue,,7\nx,blue,2\n2,\"red\"x,\"1\n"));
     expect![[r#"
-        robots.csv:2:1-3 warning S2047: there is no replica `R3`
+        robots.csv:2:1-3 error S2047: there is no replica `R3`
           fix: replace `R3` with `R03` [robots.csv:2:1-3 "R03"]
-        R01 [("ID", Text("R1")), ("number", Text("1"))] 100ms
-        R02 [("ID", Text("R2")), ("number", Text("2"))] 100ms
-        R03 [("ID", Text("R3")), ("number", Text("3"))] 100ms
-        R04 [("ID", Text("R4")), ("number", Text("4"))] 100ms
     "#]]
     .assert_eq(&found("name,speed\nR3,1\n"));
+    // What the table has already is not meant again; `R05` comes with a larger count, the others never.
+    expect![[r#"
+        robots.csv:5:1-4 warning S2047: there is no replica `R05`
+          help: there would be one if `saoms:count` were larger
+        robots.csv:6:1-3 error S2047: there is no replica `r1`
+          help: the table says nothing of `R04`
+          help: they are called `R${index:02}`
+        robots.csv:7:1-2 error S2047: there is no replica `X`
+          help: the table says nothing of `R04`
+          help: they are called `R${index:02}`
+    "#]]
+    .assert_eq(&found("name,speed\nR01,1\nR02,1\nR03,1\nR05,1\nr1,1\nX,1\n"));
     expect![[r#"
         robots.csv:1:7-11 error S3004: class `example.Robot` has no property `sped` (in `R01`, index 1)
           fix: replace `sped` with `speed` [robots.csv:1:7-11 "speed"]

@@ -110,21 +110,56 @@ fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
     expect![""].assert_eq(&found("elsewhere"));
 }
 
+/// Who uses a slip of the name that others have without renaming, however many they are on either side.
+#[test]
+fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
+    let found = |new: &[&str]| {
+        let robot = |(number, new): (usize, &&str)| {
+            let new = if new.is_empty() { String::new() } else { rename(&format!("POSTOPIC,{new}")) };
+            (format!("R{number}"), format!("<property name=\"number\">{}</property>{new}", number + 1))
+        };
+        let robots: Vec<_> = new.iter().enumerate().map(robot).collect();
+        let mut all: Vec<_> =
+            robots.iter().map(|(name, properties)| (name.as_str(), "Robot", properties.as_str())).collect();
+        all.push(("D", "Dispatcher", ""));
+        found(&fleet(&all))
+    };
+    expect![[r#"
+        2:212-219 warning S4012: component `R0` hears nobody but itself on topic `POSTOPC`: others use `POSTOPIC`
+          3:18-20 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]].assert_eq(&found(&["POSTOPC", ""]));
+    expect![[r#"
+        2:212-219 warning S4012: component `R0` and another one hear nobody but each other on topic `POSTOPC`: others use `POSTOPIC`
+          4:18-20 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]].assert_eq(&found(&["POSTOPC", "POSTOPC", "", ""]));
+    expect![[r#"
+        2:212-220 warning S4012: component `R0` and another one hear nobody but each other on topic `postopic`: others use `POSTOPIC`
+          4:18-20 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]].assert_eq(&found(&["postopic", "postopic", "", ""]));
+    // Halls of one file, kept apart.
+    expect![""].assert_eq(&found(&["POSTOPIC2", "POSTOPIC2", "", ""]));
+    expect![""].assert_eq(&found(&["POSTOPIC_B", "POSTOPIC_B", "", ""]));
+    expect![""].assert_eq(&found(&["HALLA", "HALLA", "HALLB", "HALLB"]));
+}
+
 #[test]
 fn queues_have_room_for_what_can_come_between_two_executions() {
     let slow = |queue: &str| format!("{}<property name=\"queue\">{queue}</property>", period("1001"));
     let both = |properties: &str| found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", properties)]));
     expect![""].assert_eq(&both(&slow("11")));
     expect![[r#"
-        3:18-19 warning S4013: up to 11 messages of topic `ORDERS` come between two executions of component `P`, and 10 find room
-          help: component `D` publishes it, 1 components and loops in all: that is one message of each in each execution
-          help: give the readers a `queue` of 11 or more, or a shorter `period`
+        3:18-19 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P`, and 10 find room
+          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
     "#]].assert_eq(&both(&slow("10")));
     expect![""].assert_eq(&both(&format!("{}<property name=\"loss\">accept</property>", slow("10"))));
     expect![[r#"
-        3:18-27 warning S4013: up to 1200 messages of topic `ORDERS` come between two executions of component `P1` and 399 others, and 1024 find room
-          help: component `D1` and 399 others publish it, 400 components and loops in all: that is one message of each in each execution
-          help: give the readers a `queue` of 1200 or more, or a shorter `period`
+        3:18-27 note S4013: up to 1200 messages of topic `ORDERS` can come between two executions of component `P1` and 399 others, and 1024 find room
+          help: component `D1` and 399 others publish it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 1200, or a shorter `period`
     "#]].assert_eq(&found(&fleet(&[
         ("D${index}", "Dispatcher", ""),
         ("P${index}", "Picker", &period("300")),

@@ -1,5 +1,6 @@
 mod extension;
 mod reading;
+mod slips;
 mod vocabulary;
 
 use std::fmt::Write as _;

@@ -1,0 +1,60 @@
+//! Namespaces that are nearly those of SCA or SAOMS: what is in them would be passed over in silence.
+
+use super::Loader;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{SAOMS_NAMESPACE, Version};
+use crate::xml::Document;
+
+impl Loader<'_> {
+    /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged with it.
+    pub(super) fn near_namespaces(&mut self, document: &Document) {
+        let near =
+            document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
+        let near: Vec<(&str, &str)> = near.filter_map(|one| Some((one, meant(one)?))).collect();
+        for (written, meant) in near {
+            let is_used = document.elements().any(|element| {
+                element.namespace() == written || element.attributes().any(|one| one.namespace() == written)
+            });
+            let declarations = document.elements().flat_map(|element| element.namespace_declarations());
+            let Some(first) = declarations.filter(|_| is_used).find(|one| one.value() == written) else {
+                continue;
+            };
+            let at = first.value_span().in_file(document.file());
+            let message = format!(
+                "what is in the namespace {} is passed over: it is nearly {}",
+                quoted(written),
+                quoted(meant)
+            );
+            let one = Diagnostic::new(&codes::NAMESPACE_NEAR, at, message);
+            self.report(one.suggest(format!("replace it with {}", quoted(meant)), at, meant));
+        }
+    }
+}
+
+/// The namespace that is meant by one that differs in a slip of the pen.
+fn meant(written: &str) -> Option<&'static str> {
+    if written == SAOMS_NAMESPACE || Version::from_namespace(written).is_some() {
+        return None;
+    }
+    let of_sca = Version::ALL.map(Version::namespace).into_iter().find(|known| {
+        // Drafts and other versions have numbers of their own.
+        let is_other_version = known.len() == written.len()
+            && known
+                .bytes()
+                .zip(written.bytes())
+                .all(|(a, b)| a == b || a.is_ascii_digit() && b.is_ascii_digit());
+        is_slip(written, known) && !is_other_version
+    });
+    of_sca.or_else(|| is_slip(written, SAOMS_NAMESPACE).then_some(SAOMS_NAMESPACE))
+}
+
+/// Whether two texts differ in their case, in one character, or in two that stand together.
+fn is_slip(written: &str, meant: &str) -> bool {
+    let (written, meant) = (written.trim().trim_end_matches('/').to_lowercase(), meant.to_lowercase());
+    let (one, other) = (written.as_bytes(), meant.as_bytes());
+    let longest = one.len().max(other.len());
+    let same = one.iter().zip(other).take_while(|(a, b)| a == b).count();
+    let room = one.len().min(other.len()) - same;
+    let behind = one.iter().rev().zip(other.iter().rev()).take(room).take_while(|(a, b)| a == b).count();
+    longest - same - behind <= 2
+}
