@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::fleet::{Fleet, Kind};
 use super::report::{Report, escaped, list, replacing};
 use super::slots::Slots;
-use crate::diagnostic::{Diagnostic, codes, nearest_few, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
 use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
@@ -142,6 +142,7 @@ pub(super) fn resolve<'r>(
                     fleet.members[place].kind = Kind::Given;
                     continue;
                 }
+                None if report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) => continue,
                 None => {
                     let near = near.entry(class).or_insert_with(|| registry.nearest(class));
                     report.push(unknown(class, near, registry));

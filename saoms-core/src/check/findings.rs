@@ -98,7 +98,7 @@ fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Loca
     let (Some(PropertyValue::Text(value)), Some(at)) = (value, written.value(index)) else { return whole };
     Located {
         text: value.get(part.clone()),
-        at: report.part_of(value, at, part),
+        at: report.parts_of(value, at).part(part),
         source: written.source,
         is_xml: report.is_xml(at.file),
     }

@@ -1,6 +1,6 @@
 //! All components of all composites as one fleet.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
 use super::classes::ClassIndex;
@@ -22,7 +22,7 @@ pub(super) struct Fleet<'a> {
     pub(super) members: Vec<Member<'a>>,
     pub(super) by_name: HashMap<(usize, &'a str), usize>,
     /// The replicas of each replicated component of a scope, by its name with `*` for each expression.
-    pub(super) groups: HashMap<(usize, String), Vec<usize>>,
+    pub(super) groups: BTreeMap<(usize, String), Vec<usize>>,
     /// Components that a condition keeps away, where no other has their name: with the condition.
     pub(super) absent: HashMap<(usize, &'a str), Location>,
     /// Wires that a condition keeps away, by the unit that they are in.
@@ -166,11 +166,11 @@ impl<'a> Fleet<'a> {
     }
 
     /// The names of all groups of replicas of a scope, in order.
-    pub(super) fn group_names(&self, scope: usize) -> Vec<&str> {
-        let of_scope = self.groups.keys().filter(|(of, _)| *of == scope);
-        let mut names: Vec<&str> = of_scope.map(|(_, name)| name.as_str()).collect();
-        names.sort_unstable();
-        names
+    pub(super) fn group_names(&self, scope: usize) -> impl Iterator<Item = &str> + Clone {
+        let from = self.groups.range((scope, String::new())..);
+        from.map(|((of, name), _)| (*of, name.as_str()))
+            .take_while(move |(of, _)| *of == scope)
+            .map(|(_, name)| name)
     }
 
     /// Whether a condition keeps a wire away.

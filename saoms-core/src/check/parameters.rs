@@ -1,5 +1,6 @@
 //! The properties of composites: what `source="$name"` and `source="$name/path"` stand for.
 
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -25,6 +26,8 @@ pub(super) struct Parameters<'a> {
 #[derive(Default)]
 struct Declared<'a> {
     by_name: HashMap<&'a str, Parameter<'a>>,
+    /// Its names in order, once somebody asked.
+    names: OnceCell<Vec<&'a str>>,
     /// Whether a `source` leads to none of them: one of them is probably meant.
     has_wrong_source: bool,
 }
@@ -66,10 +69,12 @@ pub(super) struct Found<'a> {
 
 impl<'a> Declared<'a> {
     /// The names of its properties, sorted.
-    fn names(&self) -> Vec<&'a str> {
-        let mut names: Vec<&str> = self.by_name.keys().copied().collect();
-        names.sort_unstable();
-        names
+    fn names(&self) -> &[&'a str] {
+        self.names.get_or_init(|| {
+            let mut names: Vec<&str> = self.by_name.keys().copied().collect();
+            names.sort_unstable();
+            names
+        })
     }
 }
 
@@ -151,7 +156,7 @@ impl<'a> Parameters<'a> {
             }
             if !is_known {
                 let mut names: Vec<&str> =
-                    Self::outermost(fleet).flat_map(|unit| self.units[unit].names()).collect();
+                    Self::outermost(fleet).flat_map(|unit| self.units[unit].names()).copied().collect();
                 names.sort_unstable();
                 names.dedup();
                 let message = format!("no composite has a property {}", quoted(&setting.name));

@@ -109,8 +109,11 @@ impl<'a> Unfolding<'a> {
 
     /// Reports faults in the texts of a replica.
     pub(super) fn faults(&self, names: &Names, faults: Vec<(Text, Fault)>, report: &mut Report<'_>) {
-        for (text, fault) in &faults {
-            report.push(wrong(text, fault, names, report));
+        for faults in faults.chunk_by(|(one, _), (other, _)| one.location == other.location) {
+            let parts = report.parts(&faults[0].0);
+            for (text, fault) in faults {
+                report.push(wrong(text, &parts, fault, names));
+            }
         }
     }
 
@@ -125,9 +128,13 @@ impl<'a> Unfolding<'a> {
         let mut has_faults = false;
         for text in all_complex_texts(component, &open.composite.document) {
             let faults = render(&text, &mut |name| instance.value(name)).err().unwrap_or_default();
-            has_faults |= !faults.is_empty();
+            if faults.is_empty() {
+                continue;
+            }
+            has_faults = true;
+            let parts = report.parts(&text);
             for fault in &faults {
-                report.push(wrong(&text, fault, &instance.names, report));
+                report.push(wrong(&text, &parts, fault, &instance.names));
             }
         }
         has_faults

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::fleet::is_like;
 use super::instance::{INDEX, Instance};
 use super::names::Names;
-use super::report::Report;
+use super::report::{Parts, Report};
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::expression::{self, Expression, Fault, Problem, Value, boolean, integer, parse, pattern, render};
 use crate::model::{Component, Replicas, Table};
@@ -228,7 +228,7 @@ fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) 
 /// The number that an attribute comes to. Faults are reported.
 fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Option<i64> {
     let value = parse(text).and_then(|one| integer(&one, &mut |name| names.value(name)));
-    value.map_err(|fault| report.push(wrong(text, &fault, names, report))).ok()
+    value.map_err(|fault| report.push(wrong(text, &report.parts(text), &fault, names))).ok()
 }
 
 /// Whether a condition is true. Faults are reported.
@@ -239,13 +239,13 @@ pub(super) fn condition(
     report: &mut Report<'_>,
 ) -> Option<bool> {
     let holds = parse(text).and_then(|one| boolean(&one, value));
-    holds.map_err(|fault| report.push(wrong(text, &fault, names, report))).ok()
+    holds.map_err(|fault| report.push(wrong(text, &report.parts(text), &fault, names))).ok()
 }
 
 /// What is wrong with an expression in a text.
-pub(super) fn wrong(text: &Text, fault: &Fault, names: &Names, report: &Report<'_>) -> Diagnostic {
+pub(super) fn wrong(text: &Text, parts: &Parts, fault: &Fault, names: &Names) -> Diagnostic {
     let code: &'static Code = &codes::EXPRESSION;
-    let at = report.part(text, fault.at.clone());
+    let at = parts.part(fault.at.clone());
     let Problem { message, help, instead, .. } = &fault.problem;
     let mut one = Diagnostic::new(code, at, message.clone());
     let written = text.get(fault.at.clone()).unwrap_or_default();

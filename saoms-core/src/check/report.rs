@@ -8,11 +8,13 @@ use super::fleet::Member;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Suggestion, nearest, quoted};
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
-use crate::xml::written_part;
+use crate::xml::Writing;
 
 /// How many right names are looked at for all wrong ones together: in a large file full of wrong names every search goes
 /// through all right ones.
 const CANDIDATES: usize = 1_000_000;
+/// Lists that are not longer are searched in any case.
+const FEW: usize = 100;
 
 /// Collects diagnostics, and knows the texts they are about.
 pub(super) struct Report<'a> {
@@ -37,6 +39,9 @@ struct Copied {
     path: Box<str>,
     index: Option<i64>,
 }
+
+/// How many diagnostics about replicas are kept together; further ones are told as they come.
+const MOST_COPIES: usize = 2000;
 
 /// How many diagnostics are remembered.
 const REMEMBERED: usize = 100_000;
@@ -99,6 +104,9 @@ impl<'a> Report<'a> {
             }
             return;
         }
+        if self.copies.len() >= MOST_COPIES {
+            return self.diagnostics.push(one);
+        }
         let own = one.location;
         one.labels.retain(|label| label.location != own);
         // An edit there would be one of all replicas.
@@ -142,20 +150,17 @@ impl<'a> Report<'a> {
 
     /// The place of a part of `text`, in bytes of the text as it is meant.
     pub(super) fn part(&self, text: &Text, part: Range<usize>) -> Location {
-        self.part_of(text, text.location, part)
+        self.parts(text).part(part)
     }
 
-    /// The place of a part of the text that is written at a place.
-    pub(super) fn part_of(&self, text: &str, written: Location, part: Range<usize>) -> Location {
-        let Location { file, span } = written;
-        let end = part.end.min(text.len());
-        let part = part.start.min(end)..end;
-        match written_part(self.sources.snippet(written), text, part) {
-            Some(part) => {
-                Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file)
-            }
-            None => written,
-        }
+    /// The same for many parts of one text.
+    pub(super) fn parts(&self, text: &Text) -> Parts {
+        self.parts_of(text, text.location)
+    }
+
+    /// The places of the parts of a text that is written at a place.
+    pub(super) fn parts_of(&self, text: &str, written: Location) -> Parts {
+        Parts { writing: Writing::of(self.sources.snippet(written), text), length: text.len(), written }
     }
 
     /// Whether what stands in the file is XML, and not the bare text of a value.
@@ -164,8 +169,9 @@ impl<'a> Report<'a> {
     }
 
     /// Whether there are so many diagnostics of this code at this place's file that one more is counted and not shown.
+    /// What is said of replicas is told together, and always wanted.
     pub(super) fn skip(&mut self, code: &'static Code, severity: Severity, at: Location) -> bool {
-        self.diagnostics.skip(code, severity, at)
+        self.copy.is_none() && self.diagnostics.skip(code, severity, at)
     }
 
     /// A diagnostic about a name that stands for nothing: with the likeliest right one as a suggestion, or else with all
@@ -179,14 +185,44 @@ impl<'a> Report<'a> {
         (known_as, candidates): (&str, impl IntoIterator<Item = &'n str> + Clone),
     ) -> Diagnostic {
         let one = Diagnostic::new(code, at, message);
-        let Some(left) = self.candidates.checked_sub(candidates.clone().into_iter().count()) else {
+        // It is counted alone.
+        if self.copy.is_none() && self.diagnostics.is_full(code, at.file) {
             return one;
-        };
-        self.candidates = left;
+        }
+        let count = candidates.clone().into_iter().take(self.candidates.max(FEW) + 1).count();
+        if count > FEW {
+            let left = self.candidates.checked_sub(count);
+            self.candidates = left.unwrap_or(0);
+            if left.is_none() {
+                return one;
+            }
+        }
         match nearest(name, candidates.clone()) {
             Some(meant) => one.suggest(replacing(name, meant), at, escaped(meant)),
             None if candidates.clone().into_iter().next().is_none() => one,
             None => one.help(format!("{known_as} {}", list(candidates))),
+        }
+    }
+}
+
+/// The places of the parts of a text.
+pub(super) struct Parts {
+    /// `None` where what is written is not the text.
+    writing: Option<Writing>,
+    length: usize,
+    written: Location,
+}
+
+impl Parts {
+    /// The place of a part, in bytes of the text as it is meant.
+    pub(super) fn part(&self, part: Range<usize>) -> Location {
+        let Location { file, span } = self.written;
+        let end = part.end.min(self.length);
+        match self.writing.as_ref().and_then(|writing| writing.part(part.start.min(end)..end)) {
+            Some(part) => {
+                Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file)
+            }
+            None => self.written,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Severities that composites and the command line set.
 
+use std::collections::HashMap;
+
 use super::options::Options;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Level, SetBy, Severity, codes, nearest, quoted};
 use crate::model::Contribution;
@@ -66,7 +68,7 @@ struct Rule {
     is_used: bool,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Scope {
     /// This element.
     Element(Location),
@@ -89,16 +91,6 @@ impl Scope {
         }
     }
 
-    /// Whether the other one is of the same place.
-    fn is(self, other: Self) -> bool {
-        match (self, other) {
-            (Self::Element(one), Self::Element(other)) => one == other,
-            (Self::File(one), Self::File(other)) => one == other,
-            (Self::Fleet, Self::Fleet) | (Self::Option, Self::Option) => true,
-            _ => false,
-        }
-    }
-
     fn holds(self, at: Location) -> bool {
         match self {
             Self::Element(element) => element.file == at.file && element.span.contains(at.span),
@@ -110,34 +102,36 @@ impl Scope {
 
 impl Severities {
     /// What composites and options say. Unknown codes are reported.
-    pub(super) fn of(
-        contribution: &Contribution,
-        options: &Options,
+    pub(super) fn of<'o>(
+        contribution: &'o Contribution,
+        options: &'o Options,
         registry: &Registry,
         diagnostics: &mut Diagnostics,
     ) -> Self {
         let known: Vec<&Code> =
             codes::ALL.iter().copied().chain(registry.rules().iter().map(|rule| rule.code())).collect();
         let mut rules: Vec<Rule> = Vec::new();
-        let mut add = |code: &Text, level: Level, reason: Option<&Text>, scope: Scope| {
+        // The rules of each place about each code.
+        let mut said: HashMap<(&str, Scope), Vec<usize>> = HashMap::new();
+        let mut add = |code: &'o Text, level: Level, reason: Option<&Text>, scope: Scope| {
             if !known.iter().any(|known| known.id == code.as_str()) {
                 diagnostics.push(unknown(code, &known));
                 return;
             }
             let reason = reason.map(|reason| reason.as_str().to_owned());
             let set = SetBy { level, at: code.location, reason };
-            let said_before = rules.iter().find(|known: &&Rule| {
-                known.code == code.as_str()
-                    && known.scope.is(scope)
-                    // Files that are one fleet together may say the same.
-                    && (known.set.at.file == code.location.file
-                        || matches!(scope, Scope::Option)
-                        || known.set.level != level)
+            let known = said.entry((code, scope)).or_default();
+            let said_before = known.iter().map(|place| &rules[*place]).find(|known: &&Rule| {
+                // Files that are one fleet together may say the same.
+                known.set.at.file == code.location.file
+                    || matches!(scope, Scope::Option)
+                    || known.set.level != level
             });
             if let Some(known) = said_before {
                 diagnostics.push(twice(code, level, &known.set));
                 return;
             }
+            known.push(rules.len());
             rules.push(Rule { code: code.as_str().to_owned(), set, scope, is_used: false });
         };
         let asked_for = contribution.asked_for().len();

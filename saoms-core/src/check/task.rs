@@ -111,12 +111,13 @@ fn renames(
     report: &mut Report<'_>,
 ) -> (Vec<(String, String)>, Vec<Location>) {
     let (pairs, faults) = rename::parse(text);
+    let parts = report.parts(text);
     for fault in faults {
-        let at = report.part(text, fault.at);
+        let at = parts.part(fault.at);
         let mut one =
             Diagnostic::new(&codes::TOPIC_RENAME, at, format!("bad `topicRename`: {}", fault.message));
         match fault.other {
-            Some((other, what)) => one = one.label(report.part(text, other), what),
+            Some((other, what)) => one = one.label(parts.part(other), what),
             None => one = one.help("write `OLD,new` for each topic, and `::` between two of them"),
         }
         report.push(one);
@@ -132,11 +133,11 @@ fn renames(
             quoted(class.class.name()),
             quoted(name)
         );
-        let at = report.part(text, pair.old.at.clone());
+        let at = parts.part(pair.old.at.clone());
         let one = report.unknown(&codes::RENAME_UNUSED, at, message, name, ("its topics are", names));
         report.push(one);
     }
-    let places = pairs.iter().map(|pair| report.part(text, pair.new.at.clone())).collect();
+    let places = pairs.iter().map(|pair| parts.part(pair.new.at.clone())).collect();
     let names = pairs.iter().map(|pair| (pair.old.text.to_owned(), pair.new.text.to_owned()));
     (names.collect(), places)
 }

@@ -1,7 +1,7 @@
 //! From composites to the components that they come to: what is included stands where it is included, and a component that a
 //! composite implements has the components of it inside.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::arena::{Arena, End};
 use super::fleet::{Fleet, Kind, Member, Scope, Unit};
@@ -34,7 +34,7 @@ pub(super) fn unfold<'a>(
         units: Vec::with_capacity(asked_for.len()),
         members: Vec::with_capacity(count),
         by_name: HashMap::with_capacity(count),
-        groups: HashMap::new(),
+        groups: BTreeMap::new(),
         absent: HashMap::new(),
         absent_wires: HashSet::new(),
         conditional: HashMap::new(),

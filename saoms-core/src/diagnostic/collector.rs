@@ -53,14 +53,18 @@ impl Diagnostics {
     /// Whether a diagnostic of this code is one too many for its file; it is counted then, as if it had been pushed.
     /// Asked before a diagnostic is put together, where a file can have a million of them.
     pub fn skip(&mut self, code: &'static Code, severity: Severity, location: Location) -> bool {
-        let kept = self.counts.get(&(location.file, code.id)).map_or(0, |count| count.kept);
-        // The first of a kind is always told.
-        let is_full = kept > 0 && self.kept.get(&location.file).is_some_and(|kept| *kept >= LIMIT_OF_FILE);
-        if kept < LIMIT && !is_full {
-            return false;
+        let is_full = self.is_full(code, location.file);
+        if is_full {
+            self.count(code, severity, location.file).beyond.get_or_insert(location);
         }
-        self.count(code, severity, location.file).beyond.get_or_insert(location);
-        true
+        is_full
+    }
+
+    /// Whether no more diagnostics of this code are kept for a file.
+    pub(crate) fn is_full(&self, code: &'static Code, file: FileId) -> bool {
+        let kept = self.counts.get(&(file, code.id)).map_or(0, |count| count.kept);
+        // The first of a kind is always told.
+        kept >= LIMIT || kept > 0 && self.kept.get(&file).is_some_and(|kept| *kept >= LIMIT_OF_FILE)
     }
 
     fn count(&mut self, code: &'static Code, severity: Severity, file: FileId) -> &mut Count {
@@ -105,7 +109,7 @@ impl Diagnostics {
             // Those that were not kept are as the last that was.
             let is_last =
                 || !self.items[at + 1..].iter().any(|one| one.code.id == code && one.location.file == file);
-            let beyond = self.counts.get(&(file, code)).map_or(0, |count| count.number.saturating_sub(LIMIT));
+            let beyond = self.counts.get(&(file, code)).map_or(0, |count| count.number - count.kept);
             let number = if beyond > 0 && is_last() { 1 + beyond as usize } else { 1 };
             self.recount(before, number, usize::saturating_sub);
             if let Some(after) = after {
@@ -165,8 +169,14 @@ impl Diagnostics {
             if let Some(place) = count.beyond {
                 let Code { id, name, .. } = count.code;
                 let message = format!("{} more of the kind {id} ({name})", count.number - count.kept);
-                self.items
-                    .push(Diagnostic::new(&codes::TOO_MANY, place, message).severity(count.code.severity));
+                let mut more = Diagnostic::new(&codes::TOO_MANY, place, message);
+                // Those that were not kept are as the last that was.
+                let is_kept = |one: &&Diagnostic| one.code.id == *id && one.location.file == place.file;
+                if let Some(last) = self.items.iter().rev().find(is_kept) {
+                    more.severity = last.severity;
+                    more.set.clone_from(&last.set);
+                }
+                self.items.push(more);
             }
         }
         // Stable, but for the ones above, whose order a hash map gave: the code decides.

@@ -85,10 +85,10 @@ fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, Fault>> {
             return Some(Ok(Piece::Literal("${")));
         }
         if !rest.starts_with("${") {
-            let plain = rest.find("${").unwrap_or(rest.len());
+            let next = rest.find("${").unwrap_or(rest.len());
             // The `$` of a `$${` belongs to that.
-            let escaped = rest.find("$${").unwrap_or(rest.len());
-            let end = at + plain.min(escaped).max(1);
+            let is_escaped = next < rest.len() && rest[..next].ends_with('$');
+            let end = at + next - usize::from(is_escaped);
             let literal = &text[at..end];
             at = end;
             return Some(Ok(Piece::Literal(literal)));

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::tree::{Document, ElementId, NO_NAMESPACE, NONE, Node, RawAttribute, XMLNS};
+use super::tree::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, Node, RawAttribute, XMLNS};
 use super::value;
 use crate::source::{Located, Location, Span, Text};
 
@@ -127,7 +127,7 @@ impl<'a> Element<'a> {
             .map_while(move |id| self.at(id).filter(|inner| inner.node().start < end))
     }
 
-    fn raw_attributes(self) -> &'a [RawAttribute] {
+    pub(super) fn raw_attributes(self) -> &'a [RawAttribute] {
         let next = self.document.nodes.get(self.id.0 as usize + 1);
         let end = next.map_or(self.document.attributes.len(), |next| next.attributes as usize);
         &self.document.attributes[self.node().attributes as usize..end]
@@ -178,16 +178,28 @@ impl<'a> Element<'a> {
         }
         let mut here = Some(self);
         while let Some(element) = here {
-            for declaration in element.namespace_declarations() {
-                let (before, local) = split(declaration.name());
-                let declares = if before.is_some() { local } else { "" };
-                if declares == prefix {
-                    return Some(declaration.value()).filter(|uri| !uri.is_empty());
-                }
+            let all = element.raw_attributes();
+            let found = match all.len() > MANY_ATTRIBUTES {
+                true => self.document.declaration(element.id, prefix),
+                false => element.declared_prefixes().find(|(known, _)| **known == *prefix).map(|(_, at)| at),
+            };
+            if let Some(at) = found {
+                let declaration = Attribute { document: self.document, raw: &all[at] };
+                return Some(declaration.value()).filter(|uri| !uri.is_empty());
             }
             here = element.parent();
         }
         None
+    }
+
+    /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the attributes.
+    pub(super) fn declared_prefixes(self) -> impl Iterator<Item = (&'a str, usize)> {
+        let document = self.document;
+        let all = self.raw_attributes().iter().enumerate().filter(|(_, raw)| raw.namespace == XMLNS);
+        all.map(move |(at, raw)| {
+            let (before, local) = split(Attribute { document, raw }.name());
+            (before.map_or("", |_| local), at)
+        })
     }
 
     /// The name in the end tag; `None` for `<a/>` and where the end tag was not read.

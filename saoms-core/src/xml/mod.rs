@@ -21,7 +21,7 @@ mod value;
 pub use element::{Attribute, Element};
 pub use parse::{Parsed, parse};
 pub use tree::{Document, ElementId};
-pub(crate) use value::written_part;
+pub(crate) use value::Writing;
 
 /// The namespace to which the prefix `xml` is bound always.
 pub const XML_NAMESPACE: &str = "http://www.w3.org/XML/1998/namespace";

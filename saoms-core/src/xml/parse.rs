@@ -8,7 +8,7 @@ use quick_xml::events::Event;
 use super::characters::{first_forbidden, forbidden, is_blank};
 use super::fault::{Checked, Fault, Input};
 use super::namespaces::{Namespaces, refusal};
-use super::tree::{Document, NO_NAMESPACE, NONE, Node, RawAttribute, XMLNS};
+use super::tree::{Declared, Document, NO_NAMESPACE, NONE, Node, RawAttribute, XMLNS};
 use super::{prolog, reference, tag, unbound, value};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::source::{FileId, Span};
@@ -387,6 +387,7 @@ impl<'a> Parser<'a> {
             nodes: self.nodes,
             attributes: self.attributes,
             namespaces: self.namespaces.into_names(),
+            declared: Declared::default(),
         })
     }
 }

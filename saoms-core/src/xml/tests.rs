@@ -91,6 +91,12 @@ fn prefixes_hold_where_they_are_declared() {
     let d = document.elements().nth(3).unwrap();
     assert_eq!(d.attributes().next().unwrap().namespace(), XML_NAMESPACE);
     assert_eq!(d.resolve_prefix("xml").as_deref(), Some(XML_NAMESPACE));
+    let many: String = (0..40).map(|at| format!(" xmlns:p{at}='{at}'")).collect();
+    let document = tree(&format!("<a xmlns='d'{many} p7='x'><b xmlns:p8='n'/></a>"));
+    let b = document.elements().nth(1).unwrap();
+    let namespaces = ["p7", "p8", "p39", "", "p40"].map(|prefix| b.resolve_prefix(prefix));
+    let namespaces = namespaces.each_ref().map(|one| one.as_deref().unwrap_or("none"));
+    assert_eq!(namespaces, ["7", "n", "39", "d", "none"]);
 }
 
 #[test]

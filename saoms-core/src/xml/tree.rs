@@ -1,6 +1,7 @@
 //! The arena.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
 
 use super::Element;
 use crate::source::{FileId, Span};
@@ -63,7 +64,16 @@ pub struct Document {
     pub(super) nodes: Vec<Node>,
     pub(super) attributes: Vec<RawAttribute>,
     pub(super) namespaces: Vec<Box<str>>,
+    pub(super) declared: Declared,
 }
+
+/// Attributes beyond which the declarations among them are found by their prefixes.
+pub(super) const MANY_ATTRIBUTES: usize = 32;
+
+/// By element and prefix, the places of declarations of namespaces among the attributes: of elements with many attributes, once
+/// somebody asks.
+#[derive(Debug, Default)]
+pub(super) struct Declared(OnceLock<HashMap<ElementId, HashMap<Box<str>, usize>>>);
 
 impl Document {
     /// The file it was read from.
@@ -97,6 +107,18 @@ impl Document {
     /// All elements in document order.
     pub fn elements(&self) -> impl Iterator<Item = Element<'_>> {
         (0..self.nodes.len() as u32).map(|id| self.element(ElementId(id)))
+    }
+
+    /// The place of the declaration of a prefix among the attributes of an element with many of them.
+    pub(super) fn declaration(&self, element: ElementId, prefix: &str) -> Option<usize> {
+        let all = self.declared.0.get_or_init(|| {
+            let many = self.elements().filter(|element| element.raw_attributes().len() > MANY_ATTRIBUTES);
+            let declared = |element: Element<'_>| {
+                element.declared_prefixes().map(|(prefix, at)| (prefix.into(), at)).collect()
+            };
+            many.map(|element| (element.id(), declared(element))).collect()
+        });
+        all.get(&element)?.get(prefix).copied()
     }
 
     /// The innermost element that byte `at` is in, the root for a place outside.

@@ -65,44 +65,63 @@ fn data_characters(stretch: &str, mut each: impl FnMut(char, Range<usize>)) {
     }
 }
 
-/// The bytes that a part of a value is written with. `written` is the stretch, or the attribute, that the value was read from, and may
-/// have white space at its ends that the value has not; `None` when it is another one.
-pub(crate) fn written_part(written: &str, value: &str, part: Range<usize>) -> Option<Range<usize>> {
-    if written == value {
-        return Some(part);
+/// Which bytes the parts of a value are written with.
+pub(crate) struct Writing(Option<Characters>);
+
+impl Writing {
+    /// `written` is the stretch, or the attribute, that the value was read from, and may have white space at its ends that the value has
+    /// not; `None` when it is another one.
+    pub(crate) fn of(written: &str, value: &str) -> Option<Self> {
+        if written == value {
+            return Some(Self(None));
+        }
+        let data = Characters::of(value, |each| data_characters(written, each));
+        let found = data.or_else(|| Characters::of(value, |each| attribute_characters(written, each)));
+        found.map(|characters| Self(Some(characters)))
     }
-    let data = Written::of(|each| data_characters(written, each));
-    let found = data.part(value, part.clone());
-    found.or_else(|| Written::of(|each| attribute_characters(written, each)).part(value, part))
+
+    /// The bytes that a part of the value is written with.
+    pub(crate) fn part(&self, part: Range<usize>) -> Option<Range<usize>> {
+        match &self.0 {
+            Some(characters) => characters.part(part),
+            None => Some(part),
+        }
+    }
 }
 
-/// A text, and the bytes that each of its characters is written with.
-struct Written {
-    text: String,
-    characters: Vec<(usize, Range<usize>)>,
+/// Where each character of a value is, in the value and as it is written.
+struct Characters {
+    all: Vec<(u32, Range<u32>)>,
+    /// How long the value is.
+    length: usize,
 }
 
-impl Written {
-    fn of(characters: impl FnOnce(&mut dyn FnMut(char, Range<usize>))) -> Self {
-        let mut written = Self { text: String::new(), characters: Vec::new() };
+impl Characters {
+    /// `None` when what is written is another value.
+    fn of(value: &str, characters: impl FnOnce(&mut dyn FnMut(char, Range<usize>))) -> Option<Self> {
+        let mut text = String::new();
+        let mut all = Vec::new();
         characters(&mut |character, bytes| {
-            written.characters.push((written.text.len(), bytes));
-            written.text.push(character);
+            all.push((text.len() as u32, bytes.start as u32..bytes.end as u32));
+            text.push(character);
         });
-        written
-    }
-
-    fn part(&self, value: &str, part: Range<usize>) -> Option<Range<usize>> {
-        let start = self.text.len() - self.text.trim_start_matches(is_space).len();
-        if trim(&self.text) != value {
+        if trim(&text) != value {
             return None;
         }
+        let start = (text.len() - text.trim_start_matches(is_space).len()) as u32;
+        all.retain(|(at, _)| *at >= start);
+        all.iter_mut().for_each(|(at, _)| *at -= start);
+        Some(Self { all, length: value.len() })
+    }
+
+    fn part(&self, part: Range<usize>) -> Option<Range<usize>> {
         let bytes = |at: usize| {
-            let place = self.characters.partition_point(|(first, _)| *first <= start + at);
-            self.characters.get(place.checked_sub(1)?).map(|(_, bytes)| bytes.clone())
+            let place = self.all.partition_point(|(first, _)| *first as usize <= at);
+            let (_, bytes) = self.all.get(place.checked_sub(1)?)?;
+            Some(bytes.start as usize..bytes.end as usize)
         };
         if part.is_empty() {
-            let at = if part.start >= value.len() {
+            let at = if part.start >= self.length {
                 bytes(part.start.checked_sub(1)?)?.end
             } else {
                 bytes(part.start)?.start

@@ -120,7 +120,7 @@ fn orders_lead_somewhere() {
         faults(
             "<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" before=\"PathMS\"/>"
         ),
-        "4:38-44 error S4504: the order of the loops `PathMS`, `BatteryMS` goes in a circle
+        "4:38-44 error S4504: the order of the loops `PathMS` and `BatteryMS` goes in a circle
   3:34-43 `PathMS` stands beside `BatteryMS`
   help: let one of them stand beside a loop that is not moved
 "

@@ -249,3 +249,24 @@ fn composites_inside_say_it_for_themselves() {
     assert_eq!(count(&outer(""), &inner(&allow)), 1);
     assert_eq!(count(&outer(&allow), &inner("")), 0, "what is asked for speaks for the whole fleet");
 }
+
+/// Of a thousand of a kind, some are only counted: what is said of the others holds for them.
+#[test]
+fn severities_hold_for_what_is_only_counted() {
+    let gps =
+        "<component name=\"G{}\" odd=\"\"><implementation.java class=\"example.Gps\"/>odd</component>\n";
+    let property = "<property xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\" name=\"p{}\" type=\"xsd:int\">odd</property>\n";
+    let several =
+        |of: &str, count: usize| (0..count).map(|at| of.replace("{}", &at.to_string())).collect::<String>();
+    let text = several(gps, 1200) + &several(property, 5);
+    let all = |level: &str| {
+        let codes = ["S1007", "S1012", "S2042"];
+        found(&[&fleet(&text)], &codes.map(|code| format!("{code}={level}")).each_ref().map(String::as_str))
+    };
+    assert!(!found(&[&fleet(&text)], &[]).runs);
+    let notes = all("note");
+    assert!(notes.runs && notes.told.contains("note S0008: 200 more of the kind S1007"), "{}", notes.told);
+    assert!(!notes.told.contains(" error "), "{}", notes.told);
+    let allowed = all("allow");
+    assert!(allowed.runs && !allowed.told.contains("S1007"), "{}", allowed.told);
+}

@@ -9,7 +9,7 @@ use crate::check::classes::ClassIndex;
 use crate::check::fleet::Member;
 use crate::check::properties::Checked;
 use crate::check::report::{Report, escaped, list, replacing};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Loop, Part};
 use crate::registry::Registry;
 use crate::source::Text;
@@ -53,19 +53,19 @@ pub(super) fn plan<'a>(
     // Those that come anew can be meant by others, wherever they stand.
     let added = taken.iter().filter(|one| one.class.is_some()).map(|one| one.name.as_str());
     let mut names: Vec<&str> = loops.iter().map(|one| one.name).collect();
-    for name in added {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
+    // Those that the class has; no two elements are about one loop.
+    let mut usual = loops.len();
+    names.extend(added.filter(|name| !loops.iter().any(|known| known.name == *name)));
     for one in &taken {
         is_sound &= fits_together(one, report);
-        let known = loops.iter().position(|known| known.name == one.name.as_str());
+        let known = loops[..usual].iter().position(|known| known.name == one.name.as_str());
         let class = one.class.as_ref().map(|class| {
             let found = registry.get_loop(class);
             if found.is_none() {
-                report.push(unknown_class(class, registry));
                 is_sound = false;
+                if !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) {
+                    report.push(unknown_class(class, registry));
+                }
             }
             found
         });
@@ -73,6 +73,7 @@ pub(super) fn plan<'a>(
             (Some(place), _) if one.is_removal() => {
                 removed.insert(&one.name, one);
                 loops.remove(place);
+                usual -= 1;
             }
             (Some(place), class) => {
                 loops[place].element = Some(one);

@@ -4,14 +4,18 @@
 //! before or after another, which may be moved as well: such loops hang on each other like the nodes of a tree, whose roots are the loops
 //! that are not moved. What hangs on no root hangs on itself, in a circle.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::{Planned, list};
+use super::Planned;
+use super::list::report_unknown;
 use crate::check::fleet::Member;
-use crate::check::report::Report;
+use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::Loop;
 use crate::source::Text;
+
+/// Loops of a circle that are shown with their places.
+const MOST_SHOWN: usize = 30;
 
 /// Brings the loops into the order that the elements ask for; `false` where they ask for none that is possible.
 pub(super) fn sort<'a>(
@@ -26,6 +30,8 @@ pub(super) fn sort<'a>(
     // By the loop they stand at: the moved loops before it, and those after it, in document order.
     let mut beside: HashMap<&str, [Vec<&str>; 2]> = HashMap::new();
     let mut moved: HashMap<&str, &Text> = HashMap::new();
+    let known: HashSet<&str> = loops.iter().map(|one| one.name).collect();
+    let given: HashSet<&str> = elements.iter().map(|one| one.name.as_str()).collect();
     for one in elements {
         let (place, target) = match (&one.before, &one.after) {
             (Some(before), None) => (0, before),
@@ -39,10 +45,10 @@ pub(super) fn sort<'a>(
             let one = one.label(removal.name.location, "removed here");
             report.push(one.help("let it stand beside another loop, or keep that one"));
             is_sound = false;
-        } else if !loops.iter().any(|known| known.name == target.as_str()) {
+        } else if !known.contains(target.as_str()) {
             // One that is given and wrong is reported already.
-            if !elements.iter().any(|one| one.name == target.as_str()) {
-                list::report_unknown(target, member, names, true, report);
+            if !given.contains(target.as_str()) {
+                report_unknown(target, member, names, true, report);
             }
             is_sound = false;
         } else {
@@ -57,22 +63,21 @@ pub(super) fn sort<'a>(
     for one in loops.iter().filter(|one| !moved.contains_key(one.name)) {
         put(one.name, &beside, &mut order);
     }
-    let stuck: Vec<&&Loop> = elements
-        .iter()
-        .filter(|one| moved.contains_key(one.name.as_str()) && !order.contains(&one.name.as_str()))
-        .collect();
+    let places: HashMap<&str, usize> = order.into_iter().zip(0..).collect();
+    let is_stuck = |name: &str| moved.contains_key(name) && !places.contains_key(name);
+    let stuck: Vec<&&Loop> = elements.iter().filter(|one| is_stuck(&one.name)).collect();
     if let Some((last, others)) = stuck.split_last() {
         let target = moved[last.name.as_str()];
         let message = match others {
             [] => format!("the loop {} stands beside itself", quoted(&last.name)),
             _ => {
-                let names: Vec<String> = stuck.iter().map(|one| quoted(&one.name)).collect();
-                format!("the order of the loops {} goes in a circle", names.join(", "))
+                let names = list(stuck.iter().map(|one| one.name.as_str()));
+                format!("the order of the loops {names} goes in a circle")
             }
         };
         let mut one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message)
             .help("let one of them stand beside a loop that is not moved");
-        for other in others {
+        for other in others.iter().take(MOST_SHOWN) {
             let target = moved[other.name.as_str()];
             one = one
                 .label(target.location, format!("{} stands beside {}", quoted(&other.name), quoted(target)));
@@ -80,8 +85,7 @@ pub(super) fn sort<'a>(
         report.push(one);
         return false;
     }
-    let place = |one: &Planned<'_>| order.iter().position(|name| *name == one.name);
-    loops.sort_by_key(place);
+    loops.sort_by_key(|one| places.get(one.name));
     is_sound
 }
 
