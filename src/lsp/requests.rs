@@ -72,9 +72,11 @@ impl<W: Write> Server<W> {
         let (scene, byte) = self.place(&params.text_document_position)?;
         let knows_snippets = self.client.knows_snippets;
         let file = scene.file();
-        let typed = |one: &Proposal| &file.text[one.range.start..byte];
-        let mut found: Vec<Proposal> =
-            complete(&scene, byte).into_iter().filter(|one| one.fits(typed(one))).collect();
+        let matching = |one: Proposal| {
+            let typed = &file.text[one.range.start..byte];
+            one.matching(typed)
+        };
+        let mut found: Vec<Proposal> = complete(&scene, byte).into_iter().filter_map(matching).collect();
         found.sort_by_cached_key(Proposal::order);
         let items = found.into_iter().take(MOST).map(|one| one.into_item(file, knows_snippets));
         // Others come when more is typed, as the units behind a number do.

@@ -22,6 +22,8 @@ pub(in crate::lsp) struct Proposal {
     insert: Insert,
     /// Those with a smaller number come first.
     rank: u8,
+    /// How far the label is from what is typed; those that are closer come first.
+    distance: u8,
     pub(in crate::lsp) range: Range<usize>,
     /// What is put in elsewhere as well.
     also: Option<(usize, String)>,
@@ -46,6 +48,7 @@ impl Proposal {
             detail: String::new(),
             doc: String::new(),
             rank: 5,
+            distance: 0,
             range: range.clone(),
             also: None,
         }
@@ -85,16 +88,27 @@ impl Proposal {
         self
     }
 
-    /// Whether it can be meant by what is typed: its characters are in the label, in their order.
-    pub(in crate::lsp) fn fits(&self, typed: &str) -> bool {
-        let mut label = self.label.chars().flat_map(char::to_lowercase);
-        let mut typed = typed.trim_start_matches('<').chars().flat_map(char::to_lowercase);
-        typed.all(|wanted| label.any(|known| known == wanted))
+    /// With how well it fits what is typed; `None` where it cannot be meant by that. A word of the label that begins so is better than a part of one, and that is
+    /// better than the characters alone, in their order.
+    pub(in crate::lsp) fn matching(mut self, typed: &str) -> Option<Self> {
+        let (label, typed) = (self.label.to_lowercase(), typed.trim_start_matches('<').to_lowercase());
+        let begins = |at: usize| !label[..at].ends_with(char::is_alphanumeric);
+        let mut characters = label.chars();
+        self.distance = if label.match_indices(&typed).any(|(at, _)| begins(at)) {
+            0
+        } else if label.contains(&typed) {
+            1
+        } else if typed.chars().all(|wanted| characters.any(|known| known == wanted)) {
+            2
+        } else {
+            return None;
+        };
+        Some(self)
     }
 
     /// By what proposals are sorted.
     pub(in crate::lsp) fn order(&self) -> String {
-        format!("{:03} {}", self.rank, self.label)
+        format!("{}{:03} {}", self.distance, self.rank, self.label)
     }
 
     /// The name alone, in place of another one.

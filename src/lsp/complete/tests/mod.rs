@@ -228,9 +228,16 @@ fn composites_of_other_files_are_known() {
 fn what_is_typed_is_looked_for_in_the_labels() {
     let one = Proposal::new("property Period-Ä", CompletionItemKind::VALUE, &(0..0));
     for typed in ["", "<", "<pper", "PERIOD", "period-ä", "-"] {
-        assert!(one.fits(typed), "{typed}");
+        assert!(one.clone().matching(typed).is_some(), "{typed}");
     }
     for typed in ["x", "<doirep", "period--"] {
-        assert!(!one.fits(typed), "{typed}");
+        assert!(one.clone().matching(typed).is_none(), "{typed}");
     }
+    // What begins so comes before what holds it, and that before what has its letters.
+    let labels = ["chargeX", "moreRest", "restart", "saoms.Restless"];
+    let one = |label: &str| Proposal::new(label, CompletionItemKind::VALUE, &(0..0)).matching("re");
+    let mut all: Vec<Proposal> = labels.into_iter().filter_map(one).collect();
+    all.sort_by_key(Proposal::order);
+    let sorted: Vec<&str> = all.iter().map(|one| one.label.as_str()).collect();
+    assert_eq!(sorted, ["restart", "saoms.Restless", "moreRest", "chargeX"]);
 }
