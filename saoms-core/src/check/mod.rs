@@ -21,6 +21,7 @@ mod given;
 mod global;
 mod instance;
 mod loops;
+mod multiplicity;
 mod names;
 mod offer;
 mod once;

@@ -1,6 +1,6 @@
 //! What composites promote.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use super::classes::ClassIndex;
 use super::contracts::of_class;
@@ -18,8 +18,8 @@ pub(super) type Place<'f> = (usize, &'f str);
 /// Which references are promoted.
 #[derive(Default)]
 pub(super) struct Promoted<'f> {
-    /// By composites that run by themselves: nothing around them can wire those.
-    pub(super) outermost: HashSet<Place<'f>>,
+    /// By composites that run by themselves, with the targets that these give them: nothing else around them can.
+    pub(super) outermost: HashMap<Place<'f>, Vec<&'f Text>>,
     /// By composites that implement components: to these references of theirs.
     pub(super) to: HashMap<Place<'f>, Vec<Place<'f>>>,
 }
@@ -57,10 +57,12 @@ pub(super) fn check<'f>(
                     }
                 }
                 None => {
-                    if !found.is_empty() {
+                    if !found.is_empty() && reference.targets.is_empty() {
                         unwired(reference, report);
                     }
-                    promoted.outermost.extend(found);
+                    for inner in found {
+                        promoted.outermost.entry(inner).or_default().extend(&reference.targets);
+                    }
                 }
             }
         }

@@ -11,6 +11,7 @@ use super::classes::ClassIndex;
 use super::contracts::of_class;
 use super::fleet::{Fleet, Kind};
 use super::given;
+use super::multiplicity::keeps_own;
 use super::offer::Side;
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
@@ -290,6 +291,13 @@ impl<'f, 'a> Wires<'f, 'a> {
             around.all.extend(more.all);
             around.is_unknown |= more.is_unknown;
         }
+        // What is around a composite that runs by itself is the domain: the components of all such composites.
+        let mut domain = Level::default();
+        for text in promoted.outermost.get(&place).into_iter().flatten() {
+            self.add(text, (0, None), true, Some(interface), &mut domain, report);
+        }
+        around.all.extend(domain.ends.all);
+        around.is_unknown |= domain.ends.is_unknown;
         let reference = fleet.members[place.0].component.reference(place.1);
         if !around.all.is_empty() && !ends.all.is_empty() && !keeps_own(fleet, place, reference) {
             ends = around;
@@ -311,42 +319,70 @@ impl<'f, 'a> Wires<'f, 'a> {
         interface: Option<&InterfaceDeclaration>,
         report: &mut Report<'_>,
     ) -> Level {
-        let (fleet, classes) = (self.fleet, self.classes);
+        let fleet = self.fleet;
         let scope = fleet.members[member].scope;
         let wires = self.wires_of(member).iter().filter(|wire| wire.name == name);
         let is_replaced = wires.clone().any(|wire| wire.is_replacing);
+        let own = Some(member);
         let mut level = Level::default();
-        let mut add = |text: &Text, scope: usize, counts: bool| {
-            for (one, replica) in spread(text, scope, fleet) {
-                // A group stands for the others.
-                if replica == Some(member) {
-                    continue;
-                }
-                let found = target(&one, scope, interface, fleet, classes, report);
-                match found {
-                    Target::Service(provider) if counts => {
-                        level.ends.all.push(End { provider, place: text.location });
-                    }
-                    Target::Service(_) => {}
-                    Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
-                }
-                if counts {
-                    level.written.add(text.location);
-                }
-            }
-        };
+        let mut is_said = wires.clone().next().is_some();
         if let Some(reference) = fleet.members[member].component.reference(name) {
             let by_binding =
                 reference.bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
             for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref()))
             {
-                add(text, scope, !is_replaced);
+                is_said = true;
+                self.add(text, (scope, own), !is_replaced, interface, &mut level, report);
             }
         }
         for wire in wires {
-            add(wire.target, wire.scope, wire.is_replacing || !is_replaced);
+            let counts = wire.is_replacing || !is_replaced;
+            self.add(wire.target, (wire.scope, own), counts, interface, &mut level, report);
+        }
+        // A composite wires its references to what is around it, where the component that it implements says nothing (SCA Assembly 1.1, 5.3).
+        let inner = fleet.inner(member).filter(|_| !is_said);
+        let declared = inner.into_iter().flat_map(|inner| inner.references()).find(|one| one.name == name);
+        for text in declared.map_or(&[][..], |declared| &declared.targets) {
+            let known = report.diagnostics().len();
+            self.add(text, (scope, own), true, interface, &mut level, report);
+            let is_inside = || inner.is_some_and(|inner| fleet.find(inner.scope, parts(text).0).is_some());
+            if report.diagnostics().len() > known && is_inside() {
+                report.diagnostics().adjust(known, |one| {
+                    one.help.push(
+                        "what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`".to_owned(),
+                    );
+                });
+            }
         }
         level
+    }
+
+    /// Adds where a text leads from `own`, a component of `scope`, to what a reference is given.
+    fn add(
+        &self,
+        text: &Text,
+        (scope, own): (usize, Option<usize>),
+        counts: bool,
+        interface: Option<&InterfaceDeclaration>,
+        level: &mut Level,
+        report: &mut Report<'_>,
+    ) {
+        for (one, replica) in spread(text, scope, self.fleet) {
+            // A group stands for the others.
+            if replica.is_some() && replica == own {
+                continue;
+            }
+            match target(&one, scope, interface, self.fleet, self.classes, report) {
+                Target::Service(provider) if counts => {
+                    level.ends.all.push(End { provider, place: text.location });
+                }
+                Target::Service(_) => {}
+                Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
+            }
+            if counts {
+                level.written.add(text.location);
+            }
+        }
     }
 
     /// Whether targets are to be found by interface: said by the reference, its component, or the composite.
@@ -424,10 +460,12 @@ impl<'f, 'a> Wires<'f, 'a> {
         let mut place = place;
         let mut is_autowired = false;
         let mut is_promoted = false;
+        let mut is_required = of_class(declared).is_required();
         loop {
-            if self.promoted.outermost.contains(&place) {
+            if self.promoted.outermost.contains_key(&place) {
                 return;
             }
+            is_required |= fleet.given_multiplicity(place).is_some_and(|given| given.value.is_required());
             let reference = fleet.members[place.0].component.reference(place.1);
             let is_wired_elsewhere = reference.is_some_and(|reference| {
                 reference.wired_by_impl().is_some_and(|wired| wired.value)
@@ -444,9 +482,6 @@ impl<'f, 'a> Wires<'f, 'a> {
         }
         let (member, name) = place;
         let reference = fleet.members[member].component.reference(name);
-        let multiplicity = reference.and_then(|reference| reference.multiplicity.as_ref());
-        let is_required =
-            of_class(declared).is_required() || multiplicity.is_some_and(|given| given.value.is_required());
         if !is_required {
             return;
         }
@@ -494,27 +529,6 @@ impl Targets {
             None => self.first = Some(place),
             Some(first) => _ = self.first_two.get_or_insert((first, place)),
         }
-    }
-}
-
-/// Whether the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1): only with
-/// `nonOverridable`. In SCA 1.0 those of a reference that takes several do.
-fn keeps_own(fleet: &Fleet<'_>, (member, _): Place<'_>, reference: Option<&Reference>) -> bool {
-    let Some(reference) = reference else { return false };
-    if reference.non_overridable().is_some_and(|fixed| fixed.value) {
-        return true;
-    }
-    let is_many = reference.multiplicity.as_ref().is_some_and(|given| given.value.is_many());
-    !fleet.members[member].composite.version.is_1_1() && is_many
-}
-
-impl Fleet<'_> {
-    /// How many targets a reference of a component can have that a composite implements.
-    pub(super) fn multiplicity_of(&self, (member, name): Place<'_>) -> Multiplicity {
-        let own = self.members[member].component.reference(name);
-        let inner = self.inner(member).and_then(|inner| inner.references().find(|one| one.name == name));
-        let given = [own, inner].into_iter().flatten().find_map(|one| one.multiplicity.as_ref());
-        given.map_or(Multiplicity::One, |given| given.value)
     }
 }
 

@@ -208,6 +208,8 @@ fn references_are_wired_from_outside_through_every_level() {
         .replace(" target=\"hall/a hall/b\"", " target=\"hall\"")
         .replace("<reference name=\"gps\" target=\"gps\"/>", "");
     expect![[r#"
+        2:18-22 error S2018: reference `where` of component `hall` leads to no service
+          help: give it a target with the interface `example.Positions`: `<reference name="where" target="..."/>`
         4:18-22 error S2018: reference `gps` of component `band` leads to no service
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         4:95-99 error S2014: component `hall` has several services with the interface `example.Wheels`
@@ -245,6 +247,49 @@ fn targets_from_outside_take_the_place_of_those_inside_unless_they_must_not() {
     let fixed = r#"<reference name="wheels" target="T/right" nonOverridable="true" multiplicity="0..n"/>"#;
     assert_eq!(wheels(fixed), "wheels->x/T/right+T/left");
     assert_eq!(wheels(r#"<reference name="wheels" autowire="true"/>"#), "wheels->T/left");
+}
+
+#[test]
+fn a_target_of_a_composites_reference_is_a_service_around_the_composite() {
+    let inner = |target: &str| {
+        let inside = r#"<component name="A"><implementation.java class="example.Gps"/></component><component name="H"><implementation.java class="example.Gps"/></component>"#;
+        let reference =
+            format!(r#"<reference name="other" promote="A" multiplicity="0..1" target="{target}"/>"#);
+        part("inner", "", &format!("{reference}\n{inside}"))
+    };
+    let fleet = |reference: &str| {
+        let used = format!(
+            r#"<component name="x"><implementation.composite name="t:inner"/>{reference}</component>"#
+        );
+        let others = "<component name=\"G\"><implementation.java class=\"example.Gps\"/></component><component name=\"I\"><implementation.java class=\"example.Gps\"/></component>";
+        part("fleet", "", &format!("{used}\n{others}"))
+    };
+    expect![[r#"
+        x/A (example.Gps) other->G/position
+        x/H (example.Gps) other->
+        G (example.Gps) other->
+        I (example.Gps) other->
+    "#]]
+    .assert_eq(&outcome(&[&fleet(""), &inner("G")], &[]));
+    let found = outcome(&[&fleet(r#"<reference name="other" target="I"/>"#), &inner("G")], &[]);
+    assert!(found.contains("x/A (example.Gps) other->I/position"), "{found}");
+    expect![[r#"
+        inner:2:65-66 error S2011: there is no component `H`
+          help: the components are `x`, `G` and `I`
+          help: what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`
+    "#]]
+    .assert_eq(&outcome(&[&fleet(""), &inner("H")], &[]));
+    // By itself, what is around it is the domain.
+    expect![[r#"
+        A (example.Gps) other->H/position
+        H (example.Gps) other->
+    "#]]
+    .assert_eq(&outcome(&[&inner("H")], &[]));
+    expect![[r#"
+        2:65-71 error S2011: there is no component `Nobody`
+          help: the components are `A` and `H`
+    "#]]
+    .assert_eq(&outcome(&[&inner("Nobody")], &[]));
 }
 
 #[test]

@@ -226,7 +226,11 @@ pub static COMPOSITE_REFERENCE: Kind = Kind {
             Holds::Ends,
             "The components in this composite, or their references as `Component/reference`, between blanks.",
         ),
-        TARGET,
+        known(
+            "target",
+            Holds::Ends,
+            "The components around the one that the composite implements, or their services as `Component/service`, between blanks; they count where that component wires nothing.",
+        ),
         MULTIPLICITY,
         old("autowire", Holds::Boolean, AUTOWIRE.doc),
         WIRED_BY_IMPL,
