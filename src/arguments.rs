@@ -110,7 +110,7 @@ pub(crate) struct FleetArguments {
     pub(crate) settings: Vec<String>,
 
     /// Make diagnostics of a code `allow`ed, a `note`, a `warning` or an `error` where composites say nothing else; may be repeated
-    #[arg(long = "severity", value_name = "CODE=LEVEL")]
+    #[arg(long = "severity", value_name = "CODE=LEVEL[:REASON]")]
     pub(crate) severities: Vec<String>,
 
     #[command(flatten)]

@@ -26,18 +26,31 @@ impl TopicKind {
 pub struct Topic<M> {
     name: &'static str,
     kind: TopicKind,
+    is_optional: bool,
     message: PhantomData<fn() -> M>,
 }
 
 impl<M: Message> Topic<M> {
     /// A topic that keeps the newest message of each key.
     pub const fn state(name: &'static str) -> Topic<M> {
-        Topic { name, kind: TopicKind::State, message: PhantomData }
+        Topic { name, kind: TopicKind::State, is_optional: false, message: PhantomData }
     }
 
     /// A topic that loses no message.
     pub const fn event(name: &'static str) -> Topic<M> {
-        Topic { name, kind: TopicKind::Event, message: PhantomData }
+        Topic { name, kind: TopicKind::Event, is_optional: false, message: PhantomData }
+    }
+
+    /// The same for whoever listens: that nobody reads it is nothing that the wiring report tells.
+    ///
+    /// ```
+    /// # use saoms_api::{Message, Topic};
+    /// # #[derive(Clone, Message)] struct Collision { x: u32 }
+    /// pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC").optional();
+    /// assert!(COLLISION.is_optional());
+    /// ```
+    pub const fn optional(self) -> Topic<M> {
+        Topic { is_optional: true, ..self }
     }
 
     /// The name before any `topicRename`.
@@ -48,6 +61,11 @@ impl<M: Message> Topic<M> {
     /// State or event.
     pub const fn kind(&self) -> TopicKind {
         self.kind
+    }
+
+    /// Whether nobody has to read it.
+    pub const fn is_optional(&self) -> bool {
+        self.is_optional
     }
 
     /// The schema of its messages, for the declaration of a class.

@@ -36,7 +36,7 @@ enum Move {
 struct Empty;
 
 const POSITION: Topic<Position> = Topic::state("POS\"TOPIC");
-const ALARM: Topic<Empty> = Topic::event("ALARM");
+const ALARM: Topic<Empty> = Topic::event("ALARM").optional();
 
 /// Moves a robot.
 #[interface(name = "example.Wheels")]
@@ -184,8 +184,8 @@ fn a_class_declares_everything() {
         r#"{"name":"isAwake","type":"boolean","default":"true"}],"#,
         r#""publishes":[{"topic":"POS\"TOPIC","kind":"state","message":"Position","schema":"#,
         POSITION_SCHEMA,
-        r#"},{"topic":"ALARM","kind":"event","message":"Nothing","schema":{"name":"Nothing","fields":[]}}],"#,
-        r#""subscribes":[{"topic":"ALARM","kind":"event","message":"Nothing","schema":{"name":"Nothing","fields":[]}}],"#,
+        r#"},{"topic":"ALARM","kind":"event","message":"Nothing","schema":{"name":"Nothing","fields":[]},"optional":true}],"#,
+        r#""subscribes":[{"topic":"ALARM","kind":"event","message":"Nothing","schema":{"name":"Nothing","fields":[]},"optional":true}],"#,
         r#""services":[{"name":"wheels","interface":"#,
         WHEELS,
         r#"}],"references":[{"name":"other","interface":"#,

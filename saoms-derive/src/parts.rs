@@ -46,6 +46,7 @@ pub(crate) fn topic(text: &mut Json, topic: &Path) {
     text.quoted(quote!(#topic.declaration().message));
     text.plain(",\"schema\":");
     text.json(quote!(#topic.schema()));
+    text.text(quote!(::saoms_api::declaration::optional_topic(#topic.is_optional())));
     text.plain("}");
 }
 

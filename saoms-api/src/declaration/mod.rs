@@ -24,7 +24,8 @@
 //! - `contract` is the version of this shape.
 //! - `kind` is `periodic` or `passive`. A periodic class has the properties of a task beside its own, which are not listed.
 //! - `also` are further names of the class; the properties in `preset` have these texts, as if the composite had set them.
-//! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`.
+//! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`. `"optional": true` in one that is published
+//!   says that nobody has to read it.
 //! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in their order: either
 //!   `{"default": [...]}`, or one list for each value of a property. A class without loops has neither.
 //! - `extends` is the whole declaration of the class that this one extends; absent where there is none. The class has the topics, services
@@ -100,6 +101,14 @@
 
 mod rule;
 mod text;
+
+/// What the declaration of a topic says of whether it is [optional](crate::Topic::optional).
+pub const fn optional_topic(is_optional: bool) -> Text {
+    match is_optional {
+        true => Text::Plain(",\"optional\":true"),
+        false => Text::EMPTY,
+    }
+}
 
 pub use crate::property::PropertyShape;
 pub use rule::{PropertyKind, Rule, Scalar, parse_scalar};

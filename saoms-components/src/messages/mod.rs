@@ -44,7 +44,7 @@ pub const ENVIRONMENT: Topic<EnvironmentEvent> = Topic::event("ETOPIC");
 pub const EVENT_LUGGAGE: Topic<EventLuggage> = Topic::event("ELMSTOPIC");
 
 /// Events that change how many robots are needed.
-pub const EXCEPTIONAL_EVENT: Topic<ExceptionalEvent> = Topic::event("EETOPIC");
+pub const EXCEPTIONAL_EVENT: Topic<ExceptionalEvent> = Topic::event("EETOPIC").optional();
 
 /// Which robots there are, the newest of each.
 pub const ROBOT_LIST: Topic<RobotList> = Topic::state("RLMSTOPIC");
@@ -56,7 +56,7 @@ pub const POSITION: Topic<Position> = Topic::state("POSTOPIC");
 pub const AREA: Topic<Area> = Topic::state("AREATOPIC");
 
 /// Robots that were in each other's way.
-pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC");
+pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC").optional();
 
 /// What breaks in robots.
 pub const FAULT: Topic<Fault> = Topic::event("FAULTTOPIC");

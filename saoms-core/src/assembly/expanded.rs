@@ -8,7 +8,7 @@ use saoms_api::{PropertyValue, format_duration};
 
 use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};
 use crate::diagnostic::{Diagnostic, Level, SetBy, Severity, codes};
-use crate::model::{Composite, SAOMS_NAMESPACE, Version};
+use crate::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
 
 /// Writes an assembly as one composite in which nothing is left to resolve: no includes, no inner composites, no sources of properties,
 /// every wire with its service. It has the name, the namespace and the version of SCA of `like`.
@@ -19,8 +19,8 @@ use crate::model::{Composite, SAOMS_NAMESPACE, Version};
 /// A reference that leads nowhere although it should is a warning in SCA 1.0 and an error in 1.1: an assembly with such a one is
 /// written in 1.0.
 ///
-/// What would be an error again in that composite and is lowered in those that it comes from is lowered in it as well, for the same reason: `found` are the
-/// diagnostics of the check that made the assembly.
+/// What would be told again of that composite and is lowered in those that it comes from is lowered in it as well, for the same reason: `found` are the
+/// diagnostics of the check that made the assembly. Of the wiring report, which that check may not have made, it keeps what `like` says of the fleet.
 pub fn expanded<'d>(
     assembly: &Assembly,
     like: &Composite,
@@ -41,7 +41,9 @@ pub fn expanded<'d>(
         component.path != *name || !loops(component).is_empty()
     };
     let lowered = lowered(found);
-    if !lowered.is_empty() || assembly.components.iter().zip(&names).any(is_own) {
+    let is_of_wiring = |rule: &&SeverityRule| rule.within.is_none() && codes::is_of_wiring(&rule.code);
+    let of_wiring: Vec<_> = like.severities.iter().filter(is_of_wiring).collect();
+    if !lowered.is_empty() || !of_wiring.is_empty() || assembly.components.iter().zip(&names).any(is_own) {
         attributes.push(("xmlns:s", SAOMS_NAMESPACE));
     }
     attributes.push(("name", like.name.as_str()));
@@ -52,6 +54,10 @@ pub fn expanded<'d>(
         let reason = set.reason.as_deref().unwrap_or("set on the command line");
         out.empty("s:severity", &[("code", code), ("level", set.level.name()), ("reason", reason)]);
     }
+    for rule in of_wiring {
+        let level = rule.level.value.name();
+        out.empty("s:severity", &[("code", &rule.code), ("level", level), ("reason", &rule.reason)]);
+    }
     for (component, name) in assembly.components.iter().zip(&names) {
         out.component(component, name, &names);
     }
@@ -59,19 +65,22 @@ pub fn expanded<'d>(
     out.text
 }
 
-/// The codes that are lowered although the composite that is left has what they are about; each with what hides least.
+/// The codes that are lowered although the composite that is left has what they are about; each with what hides least. Codes of which something
+/// is told as it is are told so again.
 fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'static str, &'d SetBy> {
-    let place = |set: &SetBy| Level::ALL.iter().position(|level| *level == set.level);
     let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
+    let mut told: HashSet<&'static str> = HashSet::new();
     for one in found.into_iter().filter(|one| codes::outlives_expansion(one.code)) {
         let Some(set) = one.set.as_ref().filter(|set| set.level != Level::Set(Severity::Error)) else {
+            told.insert(one.code.id);
             continue;
         };
         let known = all.entry(one.code.id).or_insert(set);
-        if place(set) > place(known) {
+        if set.level.hides() < known.level.hides() {
             *known = set;
         }
     }
+    all.retain(|code, _| !told.contains(code));
     all
 }
 
@@ -107,7 +116,7 @@ impl Writer {
         self.open("component", &attributes);
         let class = ("class", component.class.name());
         match &component.library {
-            None => self.empty("implementation.java", &[class]),
+            None => self.empty("implementation.rust", &[class]),
             Some(library) => self.empty("implementation.rust", &[class, ("library", library)]),
         }
         let presets = component.class.presets();

@@ -24,6 +24,8 @@ pub struct Topic {
     pub kind: TopicKind,
     /// The name of the type of its messages.
     pub message: String,
+    /// Whether nobody has to read it: all that publish it say so, and it has the name that they give it.
+    pub is_optional: bool,
     /// Who publishes it, in the order of the assembly.
     pub writers: Vec<End>,
     /// Who subscribes to it, in the order of the assembly.
@@ -50,7 +52,13 @@ impl Traffic {
             let own = spec.class.declaration();
             let written = own.publishes.iter().chain(loops().flat_map(|one| &one.publishes));
             let read = own.subscribes.iter().chain(loops().flat_map(|one| &one.subscribes));
-            written.for_each(|topic| add(&mut topics, topic, component, spec, |topic| &mut topic.writers));
+            for declared in written {
+                add(&mut topics, declared, component, spec, |topic| {
+                    // Who gives it another name means a reader.
+                    topic.is_optional &= declared.optional && topic.name == declared.name;
+                    &mut topic.writers
+                });
+            }
             read.for_each(|topic| add(&mut topics, topic, component, spec, |topic| &mut topic.readers));
         }
         Self { topics: topics.into_values().collect() }
@@ -94,6 +102,7 @@ fn add(
         name: name.clone(),
         kind: declared.kind,
         message: declared.message.clone(),
+        is_optional: true,
         writers: Vec::new(),
         readers: Vec::new(),
     });

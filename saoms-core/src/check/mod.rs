@@ -27,6 +27,7 @@ mod offer;
 mod once;
 mod options;
 mod parameters;
+mod path;
 mod presence;
 mod promote;
 mod properties;
@@ -50,6 +51,7 @@ mod unique;
 mod value_type;
 mod values;
 mod variable;
+mod wire;
 mod wires;
 mod written;
 
@@ -184,11 +186,13 @@ fn examine<T>(
     report.finish();
     severities.apply(0, report.diagnostics());
     if report.has_errors() {
+        severities.overruled(report.diagnostics());
         return None;
     }
     let sound = Sound { fleet: &fleet, classes: &classes, resolved, wiring: &wiring };
     let made = make(sound, &mut severities, report);
     severities.finish(options.wiring, report.diagnostics());
+    severities.overruled(report.diagnostics());
     made.filter(|_| !report.has_errors())
 }
 

@@ -2,19 +2,18 @@
 
 use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
-use std::ops::Range;
 
 use super::fleet::{Fleet, Member, Unit};
 use super::instance::Instance;
 use super::options::Options;
+use super::path::{expression, walk};
 use super::raw::{Piece, Raw, raw};
-use super::report::{Report, list};
+use super::report::Report;
 use super::value_type::{self, Match, Typed};
 use super::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
-use crate::xml::Element;
 
 /// The properties of all composites of a fleet, with their values.
 pub(super) struct Parameters<'a> {
@@ -378,55 +377,4 @@ fn missing(name: &Text, owner: Option<&Component>, assumes: bool) -> Diagnostic 
     Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, owner.name.location, message)
         .label(name.location, "declared here, without a value")
         .help(format!("add `<property name=\"{name}\">...</property>`"))
-}
-
-/// `$name` or `$name/path`.
-fn expression(source: &str) -> Option<(&str, Option<&str>)> {
-    let rest = source.strip_prefix('$')?;
-    let (name, path) = rest.split_once('/').map_or((rest, None), |(name, path)| (name, Some(path)));
-    (!name.is_empty()).then_some((name, path))
-}
-
-/// The part of a complex value that a path of element names leads to; prefixes do not count.
-fn walk<'a>(whole: Raw<'a>, path: &str) -> Result<Raw<'a>, (Range<usize>, String)> {
-    let Some((mut here, instance)) = whole.elements() else {
-        return Err((0..path.len(), "the property has a simple value: there are no parts in it".to_owned()));
-    };
-    // `$order/total` also means the `total` of a value that is written as one element.
-    if let [only] = here[..] {
-        let first = local(path.split('/').next().unwrap_or_default());
-        if only.local_name() != first && only.children().any(|child| child.local_name() == first) {
-            here = only.children().collect();
-        }
-    }
-    let mut start = 0;
-    let mut steps = path.split('/').peekable();
-    while let Some(step) = steps.next() {
-        let at = start..start + step.len();
-        start = at.end + 1;
-        let found: Vec<Element<'_>> =
-            here.iter().copied().filter(|one| one.local_name() == local(step)).collect();
-        match found[..] {
-            [] if local(step).contains(|c| "[](){}*@.'\"".contains(c)) => {
-                return Err((
-                    at,
-                    format!("{} is no element name, and others are not understood", quoted(step)),
-                ));
-            }
-            [] => {
-                let known = list(here.iter().map(|one| one.local_name()));
-                return Err((at, format!("there is no part {}; the parts are {known}", quoted(step))));
-            }
-            _ if steps.peek().is_none() => return Ok(Raw::of_elements(&found, instance)),
-            [one] => here = one.children().collect(),
-            _ => return Err((at, format!("there are {} parts {}", found.len(), quoted(step)))),
-        }
-    }
-    Err((0..path.len(), "the path is empty".to_owned()))
-}
-
-/// The name that a step asks for, without its prefix: `b` in `a:b` and in `*[local-name()='b']`.
-fn local(step: &str) -> &str {
-    let by_predicate = step.strip_prefix("*[local-name()='").and_then(|rest| rest.strip_suffix("']"));
-    by_predicate.unwrap_or_else(|| step.rsplit(':').next().unwrap_or(step))
 }

@@ -30,14 +30,6 @@ impl<'a> Raw<'a> {
     pub(super) fn of_elements(elements: &[Element<'a>], instance: Option<&'a Instance>) -> Self {
         Self(elements.iter().map(|element| Piece::inside(*element, instance)).collect())
     }
-
-    /// The elements of a complex value.
-    pub(super) fn elements(self) -> Option<(Vec<Element<'a>>, Option<&'a Instance>)> {
-        match <[Piece<'a>; 1]>::try_from(self.0) {
-            Ok([Piece::Elements(elements, instance)]) => Some((elements, instance)),
-            _ => None,
-        }
-    }
 }
 
 impl<'a> Piece<'a> {
@@ -48,10 +40,14 @@ impl<'a> Piece<'a> {
             return Self::Elements(children, instance);
         }
         let nothing = || Located::new("".into(), element.name_location());
-        let text = Cow::Owned(element.trimmed_text().unwrap_or_else(nothing));
+        Self::text(element.trimmed_text().unwrap_or_else(nothing), instance)
+    }
+
+    /// A text of a replica, or of what is none.
+    pub(super) fn text(text: Text, instance: Option<&'a Instance>) -> Self {
         Self::Text(match instance {
-            Some(instance) => instance.text(text),
-            None => text,
+            Some(instance) => instance.text(Cow::Owned(text)),
+            None => Cow::Owned(text),
         })
     }
 

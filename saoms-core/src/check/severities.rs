@@ -15,11 +15,13 @@ pub struct SeveritySetting {
     pub code: Text,
     /// Its level.
     pub level: Located<Level>,
+    /// Why.
+    pub reason: Option<Text>,
 }
 
 impl SeveritySetting {
-    /// Reads `CODE=LEVEL`, the value of the option `option` (as `--severity`). It becomes a source text of that name, so that diagnostics
-    /// can point into it. `None`, and a diagnostic, when it is none.
+    /// Reads `CODE=LEVEL` or `CODE=LEVEL:REASON`, the value of the option `option` (as `--severity`). It becomes a source text of that name, so
+    /// that diagnostics can point into it. `None`, and a diagnostic, when it is none.
     pub fn parse(
         option: &str,
         text: &str,
@@ -28,13 +30,16 @@ impl SeveritySetting {
     ) -> Option<Self> {
         let file = sources.add(option, text);
         let split = text.find('=').unwrap_or(text.len());
-        let (code, level) = (text[..split].trim(), text[(split + 1).min(text.len())..].trim());
+        let (code, level) = (text[..split].trim(), &text[(split + 1).min(text.len())..]);
+        let (level, reason) = level.split_once(':').unwrap_or((level, ""));
+        let (level, reason) = (level.trim(), reason.trim());
         let place = |part: &str| {
             let start = part.as_ptr() as usize - text.as_ptr() as usize;
             Span::new(start as u32, (start + part.len()) as u32).in_file(file)
         };
         if let Some(level) = Level::from_name(level).map(|found| Located::new(found, place(level))) {
-            return Some(Self { code: Located::new(code.into(), place(code)), level });
+            let reason = (!reason.is_empty()).then(|| Located::new(reason.into(), place(reason)));
+            return Some(Self { code: Located::new(code.into(), place(code)), level, reason });
         }
         let names = Level::ALL.map(Level::name);
         let one = if level.is_empty() {
@@ -48,7 +53,9 @@ impl SeveritySetting {
                 None => one,
             }
         };
-        let help = format!("write `{option} CODE=LEVEL`, with `allow`, `note`, `warning` or `error`");
+        let help = format!(
+            "write `{option} CODE=LEVEL` or `{option} 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`"
+        );
         diagnostics.push(one.help(help));
         None
     }
@@ -57,6 +64,8 @@ impl SeveritySetting {
 /// All that is said about severities, what counts first before the others.
 pub(super) struct Severities {
     rules: Vec<Rule>,
+    /// Those about each code.
+    by_code: HashMap<String, Vec<usize>>,
     /// The codes of rules over fleets whose errors keep a fleet from starting.
     preventing: Vec<&'static str>,
 }
@@ -119,13 +128,12 @@ impl Severities {
                 return;
             }
             let reason = reason.map(|reason| reason.as_str().to_owned());
-            let set = SetBy { level, at: code.location, reason };
+            let is_option = matches!(scope, Scope::Option);
+            let set = SetBy { level, at: code.location, is_option, reason };
             let known = said.entry((code, scope)).or_default();
             let said_before = known.iter().map(|place| &rules[*place]).find(|known: &&Rule| {
                 // Files that are one fleet together may say the same.
-                known.set.at.file == code.location.file
-                    || matches!(scope, Scope::Option)
-                    || known.set.level != level
+                known.set.at.file == code.location.file || is_option || known.set.level != level
             });
             if let Some(known) = said_before {
                 diagnostics.push(twice(code, level, &known.set));
@@ -146,11 +154,16 @@ impl Severities {
             }
         }
         for setting in &options.severities {
-            add(&setting.code, setting.level.value, None, Scope::Option);
+            add(&setting.code, setting.level.value, setting.reason.as_ref(), Scope::Option);
         }
         rules.sort_by_key(|rule| rule.scope.size());
         let preventing = registry.rules().iter().filter(|rule| rule.prevents_start());
-        Self { rules, preventing: preventing.map(|rule| rule.code().id).collect() }
+        let preventing = preventing.map(|rule| rule.code().id).collect();
+        let mut by_code: HashMap<String, Vec<usize>> = HashMap::new();
+        for (place, rule) in rules.iter().enumerate() {
+            by_code.entry(rule.code.clone()).or_default().push(place);
+        }
+        Self { rules, by_code, preventing }
     }
 
     /// Sets the severities of the diagnostics from this place on.
@@ -159,8 +172,17 @@ impl Severities {
             return;
         }
         diagnostics.adjust(from, |one| {
-            let fits = |rule: &&mut Rule| rule.code == one.code.id && rule.scope.holds(one.location);
-            let Some(rule) = self.rules.iter_mut().find(fits) else { return };
+            let Some(rules) = self.by_code.get(one.code.id) else { return };
+            let holds = |place: &usize, at: Location| self.rules[*place].scope.holds(at);
+            let own = rules.iter().copied().find(|place| holds(place, one.location));
+            let is_element = |place: &usize| matches!(self.rules[*place].scope, Scope::Element(_));
+            // What is wrong between two elements is found in the second of them, and is about the first as well.
+            let of_other = || {
+                let mut elements = rules.iter().copied().filter(is_element);
+                elements.find(|place| one.labels.iter().any(|label| holds(place, label.location)))
+            };
+            let Some(place) = own.filter(is_element).or_else(of_other).or(own) else { return };
+            let rule = &mut self.rules[place];
             rule.is_used = true;
             let is_lowered = rule.set.level != Level::Set(Severity::Error);
             let is_fixed = !codes::is_judgement(one.code) || self.preventing.contains(&one.code.id);
@@ -181,7 +203,7 @@ impl Severities {
         });
     }
 
-    /// Reports what composites say that changed nothing; those codes are left out that were not looked for.
+    /// Reports what composites say that changed nothing, without the codes that were not looked for.
     pub(super) fn finish(&self, wiring: bool, diagnostics: &mut Diagnostics) {
         let in_files = self.rules.iter().filter(|rule| !matches!(rule.scope, Scope::Option));
         let unused = in_files.filter(|rule| !rule.is_used && rule.set.level != Level::Set(Severity::Error));
@@ -190,6 +212,23 @@ impl Severities {
                 format!("there is no {} here that could be set to `{}`", rule.code, rule.set.level.name());
             let one = Diagnostic::new(&codes::SEVERITY_UNUSED, rule.set.at, message);
             diagnostics.push(one.help("remove it, or it hides what somebody adds later"));
+        }
+    }
+
+    /// Reports options that hide what composites set to something stricter: what has a reason there stays.
+    pub(super) fn overruled(&self, diagnostics: &mut Diagnostics) {
+        let options = self.rules.iter().filter(|rule| matches!(rule.scope, Scope::Option) && !rule.is_used);
+        for option in options {
+            let is_stricter = |rule: &&Rule| {
+                rule.code == option.code && rule.is_used && rule.set.level.hides() < option.set.level.hides()
+            };
+            let Some(by) = self.rules.iter().find(is_stricter) else { continue };
+            let (code, asked, level) = (&option.code, option.set.level.name(), by.set.level.name());
+            let message =
+                format!("{code} is not set to `{asked}`: a composite sets it to `{level}`, and counts first");
+            let one = Diagnostic::new(&codes::SEVERITY_UNUSED, option.set.at, message);
+            diagnostics
+                .push(one.label(by.set.at, "set here").help("change it there, or leave the option out"));
         }
     }
 }

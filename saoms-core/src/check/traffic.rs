@@ -42,7 +42,9 @@ pub(super) fn check(assembly: &Assembly, places: &[Place], report: &mut Report<'
             all.alone(topic, meant, report);
         }
         if lone.contains_key(topic.name.as_str()) {
-            all.lone(topic, report);
+            if topic.writers.is_empty() || !topic.is_optional {
+                all.lone(topic, report);
+            }
         } else {
             all.rates(topic, report);
         }

@@ -9,13 +9,13 @@ use super::autowire::Autowire;
 use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
-use super::fleet::{Fleet, Kind};
+use super::fleet::Fleet;
 use super::given;
 use super::multiplicity::keeps_own;
-use super::offer::Side;
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
-use super::target::{Provider, Target, Uri, parts, spread, target};
+use super::target::{Provider, Target, parts, spread, target};
+use super::wire::{Wire, wires};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
 use crate::model::{Multiplicity, Reference};
@@ -34,16 +34,6 @@ struct Ends {
 struct End {
     provider: Provider,
     place: Location,
-}
-
-/// A `<wire>` that starts from a reference.
-#[derive(Clone, Copy)]
-struct Wire<'f> {
-    /// The name of the reference.
-    name: &'f str,
-    target: &'f Text,
-    scope: usize,
-    is_replacing: bool,
 }
 
 /// The providers of every reference of every component, in the order of the class.
@@ -99,89 +89,6 @@ pub(super) fn check(
     report.about_all();
     circles.check(fleet, report);
     wiring
-}
-
-/// The `<wire>` elements of all composites by the component they start from.
-fn wires<'f>(
-    fleet: &'f Fleet<'_>,
-    classes: &'f [ClassIndex<'_>],
-    report: &mut Report<'_>,
-) -> Map<usize, Vec<Wire<'f>>> {
-    let mut all: Map<usize, Vec<Wire<'f>>> = Map::default();
-    for (place, unit) in fleet.units.iter().enumerate() {
-        let scope = unit.scope;
-        for wire in unit.composites.iter().flat_map(|composite| &composite.wires) {
-            let (Some(source), Some(to)) = (&wire.source, &wire.target) else { continue };
-            if fleet.is_absent_wire(place, wire) {
-                let _ = (Uri::of(source, 2, report), Uri::of(to, 3, report));
-                continue;
-            }
-            let is_replacing = wire.replace.as_ref().is_some_and(|replace| replace.value);
-            for (one, _) in spread(source, scope, fleet) {
-                let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
-                    // Both ends can be wrong.
-                    for (to, _) in spread(to, scope, fleet) {
-                        target(&to, scope, None, fleet, classes, report);
-                    }
-                    continue;
-                };
-                all.entry(member).or_default().push(Wire { name, target: to, scope, is_replacing });
-            }
-        }
-    }
-    all
-}
-
-/// The component and the reference that a wire starts from; an empty name where any reference may be meant. `source` is `written`, or one
-/// of the replicas that this stands for.
-fn source_of<'f>(
-    source: &Text,
-    written: &'f Text,
-    scope: usize,
-    fleet: &'f Fleet<'_>,
-    classes: &'f [ClassIndex<'_>],
-    report: &mut Report<'_>,
-) -> Option<(usize, &'f str)> {
-    let uri = Uri::of(source, 2, report)?;
-    let member = uri.member(source, scope, fleet, None, report)?;
-    let named = parts(written).1.unwrap_or_default();
-    let Some(names) = fleet.reference_names(member, classes) else {
-        if let Some((name, at)) = &uri.part {
-            let at = report.part(source, at.clone());
-            fleet.unknown_name(
-                member,
-                Side::Reference,
-                (&codes::UNKNOWN_WIRE_SOURCE, None),
-                (name, at),
-                report,
-            );
-        }
-        return (fleet.members[member].kind == Kind::Given).then_some((member, named));
-    };
-    let component = quoted(uri.component);
-    match (&uri.part, &names[..]) {
-        (Some((name, _)), names) if names.contains(name) => Some((member, named)),
-        (Some((name, at)), names) => {
-            let at = report.part(source, at.clone());
-            let message = format!("component {component} has no reference {}", quoted(name));
-            let known = ("its references are", names.iter().copied());
-            let one = report.unknown(&codes::UNKNOWN_WIRE_SOURCE, at, message, name, known);
-            report.push(one);
-            None
-        }
-        (None, [only]) => Some((member, *only)),
-        (None, []) => {
-            let message = format!("component {component} has no references");
-            report.push(Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message));
-            None
-        }
-        (None, _) => {
-            let message = format!("component {component} has several references");
-            let help = format!("name one of {}: `{source}/...`", list(names.iter().copied()));
-            report.push(Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message).help(help));
-            None
-        }
-    }
 }
 
 struct Wires<'f, 'a> {

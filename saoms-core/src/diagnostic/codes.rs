@@ -114,7 +114,7 @@ codes! {
     REPLICAS = "S2046" Error "replicas": "What is said about the replicas of a component contradicts itself.";
     OVERRIDES = "S2047" Error "overrides": "A table of overrides is malformed, or is about replicas that do not exist.";
     SEVERITY = "S2048" Error "severity": "A severity is set of a code that does not exist, to none, or twice.";
-    SEVERITY_UNUSED = "S2049" Warning "severity-unused": "A composite lowers a severity, and there is nothing that it changes.";
+    SEVERITY_UNUSED = "S2049" Warning "severity-unused": "A composite lowers a severity, and there is nothing that it changes; or an option sets one, and a composite another.";
     UNKNOWN_TYPE = "S2050" Error "unknown-type": "A property has a type that XML Schema does not have.";
     DEPLOYABLE_NOT_FOUND = "S2051" Error "deployable-not-found": "A contribution calls a composite deployable that it does not have.";
     // S30: classes and properties.
@@ -185,9 +185,11 @@ pub fn is_judgement(code: &Code) -> bool {
     JUDGEMENTS.contains(&code) || !ALL.contains(&code)
 }
 
-/// Whether a lowered error of a code is found again in the composite that is left when all is resolved.
+/// Whether what a code is about is found again in the composite that is left when all is resolved.
 pub(crate) fn outlives_expansion(code: &Code) -> bool {
-    [&MISSING_TARGET_NAMESPACE, &CALL_CYCLE, &NOT_UNIQUE].contains(&code) || !ALL.contains(&code)
+    [&MISSING_TARGET_NAMESPACE, &UNWIRED, &CALL_CYCLE, &NOT_UNIQUE].contains(&code)
+        || [&TASK_ID_SHARED, &RENAME_UNUSED, &CREDENTIALS, &DEADLINE, &RESTART_UNUSED].contains(&code)
+        || !ALL.contains(&code)
 }
 
 /// Whether a code is one of those that the wiring report adds.

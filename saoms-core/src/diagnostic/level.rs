@@ -17,6 +17,16 @@ impl Level {
     pub const ALL: [Self; 4] =
         [Self::Allow, Self::Set(Severity::Note), Self::Set(Severity::Warning), Self::Set(Severity::Error)];
 
+    /// How much it hides: 0 for an error, 3 for what is allowed.
+    pub const fn hides(self) -> u8 {
+        match self {
+            Self::Allow => 3,
+            Self::Set(Severity::Note) => 2,
+            Self::Set(Severity::Warning) => 1,
+            Self::Set(Severity::Error) => 0,
+        }
+    }
+
     /// As it is written.
     pub const fn name(self) -> &'static str {
         match self {
@@ -38,6 +48,8 @@ pub struct SetBy {
     pub level: Level,
     /// Where.
     pub at: Location,
-    /// Why; `None` on the command line.
+    /// Whether on the command line; in a composite otherwise.
+    pub is_option: bool,
+    /// Why; composites always say it.
     pub reason: Option<String>,
 }

@@ -64,7 +64,7 @@ fn result(one: &Diagnostic, codes: &[&Code], sources: &Sources) -> Value {
     }
     if let Some(set) = &one.set {
         // On the command line nobody says why.
-        let kind = if set.reason.is_some() { "inSource" } else { "external" };
+        let kind = if set.is_option { "external" } else { "inSource" };
         if one.is_allowed() {
             let mut suppression =
                 json!({ "kind": kind, "location": { "physicalLocation": place(set.at, sources) } });

@@ -30,7 +30,7 @@ impl Loader<'_> {
             name,
             value: element.attribute("value").map(crate::xml::Attribute::trimmed),
             text: element.trimmed_text(),
-            details: self.details(element, is_plain, values, content),
+            details: self.details(element, kind, is_plain, values, content),
         }
     }
 
@@ -38,6 +38,7 @@ impl Loader<'_> {
     fn details(
         &mut self,
         element: Element<'_>,
+        kind: &'static Kind,
         is_plain: bool,
         values: Vec<PropertyValue>,
         content: Vec<ElementId>,
@@ -45,13 +46,15 @@ impl Loader<'_> {
         if is_plain && values.is_empty() && content.is_empty() {
             return None;
         }
+        // A property of a composite has none: one is reported, and not read.
+        let has_file = kind.attributes.iter().any(|known| known.name == "file");
         Some(Box::new(PropertyDetails {
             r#type: self.optional(element, "type"),
             element: self.optional(element, "element"),
             many: self.boolean(element, "many"),
             must_supply: self.boolean(element, "mustSupply"),
             source: self.optional(element, "source"),
-            file: self.optional(element, "file"),
+            file: if has_file { self.optional(element, "file") } else { None },
             env: self.own(element, "env"),
             from_file: None,
             values,

@@ -90,8 +90,13 @@ pub(super) fn value(
     open: &OpenTexts,
 ) -> Result<String, Box<Diagnostic>> {
     let max_size = max_size.min(LIMIT);
-    let bytes = bytes(path, max_size, open)
-        .map_err(|failure| Box::new(failure.diagnostic(path, max_size, named, &VALUE)))?;
+    let bytes = bytes(path, max_size, open).map_err(|failure| {
+        let mut one = failure.diagnostic(path, max_size, named, &VALUE);
+        if one.code == &codes::FILE_NOT_FOUND {
+            one.help.insert(0, format!("it is looked for as {}", quoted(&path.display().to_string())));
+        }
+        Box::new(one)
+    })?;
     text(path, bytes, &VALUE).map_err(|wrong| {
         let Wrong { code, message, help, .. } = *wrong;
         Box::new(Diagnostic::new(code, named, message).help(help))

@@ -1,16 +1,17 @@
 //! Values that properties take from files beside their composite.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::read;
 use super::table::table;
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
 use crate::model::Composite;
 use crate::source::{Sources, Span, Text};
 
-/// Reads the files that properties of the composite's components and their loops name with `file`, each of at most `max_size` bytes. A name is a path,
-/// relative to the folder of the composite.
+/// Reads the files that properties of the composite's components and their loops name with `file`, each of at most `max_size` bytes. A name is a URI
+/// (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the composite; files are read from disk alone.
 ///
 /// What the file holds, without white space at its ends, is the value; its place is in that file. A file that cannot be read is
 /// reported where it is named. So are the tables that replicated components name with `overrides`.
@@ -31,7 +32,13 @@ pub fn read_values(
     for property in properties {
         let Some(details) = property.details.as_mut() else { continue };
         let Some(file) = &details.file else { continue };
-        let path = folder.join(file.as_str());
+        let path = match path_of(file, &folder, sources) {
+            Ok(path) => path,
+            Err(diagnostic) => {
+                diagnostics.push(*diagnostic);
+                continue;
+            }
+        };
         if !known.contains_key(&path) {
             match read::value(&path, max_size, file.location, sources.open()) {
                 Ok(text) => _ = known.insert(path.clone(), add(&path, text, sources)),
@@ -51,6 +58,54 @@ pub fn read_values(
             Err(diagnostic) => diagnostics.push(*diagnostic),
         }
     }
+}
+
+/// The path that a URI names. One that is no file on this machine is a fault.
+fn path_of(uri: &Text, folder: &Path, sources: &Sources) -> Result<PathBuf, Box<Diagnostic>> {
+    let (scheme, rest) = uri.split_once(':').unwrap_or(("", uri));
+    // One letter is a drive of Windows.
+    let has_scheme = scheme.len() > 1
+        && scheme.starts_with(|letter: char| letter.is_ascii_alphabetic())
+        && scheme.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"+-.".contains(&byte));
+    if !has_scheme {
+        let written = folder.join(uri.as_str());
+        let is_there = sources.open().get(&written).is_some() || written.exists();
+        return Ok(if is_there { written } else { folder.join(&*decoded(uri)) });
+    }
+    let refused = |message: String| {
+        let one = Diagnostic::new(&codes::FILE_UNREADABLE, uri.location, message);
+        Box::new(one.help("keep the file beside the composite, and name it by its path from there"))
+    };
+    if !scheme.eq_ignore_ascii_case("file") {
+        return Err(refused(format!("{} is not read: values come from files on this machine", quoted(uri))));
+    }
+    let path = match rest.strip_prefix("//") {
+        None => rest,
+        Some(rest) => match rest.find('/').map(|slash| rest.split_at(slash)) {
+            Some(("" | "localhost", path)) => path,
+            _ => return Err(refused(format!("{} is a file of another machine", quoted(uri)))),
+        },
+    };
+    Ok(folder.join(&*decoded(path)))
+}
+
+/// A text with its `%` and two digits as the bytes that they stand for (RFC 3986, 2.1); as it is where they come to no text.
+fn decoded(text: &str) -> Cow<'_, str> {
+    let digit = |at: usize| text.as_bytes().get(at).and_then(|digit| char::from(*digit).to_digit(16));
+    let (mut bytes, mut at) = (Vec::with_capacity(text.len()), 0);
+    while let Some(byte) = text.as_bytes().get(at) {
+        match (byte, digit(at + 1), digit(at + 2)) {
+            (b'%', Some(high), Some(low)) => {
+                bytes.push((high * 16 + low) as u8);
+                at += 3;
+            }
+            _ => {
+                bytes.push(*byte);
+                at += 1;
+            }
+        }
+    }
+    String::from_utf8(bytes).map_or(Cow::Borrowed(text), Cow::Owned)
 }
 
 fn add(path: &Path, text: String, sources: &mut Sources) -> Text {

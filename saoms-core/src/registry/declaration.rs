@@ -172,6 +172,9 @@ pub struct TopicDeclaration {
     pub message: String,
     /// The schema of the message type: two ends agree when these are equal.
     pub schema: Value,
+    /// Whether those that publish it need nobody who reads it.
+    #[serde(default)]
+    pub optional: bool,
 }
 
 /// A service.

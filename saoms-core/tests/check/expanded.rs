@@ -62,7 +62,7 @@ fn all_that_is_resolved_is_written_out() {
     expect![[r#"
         <composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:s="urn:saoms:1" name="fleet" targetNamespace="urn:t">
           <component name="hall.Robot_" s:path="hall/Robot">
-            <implementation.java class="example.Robot001"/>
+            <implementation.rust class="example.Robot001"/>
             <property name="ID">A &lt; &quot;B&quot;</property>
             <property name="charger">
               <x xmlns="">3</x>
@@ -83,15 +83,15 @@ fn all_that_is_resolved_is_written_out() {
             <property name="loss">accept</property>
           </component>
           <component name="hall.Robot">
-            <implementation.java class="example.Gps"/>
+            <implementation.rust class="example.Gps"/>
           </component>
           <component name="C">
-            <implementation.java class="example.Conductor"/>
+            <implementation.rust class="example.Conductor"/>
             <reference name="wheels" target="T/left hall.Robot_/move T/right"/>
             <reference name="gps" target="hall.Robot/position"/>
           </component>
           <component name="T">
-            <implementation.java class="example.Twins"/>
+            <implementation.rust class="example.Twins"/>
           </component>
         </composite>
     "#]].assert_eq(&settled(&[&fleet, &hall]));
@@ -107,6 +107,24 @@ fn references_without_a_target_make_it_one_of_sca_1_0() {
     .replace("http://docs.oasis-open.org/ns/opencsa/sca/200912", "http://www.osoa.org/xmlns/sca/1.0");
     let fleet = part("outer", "", r#"<include name="t:fleet"/>"#);
     assert!(settled(&[&fleet, &text]).contains("xmlns=\"http://www.osoa.org/xmlns/sca/1.0\""));
+}
+
+/// Nobody is told again what somebody gave a reason for; what is told of others is.
+#[test]
+fn lowered_warnings_stay_lowered() {
+    let clock = |name: &str, more: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.java class=\"example.Clock\"/><property name=\"ID\">{name}</property><property name=\"period\">1</property>{more}</component>"
+        )
+    };
+    let late = |said: &str| format!("<property name=\"deadline\">2</property>{said}");
+    let severity = |code: &str| format!("<s:severity code=\"{code}\" level=\"allow\" reason=\"known\"/>");
+    let fleet = |inside: String| settled(&[&part("fleet", "xmlns:s=\"urn:saoms:1\"", &inside)]);
+    let said = severity("S4007");
+    assert!(fleet(clock("A", &late(&said))).contains(&said));
+    assert!(!fleet(clock("A", &late(&said)) + &clock("B", &late(""))).contains("severity"));
+    let wiring = severity("S4010");
+    assert!(fleet(clock("A", "") + &wiring).contains(&wiring), "it is for another check");
 }
 
 /// What a composite lowers stays lowered, or its expansion would not run.

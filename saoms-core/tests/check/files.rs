@@ -102,6 +102,7 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
     let (_, found) = checked(&inside, &files, 50);
     expect![[r#"
         3:30-38 error S0001: there is no such file
+          help: it is looked for as `sped.txt`
           help: there is `speed.txt`
         4:30-35 error S0002: a directory, where a file is expected
         5:31-37 error S0007: the byte 0xE9 here is no UTF-8
@@ -115,6 +116,42 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
           help: the limit is set with `--max-size`
     "#]]
     .assert_eq(&found);
+}
+
+/// SCA takes a URI (ASM50045).
+#[test]
+fn files_are_named_by_uris() {
+    let one = |file: &str| {
+        let files: [(&str, &[u8]); 3] = [("my speed.txt", b"1.5"), ("50%20.txt", b"2.0"), ("50 .txt", b"0")];
+        let (assembly, found) =
+            checked(&robot(&format!("<property name=\"speed\" file=\"{file}\"/>")), &files, MAX_SIZE);
+        assembly.map_or(found, |assembly| format!("{:?}", value(&assembly, "speed")))
+    };
+    assert_eq!(one("my%20speed.txt"), "Text(\"1.5\")");
+    assert_eq!(one("my speed.txt"), "Text(\"1.5\")");
+    assert_eq!(one("50%20.txt"), "Text(\"2.0\")", "a file of that very name");
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a b"), "0.5").unwrap();
+    let path = folder.path().display();
+    for scheme in ["file://", "file://localhost", "FILE:"] {
+        assert_eq!(one(&format!("{scheme}{path}/a%20b")), "Text(\"0.5\")");
+    }
+    let wrong = ["http://x/y.txt", "file://other/y.txt", "file:///nowhere/y%41", "no/%zz.txt", "%ff"];
+    expect![[r#"
+        3:30-44 error S0003: `http://x/y.txt` is not read: values come from files on this machine
+          help: keep the file beside the composite, and name it by its path from there
+        3:30-48 error S0003: `file://other/y.txt` is a file of another machine
+          help: keep the file beside the composite, and name it by its path from there
+        3:30-50 error S0001: there is no such file
+          help: it is looked for as `/nowhere/yA`
+          help: there is no directory `/nowhere` either
+        3:30-40 error S0001: there is no such file
+          help: it is looked for as `no/%zz.txt`
+          help: there is no directory `no` either
+        3:30-33 error S0001: there is no such file
+          help: it is looked for as `%ff`
+    "#]]
+    .assert_eq(&wrong.map(one).concat());
 }
 
 #[test]

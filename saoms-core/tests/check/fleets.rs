@@ -306,6 +306,7 @@ fn tables_say_what_differs() {
     let (_, missing) = checked(inside, &[("robot.csv", b"")], 1_000_000);
     expect![[r#"
         2:91-101 error S0001: there is no such file
+          help: it is looked for as `robots.csv`
           help: there is `robot.csv`
     "#]]
     .assert_eq(&missing);

@@ -35,13 +35,13 @@ fn sources_lead_to_composite_properties() {
           2:17-22 the first
           help: give each its own name
         11:41-47 error S2023: there is no part `plaice`; the parts are `place`
-        12:39-47 error S2023: `place[1]` is no element name, and others are not understood
+        12:39-47 error S2023: `place[x]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         13:33-37 error S2024: the composite has no property `sped`
           fix: replace `sped` with `speed` [13:33-37 "speed"]
         14:32-37 error S2023: `speed` names no property of the composite
           help: write `$name`, or `$name/part` for a part of a complex property
           fix: insert `$` [14:32-37 "$speed"]
-        15:39-40 error S2023: the property has a simple value: there are no parts in it
+        15:38-40 error S2023: the property has a simple value: there are no parts in it
         16:33-35 error S2023: `/x` names no property of the composite
           help: write `$name`, or `$name/part` for a part of a complex property
         19:33-41 error S3006: the property `period` has no value: its source has none
@@ -59,13 +59,101 @@ fn sources_lead_to_composite_properties() {
             r#"<property name="speed" source="$speed"/>
 <property name="number" source="$where/place/x"/>
 <property name="charger" source="$where/plaice"/>
-<property name="awake" source="$where/place[1]"/>
+<property name="awake" source="$where/place[x]"/>
 <property name="stops" source="$sped"/>
 <property name="delay" source="speed"/>
 <property name="grace" source="$speed/x"/>
 <property name="colour" source="/x"/>"#
         )
     )));
+}
+
+/// What users need of XPath, and what is said of the rest.
+#[test]
+fn sources_are_paths() {
+    let bays = r#"<bays xmlns="urn:x" unit="m"><bay id="a"><x>3</x><y>4</y></bay><bay id="b/c"><x>5</x></bay><bay> 7 <x> 8 </x></bay></bays>"#;
+    let value = |source: &str, name: &str| {
+        let own = robot(&format!("<property name=\"{name}\" source=\"{source}\"/>"));
+        let many = "<property name=\"many\" many=\"true\"><value>1</value><value>2</value></property>";
+        let text =
+            format!("<property name=\"b\">{bays}</property>{many}<property name=\"s\">1</property>{own}");
+        let found = outcome(&[&fleet(&text)], &[]);
+        match found.lines().find(|line| line.contains(" error ")) {
+            Some(error) => error.split(" error ").nth(1).unwrap().to_owned(),
+            None => {
+                let found = found.split(&format!("{name}=")).nth(1).unwrap_or("nothing").to_owned();
+                found.split([')', '\n']).next().unwrap().to_owned()
+            }
+        }
+    };
+    let mut all = String::new();
+    for source in [
+        "$b/bays/bay[1]/x",
+        "$b/bay[1]/x",
+        "$b/p:bay[ 2 ]/p:x",
+        "$b/child::bay[last()]/x/text()",
+        "$b/bay[@id='b/c']/*",
+        "$b/*[1]/*[2]",
+        "$b/bay[3]/text()",
+        "$b/*[local-name()='bay'][2]/x",
+        "$many[2]",
+        "$many[last()]",
+        "$b/bay[2]/y",
+        "$b/bay[4]",
+        "$b/bay[0]/x",
+        "$b/bay/x",
+        "$b/bay[@id='c']/x",
+        "$b/bay[@name='c']/x",
+        "$b/bay/@di",
+        "$b/bay[2]/@id/x",
+        "$b/bay[1]/text()",
+        "$b/bay[x=3]/x",
+        "$b//x",
+        "$b/bay/../x",
+        "$b/bay[1]x",
+        "$many[3]",
+        "$many[a]",
+        "$many/x",
+        "$s/x",
+        "$b/",
+        "$b[99999999999999999999999]",
+    ] {
+        all += &format!("{source}: {}\n", value(source, "number"));
+    }
+    expect![[r#"
+        $b/bays/bay[1]/x: Text("3"
+        $b/bay[1]/x: Text("3"
+        $b/p:bay[ 2 ]/p:x: Text("5"
+        $b/child::bay[last()]/x/text(): Text("8"
+        $b/bay[@id='b/c']/*: Text("5"
+        $b/*[1]/*[2]: S3007: the property `number` has elements inside: expected a whole number from 1 to 99
+        $b/bay[3]/text(): Text("7"
+        $b/*[local-name()='bay'][2]/x: Text("5"
+        $many[2]: Text("2"
+        $many[last()]: Text("2"
+        $b/bay[2]/y: S2023: there is no part `y`; the parts are `x`
+        $b/bay[4]: S2023: there are 3 parts `bay`, from `[1]` on
+        $b/bay[0]/x: S2023: there are 3 parts `bay`, from `[1]` on
+        $b/bay/x: S3011: the property `number` takes one value, and here are 3
+        $b/bay[@id='c']/x: S2023: no part here has `c` as its `id`: its values are `a` and `b/c`
+        $b/bay[@name='c']/x: S2023: no part here has `c` as its `name`: none has it
+        $b/bay/@di: S2023: there is no attribute `di`; the attributes are `id`
+        $b/bay[2]/@id/x: S2023: an attribute has no parts
+        $b/bay[1]/text(): S2023: there is no text here
+        $b/bay[x=3]/x: S2023: `bay[x=3]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b//x: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b/bay/../x: S2023: `..` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b/bay[1]x: S2023: `bay[1]x` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $many[3]: S2023: the property has 2 values
+        $many[a]: S2023: `[a]` is not understood: behind the name stands `[2]` or `/`
+        $many/x: S2023: the property has a simple value: there are no parts in it
+        $s/x: S2023: the property has a simple value: there are no parts in it
+        $b/: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b[99999999999999999999999]: S2023: the property has one value
+    "#]].assert_eq(&all);
+    assert!(value("$b/bay[1]/@id", "colour").starts_with("S3009: property `colour`: `a` is not allowed"));
+    assert!(value("$b/bays/@unit", "colour").starts_with("S3009: property `colour`: `m` is not allowed"));
+    assert!(value("$b/@unit", "colour").starts_with("S3009: property `colour`: `m` is not allowed"));
 }
 
 #[test]

@@ -144,6 +144,55 @@ fn reasons_are_in_the_output_for_machines() {
 }
 
 #[test]
+fn options_have_reasons_too() {
+    let allowed = of(&clocks("", ""), &["S4001=allow: one clock, two = faces"]);
+    assert_eq!(allowed.told, "");
+    assert_eq!(allowed.json["diagnostics"][0]["set"]["reason"], "one clock, two = faces");
+    let suppression = &allowed.sarif["runs"][0]["results"][0]["suppressions"][0];
+    assert_eq!(
+        (&suppression["kind"], &suppression["justification"]),
+        (&Value::from("external"), &Value::from("one clock, two = faces"))
+    );
+    expect![[r#"
+        3:85-86 note S4001: components `A` and `B` share the ID `C`
+          2:85-86 the first
+          --severity:1:1-6 set to `note`: two faces
+          help: messages and reports name tasks by their ID
+    "#]]
+    .assert_eq(&of(&clocks("", ""), &["S4001=note:two faces"]).told);
+}
+
+#[test]
+fn an_option_that_a_composite_overrules_says_so() {
+    let error = clocks("", &severity("S4001", "error"));
+    expect![[r#"
+        3:85-86 error S4001: components `A` and `B` share the ID `C`
+          2:85-86 the first
+          4:23-28 set to `error`: because
+          help: messages and reports name tasks by their ID
+        --severity:1:1-6 warning S2049: S4001 is not set to `allow`: a composite sets it to `error`, and counts first
+          4:23-28 set here
+          help: change it there, or leave the option out
+    "#]]
+    .assert_eq(&of(&error, &["S4001=allow"]).told);
+    assert!(!of(&error, &["S4001=error"]).told.contains("S2049"));
+    assert_eq!(of(&clocks("", ""), &["S4010=error", "S2026=allow"]).told.matches("S2049").count(), 0);
+}
+
+/// What is found in the second of two components is about the first as well.
+#[test]
+fn either_of_two_components_can_say_it() {
+    let first = clocks("", "").replacen("</component>", &(severity("S4001", "allow") + "</component>"), 1);
+    assert_eq!(of(&first, &[]).told, "");
+    let both = clocks(&severity("S4001", "note"), "").replacen(
+        "</component>",
+        &(severity("S4001", "allow") + "</component>"),
+        1,
+    );
+    assert!(of(&both, &[]).told.contains("note S4001"), "its own place counts first");
+}
+
+#[test]
 fn errors_that_make_a_fleet_impossible_stay() {
     let found = of(
         &format!(
@@ -195,11 +244,11 @@ fn what_is_wrong_with_severities_is_found() {
           help: write `<saoms:severity .../>`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
           fix: replace `severity` with `saoms:severity` [4:118-126 "saoms:severity"]
         --severity:1:1-6 error S2048: `S4001` sets no severity
-          help: write `--severity CODE=LEVEL`, with `allow`, `note`, `warning` or `error`
+          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
         --severity:1:1-7 error S2048: `S4001=` sets no severity
-          help: write `--severity CODE=LEVEL`, with `allow`, `note`, `warning` or `error`
+          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
         --severity:1:7-13 error S2048: there is no severity `errror`
-          help: write `--severity CODE=LEVEL`, with `allow`, `note`, `warning` or `error`
+          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
           fix: replace it with `error` [--severity:1:7-13 "error"]
         --severity:1:1-7 error S2048: there is no code `S40001`
           fix: replace `S40001` with `S0001` [--severity:1:1-7 "S0001"]

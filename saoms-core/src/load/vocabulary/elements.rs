@@ -262,7 +262,7 @@ pub static COMPONENT_PROPERTY: Kind = Kind {
         known(
             "source",
             Holds::Source,
-            "The property of the composite that the value comes from: `$name`, or `$name/part`.",
+            "The property of the composite that the value comes from: `$name`, or a part of a complex one: `$name/part`, `$name/part[2]/@attribute`.",
         ),
         known("file", Holds::File, "The file whose text is the value, beside this one."),
         old("mustSupply", Holds::Boolean, "Of a composite's properties; not looked at here."),
