@@ -70,6 +70,17 @@ fn a_made_composite_runs() {
     assert!(made.status.success(), "{}", text(&made));
     let run = saoms(folder.path(), &["run", "my-hall.composite", "--virtual"]);
     assert!(run.status.success() && text(&run).contains("deposited luggage 1 at (3,10)"), "{}", text(&run));
+    // The line for CI of docs/severities.md.
+    let check = ["check", "--wiring", "--severity", "S4010=error", "my-hall.composite"];
+    let checked = saoms(folder.path(), &check);
+    assert!(checked.status.success(), "{}", text(&checked));
+    // Who gives a topic another name means a reader.
+    let path = folder.path().join("my-hall.composite");
+    let composite = fs::read_to_string(&path).unwrap();
+    let renamed = "<property name=\"topicRename\">COLLISIONTOPIC,crashes</property></component>";
+    fs::write(&path, composite.replace("</component>", renamed)).unwrap();
+    let checked = text(&saoms(folder.path(), &check));
+    assert!(checked.contains("topic `crashes`, which nobody reads"), "{checked}");
 }
 
 #[test]
