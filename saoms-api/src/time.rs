@@ -2,6 +2,8 @@ use std::fmt;
 use std::ops::{Add, Sub};
 use std::time::Duration;
 
+use crate::declaration::trim;
+
 /// A point in the time of a run: nanoseconds since the run started.
 ///
 /// In real time it follows the machine's monotonic clock, in virtual time it jumps from one due execution to the next.
@@ -73,7 +75,7 @@ impl fmt::Display for Time {
 pub fn parse_duration(text: &str) -> Result<Duration, String> {
     const EXPECTED: &str =
         "a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h";
-    let text = text.trim();
+    let text = trim(text);
     match read_duration(text) {
         Ok(duration) => Ok(duration),
         Err(WrongDuration::Negative) => Err(format!("`{text}` is negative: expected {EXPECTED}")),

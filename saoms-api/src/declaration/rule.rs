@@ -143,7 +143,7 @@ impl<'a> Rule<'a> {
     }
 
     fn text(&self, text: &str) -> Result<(), String> {
-        let trimmed = text.trim();
+        let trimmed = trim(text);
         if trimmed.is_empty() && (self.non_empty || self.kind != PropertyKind::String) {
             return Err(format!("the value is empty: expected {}", Expected(self)));
         }
@@ -155,7 +155,7 @@ impl<'a> Rule<'a> {
     }
 
     fn number(&self, text: &str) -> Result<Scalar, String> {
-        if text.trim().is_empty() {
+        if trim(text).is_empty() {
             return Err(format!("the value is empty: expected {}", Expected(self)));
         }
         let Some(value) = parse_scalar(self.kind, text) else {
@@ -180,7 +180,7 @@ impl<'a> Rule<'a> {
 
 /// Reads a value of a scalar type. `None` when the text is no such value; [`Rule::check`] says why.
 pub fn parse_scalar(kind: PropertyKind, text: &str) -> Option<Scalar> {
-    let trimmed = text.trim();
+    let trimmed = trim(text);
     match kind {
         PropertyKind::Boolean => match trimmed {
             "true" | "1" => Some(Scalar::Boolean(true)),
@@ -196,6 +196,15 @@ pub fn parse_scalar(kind: PropertyKind, text: &str) -> Option<Scalar> {
         PropertyKind::Duration => parse_duration(trimmed).ok().map(Scalar::Duration),
         PropertyKind::Enumeration => Some(Scalar::Text(trimmed.to_owned())),
         PropertyKind::Complex => None,
+    }
+}
+
+/// A text without the blanks around it, of which most have none: a look at both ends is enough then.
+pub(crate) fn trim(text: &str) -> &str {
+    match text.as_bytes() {
+        [first, .., last] if first.is_ascii_graphic() && last.is_ascii_graphic() => text,
+        [only] if only.is_ascii_graphic() => text,
+        _ => text.trim(),
     }
 }
 

@@ -1,5 +1,5 @@
 use super::PropertyField;
-use crate::declaration::{PropertyKind, Rule, parse_scalar};
+use crate::declaration::{PropertyKind, Rule, parse_scalar, trim};
 use crate::{Failure, Finding, Place, Properties, PropertyValue};
 
 /// Reads one property from the values of a composite.
@@ -87,7 +87,7 @@ pub fn complex<P: Properties>(value: &PropertyValue) -> Result<P, String> {
 pub fn chosen(value: &PropertyValue, allowed: &[&str]) -> Result<usize, String> {
     let rule = Rule { allowed, ..Rule::of(PropertyKind::Enumeration) };
     let PropertyValue::Text(text) = value else { return Err(format!("expected {}", rule.expected())) };
-    let found = text.trim();
+    let found = trim(text);
     let place = allowed.iter().position(|allowed| *allowed == found);
     place.ok_or_else(|| rule.check(text).err().unwrap_or_else(|| format!("expected {}", rule.expected())))
 }

@@ -98,12 +98,13 @@ fn topics<'a>(
     let checked = super::properties(fleet, &classes, &mut parameters, report);
     loops::resolve(fleet, &mut classes, &checked, registry, &mut parameters, report);
     let mut all: HashMap<_, Vec<TopicUse>> = HashMap::new();
+    let mut before = task::Before::default();
     for (member, checked) in fleet.members.iter().zip(&checked).filter(|(member, _)| !member.is_absent) {
         let (Kind::Class(index), Some(checked)) = (member.kind, checked) else { continue };
         let class = &classes[index];
         let is_periodic = class.class.declaration().is_periodic();
         let renames = match is_periodic {
-            true => task::check(member.component, class, checked, report).renames,
+            true => task::check(member.component, (index, class), checked, &mut before, report).renames,
             false => Vec::new(),
         };
         let origin = member.component.origin;

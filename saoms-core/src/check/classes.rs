@@ -10,6 +10,7 @@ use super::report::{Report, escaped, list, replacing};
 use super::slots::Slots;
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
+use crate::hash::Map;
 use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
     Class, InterfaceDeclaration, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration,
@@ -106,7 +107,7 @@ pub(super) fn resolve<'r>(
     report: &mut Report<'_>,
 ) -> Vec<ClassIndex<'r>> {
     let mut classes = Vec::new();
-    let mut known: HashMap<&str, usize> = HashMap::new();
+    let mut known: Map<&str, usize> = Map::default();
     // What is near an unknown name, which a whole fleet may have.
     let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
     for place in 0..fleet.members.len() {

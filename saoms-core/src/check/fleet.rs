@@ -6,6 +6,7 @@ use std::rc::Rc;
 use super::classes::ClassIndex;
 use super::instance::Instance;
 use super::names::Names;
+use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Reference, Service, Wire};
 use crate::source::{FileId, Location};
 use crate::xml::ElementId;
@@ -20,11 +21,11 @@ pub(super) struct Fleet<'a> {
     pub(super) scopes: Vec<Scope>,
     pub(super) units: Vec<Unit<'a>>,
     pub(super) members: Vec<Member<'a>>,
-    pub(super) by_name: HashMap<(usize, &'a str), usize>,
+    pub(super) by_name: Map<(usize, &'a str), usize>,
     /// The replicas of each replicated component of a scope, by its name with `*` for each expression.
     pub(super) groups: BTreeMap<(usize, String), Vec<usize>>,
     /// Components that a condition keeps away, where no other has their name: with the condition.
-    pub(super) absent: HashMap<(usize, &'a str), Location>,
+    pub(super) absent: Map<(usize, &'a str), Location>,
     /// Wires that a condition keeps away, by the unit that they are in.
     pub(super) absent_wires: HashSet<(usize, FileId, ElementId)>,
     /// The includes and wires with conditions, and whether any of them is there.
@@ -148,7 +149,7 @@ impl<'a> Unit<'a> {
 impl<'a> Fleet<'a> {
     /// The component of this name in a scope.
     pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
-        let by_name: &HashMap<(usize, &str), usize> = &self.by_name;
+        let by_name: &Map<(usize, &str), usize> = &self.by_name;
         by_name.get(&(scope, name)).copied()
     }
 

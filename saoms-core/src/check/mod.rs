@@ -281,6 +281,7 @@ fn components<'f, 'a>(
     let mut halves = Vec::new();
     let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
+    let mut before = task::Before::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, ((member, checked), loops)) in fleet.members.iter().zip(checked).zip(loops).enumerate() {
         report.about(member);
@@ -291,7 +292,8 @@ fn components<'f, 'a>(
         let class = &classes[index];
         unique.add(member, class, &checked, report);
         let is_periodic = class.class.declaration().is_periodic();
-        let task = is_periodic.then(|| task::check(member.component, class, &checked, report));
+        let task =
+            is_periodic.then(|| task::check(member.component, (index, class), &checked, &mut before, report));
         topics.add(member, index, class, task.as_ref(), report);
         let renamed = task.as_ref().map(|task| {
             task.renames.iter().map(|(_, new)| new.clone()).zip(task.renamed_at.iter().copied()).collect()

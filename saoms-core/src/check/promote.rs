@@ -9,6 +9,7 @@ use super::offer::Side;
 use super::report::{Report, list};
 use super::target::{Uri, spread};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::hash::Map;
 use crate::model::{Multiplicity, Part, Reference};
 use crate::source::{Location, Text};
 
@@ -21,7 +22,7 @@ pub(super) struct Promoted<'f> {
     /// By composites that run by themselves, with the targets that these give them: nothing else around them can.
     pub(super) outermost: HashMap<Place<'f>, Vec<&'f Text>>,
     /// By composites that implement components: to these references of theirs.
-    pub(super) to: HashMap<Place<'f>, Vec<Place<'f>>>,
+    pub(super) to: Map<Place<'f>, Vec<Place<'f>>>,
 }
 
 /// Checks that what composites promote exists, and that their services and references have names of their own.

@@ -81,6 +81,12 @@ impl Checked {
         self.given.iter().find(|given| given.slot == slot)
     }
 
+    /// What is given for properties of tasks, with their places.
+    pub(super) fn of_task(&self, slots: &Slots<'_>) -> impl Iterator<Item = (usize, &PropertyValue)> {
+        let given = self.given.iter().filter(|given| slots.all[given.slot].task.is_some());
+        given.map(|given| (given.slot, &given.value))
+    }
+
     /// Where the class's own properties are given.
     pub(super) fn places<'r>(&self, slots: &Slots<'r>) -> Vec<Written<'r>> {
         let places = self.given.iter().filter_map(|given| {

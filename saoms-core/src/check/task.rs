@@ -22,13 +22,60 @@ pub(super) struct Task {
     pub(super) renamed_at: Vec<Location>,
 }
 
+/// The properties of which nothing is to be said that goes beyond their own values.
+const ALONE: &[&str] =
+    &["ID", "period", "delay", "runOnStartup", "mayInterruptIfRunning", "overrun", "queue", "loss"];
+
+/// The newest task of properties that stand alone: that of the next component mostly differs in its ID, and nothing else.
+#[derive(Default)]
+pub(super) struct Before(Option<(usize, Vec<(usize, PropertyValue)>, TaskSettings)>);
+
+impl Before {
+    /// The settings of the task before with the ID of this component, where all else is the same.
+    fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: &Checked) -> Option<TaskSettings> {
+        let (_, values, settings) = self.0.as_ref().filter(|(of, ..)| *of == index)?;
+        let mut id = None;
+        let mut values = values.iter();
+        for (place, value) in checked.of_task(&class.slots) {
+            if class.slots.all[place].is_task_id() {
+                id = Some(value);
+            } else if !values.next().is_some_and(|(known, same)| *known == place && same == value) {
+                return None;
+            }
+        }
+        match (id, values.next()) {
+            (Some(PropertyValue::Text(id)), None) => {
+                Some(TaskSettings { id: id.clone(), ..settings.clone() })
+            }
+            _ => None,
+        }
+    }
+
+    fn keep(&mut self, index: usize, class: &ClassIndex<'_>, checked: &Checked, settings: &TaskSettings) {
+        let name = |place: usize| class.slots.all[place].task.map_or("", |task| &task.name);
+        let values = || checked.of_task(&class.slots);
+        if !values().all(|(place, _)| ALONE.contains(&name(place))) {
+            return;
+        }
+        let others = values().filter(|(place, _)| !class.slots.all[*place].is_task_id());
+        let others = others.map(|(place, value)| (place, value.clone())).collect();
+        self.0 = Some((index, others, TaskSettings { id: String::new(), ..settings.clone() }));
+    }
+}
+
 /// What the task properties of a component of a periodic class come to. Faults are reported.
 pub(super) fn check(
     component: &Component,
-    class: &ClassIndex<'_>,
+    (index, class): (usize, &ClassIndex<'_>),
     checked: &Checked,
+    before: &mut Before,
     report: &mut Report<'_>,
 ) -> Task {
+    if checked.is_sound
+        && let Some(settings) = before.with_id(index, class, checked)
+    {
+        return Task { settings: Some(settings), renames: Vec::new(), renamed_at: Vec::new() };
+    }
     let text = |name: &str| {
         checked.get(&class.slots, name).and_then(|given| given.text()).filter(|text| !text.trim().is_empty())
     };
@@ -41,6 +88,9 @@ pub(super) fn check(
     };
     use_jms(component, class, checked, report);
     let settings = checked.is_sound.then(|| settings(component, class, checked, &renames, report)).flatten();
+    if let Some(settings) = &settings {
+        before.keep(index, class, checked, settings);
+    }
     Task { settings, renames, renamed_at }
 }
 

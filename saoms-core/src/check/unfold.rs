@@ -12,6 +12,7 @@ use super::presence::Presence;
 use super::replicas::{MOST_REPLICAS, Plan};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Include, Link, Missing, Naming};
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
@@ -33,9 +34,9 @@ pub(super) fn unfold<'a>(
         scopes: vec![Scope { members: Vec::with_capacity(count), ..Scope::default() }],
         units: Vec::with_capacity(asked_for.len()),
         members: Vec::with_capacity(count),
-        by_name: HashMap::with_capacity(count),
+        by_name: Map::with_capacity_and_hasher(count, Default::default()),
         groups: BTreeMap::new(),
-        absent: HashMap::new(),
+        absent: Map::default(),
         absent_wires: HashSet::new(),
         conditional: HashMap::new(),
         names: Vec::new(),

@@ -225,7 +225,7 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
         let message = format!("the file is {what}, and no {}", expected.kind);
         return Err(whole(&codes::FILE_BINARY, message, expected.help.to_owned()));
     }
-    if let Some(at) = bytes.iter().position(|&byte| byte == 0) {
+    if let Some(at) = memchr::memchr(0, &bytes) {
         let message = format!("the file is binary: byte {at} is zero");
         return Err(whole(&codes::FILE_BINARY, message, expected.help.to_owned()));
     }

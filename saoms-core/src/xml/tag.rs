@@ -153,7 +153,7 @@ fn value_end(input: Input<'_>, start: u32, name_end: u32, quote_at: u32, quote: 
     let mut at = quote_at + 1;
     loop {
         let rest = &bytes[at as usize..];
-        let Some(length) = rest.iter().position(|&byte| byte == quote || byte == b'<' || byte == b'&') else {
+        let Some(length) = memchr::memchr3(quote, b'<', b'&', rest) else {
             let message = format!("the value of {} is never closed", quoted(input.slice(start, name_end)));
             return Err(input.ended(&codes::XML_UNCLOSED, quote_at, quote_at + 1, message));
         };

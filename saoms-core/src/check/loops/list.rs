@@ -94,6 +94,17 @@ pub(super) fn plan<'a>(
     (loops, is_sound)
 }
 
+/// The value that says which loops of its class a component has.
+pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked) -> Option<&'c str> {
+    let declaration = class.class.declaration();
+    let property = declaration.loops.property.as_ref()?;
+    let given = checked.get(&class.slots, property).map(|given| &given.value);
+    match given.or_else(|| class.slots.preset(property)) {
+        Some(PropertyValue::Text(text)) => Some(text.trim()),
+        _ => declaration.property(property)?.default.as_deref(),
+    }
+}
+
 /// The loops that a component has unless the composite says otherwise.
 fn by_default<'a>(
     member: &Member<'a>,
@@ -102,17 +113,9 @@ fn by_default<'a>(
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {
-    let declaration = class.class.declaration();
-    let value = declaration.loops.property.as_ref().and_then(|property| {
-        let given = checked.get(&class.slots, property).map(|given| &given.value);
-        match given.or_else(|| class.slots.preset(property)) {
-            Some(PropertyValue::Text(text)) => Some(text.trim()),
-            _ => declaration.property(property)?.default.as_deref(),
-        }
-    });
     let mut is_sound = true;
     let mut loops = Vec::new();
-    for name in declaration.loops.of(value) {
+    for name in class.class.declaration().loops.of(choice(class, checked)) {
         match registry.get_loop(name) {
             Some(class) => {
                 let name = class.declaration().short_name();

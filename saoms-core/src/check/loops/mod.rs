@@ -7,6 +7,8 @@ mod team;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use smol_str::SmolStr;
+
 use super::classes::ClassIndex;
 use super::findings::Subject;
 use super::fleet::{Fleet, Kind, Member};
@@ -17,6 +19,7 @@ use super::slots::Slots;
 use super::values::Values;
 use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::hash::Map;
 use crate::model::Loop;
 use crate::registry::{LoopClass, Registry};
 
@@ -55,9 +58,6 @@ struct Planned<'a> {
     element: Option<&'a Loop>,
 }
 
-/// A place among the classes, and the loops as they are where the composite says nothing about them.
-type Known = (usize, Option<Arc<[LoopSpec]>>);
-
 /// Finds the loops of all components; `None` where something about them is wrong. The class of a component with loops becomes one that uses
 /// the topics and references of these as well.
 pub(super) fn resolve<'a>(
@@ -69,8 +69,10 @@ pub(super) fn resolve<'a>(
     report: &mut Report<'_>,
 ) -> Vec<Option<Resolved<'a>>> {
     let mut values = Values::default();
-    // The class of each place together with these loops, and these as they are where the composite says nothing about them.
-    let mut known: HashMap<(usize, Vec<&str>), Known> = HashMap::new();
+    // The class of each place together with these loops.
+    let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
+    // The same with the loops that components of a class have by this choice where the composite says nothing about them.
+    let mut usual: Map<(usize, Option<SmolStr>), (usize, Arc<[LoopSpec]>)> = Map::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, checked) in checked.iter().enumerate() {
         let member = &fleet.members[place];
@@ -81,30 +83,37 @@ pub(super) fn resolve<'a>(
             continue;
         };
         let class = &classes[index];
+        // A component that says nothing about its loops has them as those have that were there before it.
+        let plain = member
+            .component
+            .loops
+            .is_empty()
+            .then(|| (index, list::choice(class, checked).map(SmolStr::new)));
+        if let Some((with, specs)) = plain.as_ref().and_then(|plain| usual.get(plain)) {
+            let specs = Arc::clone(specs);
+            fleet.members[place].kind = Kind::Class(*with);
+            all.push(Some(Resolved { specs, changed: Vec::new() }));
+            continue;
+        }
         let (loops, is_planned) = list::plan(member, class, checked, registry, report);
         let is_team = is_planned && team::check(member, class, &loops, report);
         let used: Vec<&Arc<LoopClass>> = loops.iter().filter_map(|one| one.class).collect();
-        let mut usual = None;
+        let mut with = index;
         if !used.is_empty() {
             let key = (index, used.iter().map(|one| one.name()).collect());
-            let (with, specs) = known.entry(key).or_insert_with(|| {
+            with = *known.entry(key).or_insert_with(|| {
                 let with = classes[index].with(used.iter().map(|one| one.declaration()));
                 classes.push(with);
-                (classes.len() - 1, None)
+                classes.len() - 1
             });
-            fleet.members[place].kind = Kind::Class(*with);
-            usual = Some(specs).filter(|_| loops.iter().all(|one| one.element.is_none()));
-        }
-        if let Some(Some(specs)) = &usual {
-            let resolved = Resolved { specs: Arc::clone(specs), changed: Vec::new() };
-            all.push((is_team && used.len() == loops.len()).then_some(resolved));
-            continue;
+            fleet.members[place].kind = Kind::Class(with);
         }
         let resolved = resolved(&loops, &fleet.members[place], parameters, &mut values, report);
-        if let (Some(usual), Some(resolved)) = (usual, &resolved) {
-            *usual = Some(Arc::clone(&resolved.specs));
+        let resolved = resolved.filter(|_| is_team);
+        if let (Some(plain), Some(resolved)) = (plain, &resolved) {
+            usual.insert(plain, (with, Arc::clone(&resolved.specs)));
         }
-        all.push(resolved.filter(|_| is_team));
+        all.push(resolved);
     }
     report.about_all();
     all
