@@ -9,6 +9,7 @@ use super::read::STANDARD_INPUT;
 use super::shelf::Shelf;
 use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
+use crate::hash::Map;
 use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
 
@@ -150,26 +151,32 @@ struct Described {
     is_needed: bool,
 }
 
-/// The implementations of a composite that files beside them may describe; all of one class together.
+/// The implementations of a composite that files beside them may describe; all that are written alike together.
 fn described(composite: &Composite) -> Vec<Described> {
     let mut all: Vec<Described> = Vec::new();
-    let mut places: HashMap<&str, usize> = HashMap::new();
+    let mut places: Map<&str, Option<usize>> = Map::default();
     for component in &composite.components {
         let Some(implementation) = &component.implementation else { continue };
-        let class = component.class().map(|class| class.as_str());
-        if let Some(place) = class.and_then(|class| places.get(class)) {
-            all[*place].origins.push(implementation.origin);
-            continue;
+        let tag = implementation.origin.element(&composite.document).start_tag_span();
+        let written = &composite.document.text()[tag.start as usize..tag.end as usize];
+        match places.get(written) {
+            Some(Some(place)) => {
+                let one: &mut Described = &mut all[*place];
+                one.origins.push(implementation.origin);
+                continue;
+            }
+            Some(None) => continue,
+            None => {}
         }
         let paths = component_type::paths(component, composite);
+        places.insert(written, (!paths.is_empty()).then_some(all.len()));
         if paths.is_empty() {
             continue;
         }
         // A bundle of OSGi says nothing about services by itself. Its description is called as its file is, which only `bundle` tells.
         let is_needed = matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi")
             && implementation.origin.element(&composite.document).attribute("bundle").is_some();
-        places.extend(class.map(|class| (class, all.len())));
-        let package = class.and_then(|class| Some(class.rsplit_once('.')?.0.to_owned()));
+        let package = component.class().and_then(|class| Some(class.rsplit_once('.')?.0.to_owned()));
         all.push(Described { origins: vec![implementation.origin], paths, package, is_needed });
     }
     all

@@ -335,7 +335,12 @@ impl<'a> Attribute<'a> {
 
     /// The value and where it is, white space at its ends left out.
     pub fn trimmed(self) -> Text {
-        self.located(value::trim(self.raw_value()))
+        let whole = self.raw_value();
+        // Most values are names: one look at their bytes tells that they mean themselves.
+        if whole.bytes().all(|byte| byte > b' ' && byte != b'&') {
+            return Located::new(whole.into(), self.raw.value.in_file(self.document.file));
+        }
+        self.located(value::trim(whole))
     }
 
     /// The words of a value that is a list, each with its own place.
