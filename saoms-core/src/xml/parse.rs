@@ -1,4 +1,4 @@
-//! The parser: quick-xml's events, what it does not check, and the tree.
+//! The parser and its tree. Tags and text are read here, once, with all that has to be checked of them; quick-xml finds what else there is.
 
 use std::sync::Arc;
 
@@ -93,35 +93,39 @@ impl<'a> Parser<'a> {
         let text = self.input.text;
         let base = if text.starts_with('\u{feff}') { 3 } else { 0 };
         self.start = base;
-        let rest = &text[base as usize..];
-        if rest.starts_with('\u{feff}') {
+        if text[base as usize..].starts_with('\u{feff}') {
             // quick-xml would take it for the mark that is already gone.
             return Err(self.outside(base, base + 3));
         }
-        let mut reader = Reader::from_str(rest);
-        let config = reader.config_mut();
-        config.check_end_names = false;
-        config.allow_unmatched_ends = true;
         loop {
-            let event = reader.read_event();
-            let (start, end) = (self.start, base + reader.buffer_position() as u32);
-            match event {
-                Ok(Event::Start(_) | Event::Empty(_)) => self.start_tag(start)?,
-                Ok(Event::End(_)) => self.end_tag(start, end)?,
-                Ok(Event::Text(_)) => self.text(start, end)?,
-                Ok(Event::CData(_)) => self.cdata(start, end)?,
-                Ok(Event::GeneralRef(_)) => self.reference(start)?,
-                Ok(Event::Comment(_)) => prolog::comment(self.input, start, end)?,
-                Ok(Event::PI(_) | Event::Decl(_)) => prolog::instruction(self.input, start, end, base)?,
-                Ok(Event::DocType(_)) => return Err(prolog::doctype(self.input, start, start + 9).into()),
-                Ok(Event::Eof) => return self.finish(),
-                Err(_) => return Err(self.broken(start)),
-            }
-            self.start = end;
+            let start = self.start;
+            self.start = match text.as_bytes()[start as usize..] {
+                [] => return self.finish(),
+                [b'<', b'/', ..] => self.end_tag(start)?,
+                [b'<', b'!' | b'?', ..] => self.other_markup(start, base)?,
+                [b'<', ..] => self.start_tag(start)?,
+                [b'&', ..] => self.reference(start)?,
+                [..] => self.text(start)?,
+            };
         }
     }
 
-    fn start_tag(&mut self, start: u32) -> Checked<()> {
+    /// What is neither a tag nor text: comments, instructions, CDATA. quick-xml finds where they end.
+    fn other_markup(&mut self, start: u32, base: u32) -> Checked<u32> {
+        let mut reader = Reader::from_str(&self.input.text[start as usize..]);
+        let event = reader.read_event();
+        let end = start + reader.buffer_position() as u32;
+        match event {
+            Ok(Event::CData(_)) => self.cdata(start, end)?,
+            Ok(Event::Comment(_)) => prolog::comment(self.input, start, end)?,
+            Ok(Event::PI(_) | Event::Decl(_)) => prolog::instruction(self.input, start, end, base)?,
+            Ok(Event::DocType(_)) => return Err(prolog::doctype(self.input, start, start + 9).into()),
+            _ => return Err(prolog::broken(self.input, start)),
+        }
+        Ok(end)
+    }
+
+    fn start_tag(&mut self, start: u32) -> Checked<u32> {
         let first = self.attributes.len();
         let result = self.start_element(start, first);
         if result.is_err() {
@@ -130,7 +134,8 @@ impl<'a> Parser<'a> {
         result
     }
 
-    fn start_element(&mut self, start: u32, first: usize) -> Checked<()> {
+    /// Gives where it ends.
+    fn start_element(&mut self, start: u32, first: usize) -> Checked<u32> {
         let tag = tag::start_tag(self.input, start, &mut self.attributes)?;
         let name = Span::new(start + 1, start + 1 + tag.name_len);
         if self.open.is_empty() && !self.nodes.is_empty() {
@@ -176,7 +181,7 @@ impl<'a> Parser<'a> {
         } else {
             self.open.push(Open { node: id, last_child: NONE, outside });
         }
-        Ok(())
+        Ok(tag.end)
     }
 
     /// Takes the declarations among the attributes from `first` on.
@@ -230,8 +235,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn end_tag(&mut self, start: u32, end: u32) -> Checked<()> {
-        let name = tag::end_tag(self.input, start)?;
+    fn end_tag(&mut self, start: u32) -> Checked<u32> {
+        let (name, end) = tag::end_tag(self.input, start)?;
         let found = self.input.slice(name.start, name.end);
         let Some(open) = self.open.last() else {
             let message = format!("{} closes nothing: no element is open", quoted(&format!("</{found}>")));
@@ -246,7 +251,7 @@ impl<'a> Parser<'a> {
         node.is_closed = true;
         self.namespaces.leave(open.outside);
         self.open.pop();
-        Ok(())
+        Ok(end)
     }
 
     fn mismatch(&self, found: &str, start: u32, end: u32) -> Fault {
@@ -273,10 +278,12 @@ impl<'a> Parser<'a> {
         one.suggest(description, Span::new(start, end).in_file(file), close).into()
     }
 
-    fn text(&mut self, start: u32, end: u32) -> Checked<()> {
+    fn text(&mut self, start: u32) -> Checked<u32> {
+        let rest = &self.input.bytes()[start as usize..];
+        let end = start + memchr::memchr2(b'<', b'&', rest).unwrap_or(rest.len()) as u32;
         let text = self.input.slice(start, end);
         if is_blank(text.as_bytes()) {
-            return Ok(());
+            return Ok(end);
         }
         let Some(open) = self.open.last() else {
             let blank = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n');
@@ -298,7 +305,7 @@ impl<'a> Parser<'a> {
                 .suggest("replace it with `]]&gt;`", place, "]]&gt;")
                 .into());
         }
-        Ok(())
+        Ok(end)
     }
 
     fn cdata(&mut self, start: u32, end: u32) -> Checked<()> {
@@ -311,27 +318,13 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn reference(&mut self, start: u32) -> Checked<()> {
+    fn reference(&mut self, start: u32) -> Checked<u32> {
         let end = reference::check(self.input, start)?;
         let Some(open) = self.open.last() else {
             return Err(self.outside(start, end));
         };
         self.nodes[open.node as usize].has_text = true;
-        Ok(())
-    }
-
-    /// The fault in what quick-xml could not read.
-    fn broken(&mut self, start: u32) -> Fault {
-        let rest = &self.input.text[start as usize..];
-        let result = match rest.as_bytes() {
-            [b'<', b'!' | b'?', ..] => Err(prolog::broken(self.input, start)),
-            [b'<', b'/', ..] => tag::end_tag(self.input, start).map(drop),
-            [b'<', ..] => self.start_tag(start),
-            _ => reference::check(self.input, start).map(drop),
-        };
-        let message = "this is not well-formed XML";
-        let end = start + rest.chars().next().map_or(0, char::len_utf8) as u32;
-        result.err().unwrap_or_else(|| self.input.fault(&codes::XML_SYNTAX, start, end, message).into())
+        Ok(end)
     }
 
     fn outside(&self, start: u32, end: u32) -> Fault {

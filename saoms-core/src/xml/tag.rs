@@ -79,8 +79,8 @@ pub(super) fn start_tag(
     Ok(tag)
 }
 
-/// Reads the end tag whose `<` is at `start`; gives its name.
-pub(super) fn end_tag(input: Input<'_>, start: u32) -> Checked<Span> {
+/// Reads the end tag whose `<` is at `start`; gives its name, and where it ends.
+pub(super) fn end_tag(input: Input<'_>, start: u32) -> Checked<(Span, u32)> {
     let bytes = input.bytes();
     let name_start = start + 2;
     let name_end = name_start + name_length(&bytes[name_start as usize..]) as u32;
@@ -90,7 +90,7 @@ pub(super) fn end_tag(input: Input<'_>, start: u32) -> Checked<Span> {
             let message = "an end tag is `</`, the name of the element, and `>`";
             Err(input.fault(&codes::XML_NAME, start, name_start, message).into())
         }
-        Some(b'>') => Ok(Span::new(name_start, name_end)),
+        Some(b'>') => Ok((Span::new(name_start, name_end), close + 1)),
         None => Err(input.ended(&codes::XML_UNCLOSED, start, name_end, "this end tag is never closed")),
         Some(_) => {
             let message = format!("{} is misplaced in an end tag", found(input, close));
