@@ -155,7 +155,9 @@ impl Writer {
         match value {
             // White space at the ends of a text inside an element does not count, and an empty one is none.
             PropertyValue::Text(text) if text.is_empty() => {
-                self.empty("property", &[("name", name), ("value", "")]);
+                self.open("property", &[("name", name)]);
+                self.empty("value", &[]);
+                self.close("property");
             }
             PropertyValue::Text(text) => self.with_text("property", &[("name", name)], text),
             PropertyValue::Many(values) => {

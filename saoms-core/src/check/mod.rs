@@ -217,6 +217,8 @@ struct Resolved<'r> {
     task: Option<TaskSettings>,
     /// Where its topics got other names.
     renamed: Vec<(String, Location)>,
+    /// Where its `queue` is written.
+    queue: Option<Location>,
     loops: loops::Resolved<'r>,
 }
 
@@ -305,9 +307,10 @@ fn components<'f, 'a>(
         let absent =
             class.class.presets().iter().filter(|(name, _)| checked.get(&class.slots, name).is_none());
         values.extend(absent.cloned());
+        let queue = checked.get(&class.slots, "queue").map(|given| given.place);
         let written = checked.places(&class.slots);
         let resolved = match loops.filter(|_| sound) {
-            Some(loops) => Some(Box::new(Resolved { values, written, task, renamed, loops })),
+            Some(loops) => Some(Box::new(Resolved { values, written, task, renamed, queue, loops })),
             None if member.has_open_values() => None,
             None => {
                 halves.push(Half { member: place, values, written, unsure: checked.unsure });
@@ -339,8 +342,9 @@ impl Sound<'_, '_> {
     fn places(&self) -> Vec<traffic::Place> {
         let runs = self.fleet.members.iter().zip(&self.resolved).filter(|(member, _)| member.runs());
         let places = runs.filter_map(|(member, resolved)| {
-            let renamed = resolved.as_ref()?.renamed.clone();
-            Some(traffic::Place { name: member.component.name.location, renamed })
+            let resolved = resolved.as_ref()?;
+            let (renamed, queue) = (resolved.renamed.clone(), resolved.queue);
+            Some(traffic::Place { name: member.component.name.location, renamed, queue })
         });
         places.collect()
     }

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
 use super::options::Options;
-use super::report::list;
-use crate::diagnostic::{nearest, quoted};
+use super::report::{Report, list};
+use super::value_type;
+use crate::diagnostic::{codes, nearest, quoted};
 use crate::expression::{Problem, Value};
 use crate::model::{Component, Composite, Contribution, Link, Property};
 use crate::source::{Location, Text};
@@ -18,6 +19,8 @@ pub(super) struct Names {
 }
 
 struct Name {
+    /// The property, where its value is not of its type.
+    mistyped: Option<Property>,
     /// The text of the value and where it stands.
     text: Option<Text>,
     value: Result<Value, Problem>,
@@ -43,7 +46,9 @@ impl Names {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {
                     let text = given(property, outside, options).or_else(|| property.simple_value().cloned());
-                    Name { value: value(property, text.as_ref()), text }
+                    let value = value(property, text.as_ref());
+                    let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
+                    Name { mistyped, text, value }
                 });
             }
         }
@@ -55,6 +60,14 @@ impl Names {
         let Some(found) = self.all.get(name) else { return Err(self.unknown(name)) };
         self.used.borrow_mut().insert(name.to_owned());
         found.value.clone()
+    }
+
+    /// Whether an expression has no value because that of a name is not of its type: that is told of the value, and once.
+    pub(super) fn tell_mistyped(&self, name: &str, report: &mut Report<'_>) -> bool {
+        let Some(Name { mistyped: Some(property), text: Some(text), .. }) = self.all.get(name) else {
+            return false;
+        };
+        report.of_all(|report| !value_type::holds(property, text, &codes::COMPOSITE_VALUE_TYPE, report))
     }
 
     /// Where the value of a name is written.

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::fleet::Unit;
 use super::instance::{Instance, all_complex_texts};
 use super::names::{Names, Outside};
-use super::replicas::{condition, wrong};
+use super::replicas::{condition, tell};
 use super::report::Report;
 use super::unfold::{MOST_MEMBERS, Unfolding};
 use crate::diagnostic::{Diagnostic, codes};
@@ -112,7 +112,7 @@ impl<'a> Unfolding<'a> {
         for faults in faults.chunk_by(|(one, _), (other, _)| one.location == other.location) {
             let parts = report.parts(&faults[0].0);
             for (text, fault) in faults {
-                report.push(wrong(text, &parts, fault, names));
+                tell(text, &parts, fault, names, report);
             }
         }
     }
@@ -134,7 +134,7 @@ impl<'a> Unfolding<'a> {
             has_faults = true;
             let parts = report.parts(&text);
             for fault in &faults {
-                report.push(wrong(&text, &parts, fault, &instance.names));
+                tell(&text, &parts, fault, &instance.names, report);
             }
         }
         has_faults

@@ -268,7 +268,7 @@ fn value<'a>(
     values: &mut Values<'a>,
     report: &mut Report<'_>,
 ) -> Result<Option<Given>, ()> {
-    if let Some(text) = property.only_text().filter(|_| slot.1.takes_text()) {
+    if let Some(text) = property.only_text().filter(|_| slot.1.takes_text() && !member.is_partial) {
         let used = Use { property: property.tag(), source: None };
         let path = Path { outer: None, name: &property.name };
         let value = values.text(text, path, slot.1.declarations(), used, report).ok_or(())?;

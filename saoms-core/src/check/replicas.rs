@@ -83,8 +83,9 @@ impl<'a> Plan<'a> {
         }
         let names = Rc::clone(names);
         let mut plan = Self { component, names, next: from, count, left: count, rows: HashMap::new() };
-        let is_sound = is_readable && replicas.table.as_ref().is_none_or(|table| plan.rows(table, report));
-        (is_sound && is_named).then_some(plan)
+        // With faults in its lines all others count.
+        replicas.table.iter().for_each(|table| plan.rows(table, report));
+        (is_readable && is_named).then_some(plan)
     }
 
     /// The next replica: its index.
@@ -116,11 +117,10 @@ impl<'a> Plan<'a> {
     }
 
     /// Finds the line of each replica. What is wrong with the lines is reported.
-    fn rows(&mut self, table: &Table, report: &mut Report<'_>) -> bool {
+    fn rows(&mut self, table: &Table, report: &mut Report<'_>) {
         let last = self.next.saturating_add(self.count as i64 - 1);
         let by_name = (table.key == *"name").then(|| self.by_name());
         let mut seen: HashMap<i64, &Text> = HashMap::new();
-        let mut is_sound = true;
         for (place, row) in table.rows.iter().enumerate() {
             let found = match &by_name {
                 Some(by_name) => by_name.get(row.key.as_str()).copied(),
@@ -131,7 +131,6 @@ impl<'a> Plan<'a> {
                     Some(_) => self.is_possible(&row.key),
                     None => row.key.parse::<i64>().is_ok(),
                 };
-                is_sound &= is_possible;
                 let message = format!("there is no replica {}", quoted(&row.key));
                 let one = match &by_name {
                     Some(_) if is_possible => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
@@ -157,15 +156,15 @@ impl<'a> Plan<'a> {
                 report.push(one.severity(severity));
                 continue;
             };
-            if let Some(first) = seen.insert(index, &row.key) {
-                is_sound = false;
+            if let Some(first) = seen.get(&index) {
                 let message = format!("there are two lines about the replica {}", quoted(&row.key));
                 let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
                 report.push(one.label(first.location, "the first").help("make one of them"));
+                continue;
             }
+            seen.insert(index, &row.key);
             self.rows.insert(index, place);
         }
-        is_sound
     }
 
     /// Whether there can be a replica of this name, were there more of them.
@@ -228,7 +227,7 @@ fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) 
 /// The number that an attribute comes to. Faults are reported.
 fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Option<i64> {
     let value = parse(text).and_then(|one| integer(&one, &mut |name| names.value(name)));
-    value.map_err(|fault| report.push(wrong(text, &report.parts(text), &fault, names))).ok()
+    value.map_err(|fault| tell(text, &report.parts(text), &fault, names, report)).ok()
 }
 
 /// Whether a condition is true. Faults are reported.
@@ -239,11 +238,19 @@ pub(super) fn condition(
     report: &mut Report<'_>,
 ) -> Option<bool> {
     let holds = parse(text).and_then(|one| boolean(&one, value));
-    holds.map_err(|fault| report.push(wrong(text, &report.parts(text), &fault, names))).ok()
+    holds.map_err(|fault| tell(text, &report.parts(text), &fault, names, report)).ok()
+}
+
+/// Reports what is wrong with an expression in a text.
+pub(super) fn tell(text: &Text, parts: &Parts, fault: &Fault, names: &Names, report: &mut Report<'_>) {
+    let written = text.get(fault.at.clone()).unwrap_or_default();
+    if !names.tell_mistyped(written.trim(), report) {
+        report.push(wrong(text, parts, fault, names));
+    }
 }
 
 /// What is wrong with an expression in a text.
-pub(super) fn wrong(text: &Text, parts: &Parts, fault: &Fault, names: &Names) -> Diagnostic {
+fn wrong(text: &Text, parts: &Parts, fault: &Fault, names: &Names) -> Diagnostic {
     let code: &'static Code = &codes::EXPRESSION;
     let at = parts.part(fault.at.clone());
     let Problem { message, help, instead, .. } = &fault.problem;

@@ -77,6 +77,14 @@ impl<'a> Report<'a> {
         self.copy = None;
     }
 
+    /// Lets what is said inside be about the fleet, and not about the replica at hand.
+    pub(super) fn of_all<T>(&mut self, say: impl FnOnce(&mut Self) -> T) -> T {
+        let copy = self.copy.take();
+        let said = say(self);
+        self.copy = copy;
+        said
+    }
+
     /// Tells what was said of replicas.
     pub(super) fn finish(&mut self) {
         for (mut one, Copied { path, index }, more) in std::mem::take(&mut self.copies) {

@@ -143,7 +143,9 @@ pub(super) fn target(
         return Target::Open;
     }
     let Some(uri) = Uri::of(text, 3, report) else { return Target::Wrong };
-    if scope == 0 && report.assumes && fleet.find(scope, uri.component).is_none() {
+    let is_elsewhere =
+        || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
+    if scope == 0 && report.assumes && is_elsewhere() {
         elsewhere(text, uri.component, fleet, report);
         return Target::Open;
     }

@@ -14,6 +14,8 @@ use crate::source::Location;
 pub(super) struct Place {
     pub(super) name: Location,
     pub(super) renamed: Vec<(String, Location)>,
+    /// Where its `queue` is written.
+    pub(super) queue: Option<Location>,
 }
 
 /// Looks at all topics of a fleet; `places` are those of its components.
@@ -225,7 +227,8 @@ impl All<'_> {
                     false => format!(", {parts} components and loops in all"),
                 };
                 let writers = self.who_does(&topic.writers, "publishes");
-                let one = Diagnostic::new(&codes::QUEUE, self.at(reader, topic), message);
+                let at = self.places[reader.component].queue.unwrap_or(self.at(reader, topic));
+                let one = Diagnostic::new(&codes::QUEUE, at, message);
                 report.push(
                     one.help(format!(
                         "{writers} it{in_all}: so many come where each sends one in each execution, and fewer as a rule"

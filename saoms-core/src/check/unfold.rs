@@ -226,7 +226,10 @@ impl<'a> Unfolding<'a> {
         let Some(naming) = Naming::of_include(include) else { return };
         let Some(open) = self.open.last() else { return };
         let (unit, around) = (open.unit, open.composite);
-        let Some((place, composite)) = self.find(naming, report) else { return };
+        let Some((place, composite)) = self.find(naming, report) else {
+            // Names that lead nowhere may be those of its components.
+            return self.miss(unit, "*".to_owned());
+        };
         if self.is_circle(place, naming, report) {
             return;
         }

@@ -92,7 +92,7 @@ pub(super) fn holds(property: &Property, value: &Text, code: &'static Code, repo
     let Some((_, expected, is_one)) = simple_type(of) else { return true };
     // Many values may be written as a list, as in files of SCA 1.0.
     let is_list = property.many().is_some_and(|many| many.value);
-    if value.is_empty() || is_one(value) || is_list && value.split_whitespace().all(|one| is_one(one)) {
+    if value.is_empty() || is_one(value) || is_list && value.split_whitespace().all(is_one) {
         return true;
     }
     let message = format!(

@@ -109,22 +109,25 @@ impl<'f, 'a> Wires<'f, 'a> {
     ) -> Vec<End> {
         let place = (member, declared.name.as_str());
         let Ends { mut all, is_unknown } = self.ends(place, &declared.interface, report);
-        if all.len() > 1 {
-            let mut seen: HashSet<Provider> = HashSet::new();
-            all.retain(|end| seen.insert(end.provider));
-        }
         if is_unknown {
             return Vec::new();
         }
+        let multiplicity = self.multiplicity(place, declared);
         match all[..] {
             [] => self.unwired(place, declared, report),
-            [first, second, ..] if !self.multiplicity(place, declared).is_many() => {
-                let multiplicity = self.multiplicity(place, declared);
+            [first, second, ..] if !multiplicity.is_many() && is_several(&all) => {
+                let is_again = all.iter().all(|end| end.provider == first.provider);
+                // In SCA 1.0 a warning: it leads to one service all the same.
+                let is_1_1 = self.fleet.members[member].composite.version.is_1_1();
+                let severity = if is_again && !is_1_1 { Severity::Warning } else { Severity::Error };
                 let places = (first.place, second.place);
-                self.too_many(place, multiplicity, places, all.len(), Severity::Error, report);
-                return Vec::new();
+                self.too_many(place, multiplicity, places, all.len(), severity, report);
             }
             _ => {}
+        }
+        if all.len() > 1 {
+            let mut seen: HashSet<Provider> = HashSet::new();
+            all.retain(|end| seen.insert(end.provider));
         }
         all
     }
@@ -411,6 +414,11 @@ impl<'f, 'a> Wires<'f, 'a> {
         };
         report.push(if is_1_1 { one } else { one.help("calls through it fail") });
     }
+}
+
+/// Whether ends are of several services, or of one that is written several times.
+fn is_several(ends: &[End]) -> bool {
+    ends.iter().any(|end| (end.provider, end.place) != (ends[0].provider, ends[0].place))
 }
 
 /// What one component gives its reference.

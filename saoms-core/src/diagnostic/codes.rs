@@ -65,6 +65,7 @@ codes! {
     ATTRIBUTE_VALUE = "S1011" Error "attribute-value" ("ASM13001"): "The value of an attribute is of the wrong form.";
     MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001"): "There is text where none belongs.";
     NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and what is in it is passed over.";
+    NEWER_ATTRIBUTE = "S1014" Warning "newer-attribute": "A file of SCA 1.0 has an attribute of SCA 1.1.";
     // S20: names, composite properties, services, references and wires.
     COMPOSITE_REPEATED = "S2001" Error "composite-repeated" ("ASM60001"): "Two composites of one namespace have one name.";
     COMPONENT_REPEATED = "S2002" Error "component-repeated" ("ASM50001"): "Two components have one name.";

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::Loader;
-use super::vocabulary::{self, Kind};
+use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, Policy, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Text};
@@ -24,8 +24,15 @@ impl Loader<'_> {
     pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
         let mut free: Option<Vec<&'static str>> = None;
         for attribute in element.attributes() {
+            if attribute.namespace().is_empty()
+                && let Some(known) = kind.find(attribute.name(), self.version)
+            {
+                if known.only_1_1 && !self.version.is_1_1() {
+                    self.newer(element, attribute, known);
+                }
+                continue;
+            }
             let is_own = match attribute.namespace() {
-                "" if kind.has(attribute.name(), self.version) => continue,
                 SAOMS_NAMESPACE if vocabulary::is_own(kind, attribute.local_name()) => continue,
                 "" | SAOMS_NAMESPACE => true,
                 namespace if namespace == self.namespace || Version::from_namespace(namespace).is_some() => {
@@ -44,6 +51,23 @@ impl Loader<'_> {
                 self.prefixed(element, attribute, free);
             }
         }
+    }
+
+    /// Tells of an attribute of SCA 1.1 in a file of 1.0, once for all of its name.
+    fn newer(&mut self, element: Element<'_>, attribute: Attribute<'_>, known: &'static Known) {
+        if self.newer.contains(&known.name) {
+            return;
+        }
+        self.newer.push(known.name);
+        let location = attribute.name_span().in_file(element.document().file());
+        let message =
+            format!("{} is an attribute of SCA 1.1, and this file is of SCA 1.0", quoted(known.name));
+        let one = Diagnostic::new(&codes::NEWER_ATTRIBUTE, location, message)
+            .help("it counts here, and other programs do not know it: let the file be one of SCA 1.1");
+        self.report(match known.name {
+            "value" => one.help("or write the value as text inside"),
+            _ => one,
+        });
     }
 
     fn unknown(
@@ -77,6 +101,8 @@ impl Loader<'_> {
             None if vocabulary::own_names(kind).any(|known| known == name) => one.help(format!(
                 "it is an attribute of SAOMS: write `saoms:{name}`, and `xmlns:saoms=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
             )),
+            None if kind.has(name, Version::Osoa10) => one.help("it is one of SCA 1.0 alone: remove it"),
+            None if kind.names(self.version).next().is_none() => one.help("it has no attributes"),
             None => {
                 let names: Vec<String> = kind.names(self.version).map(quoted).collect();
                 one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", ")))

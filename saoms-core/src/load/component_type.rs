@@ -43,6 +43,7 @@ pub fn load_component_type(
         gathered: Gathered::default(),
         is_replicated: false,
         severities: Vec::new(),
+        newer: Vec::new(),
     };
     let mut made = ComponentType {
         origin: Origin::of(root),

@@ -94,6 +94,7 @@ impl Description {
             gathered: Gathered::default(),
             is_replicated: false,
             severities: Vec::new(),
+            newer: Vec::new(),
         };
         loader.check_attributes(root, &CONTRIBUTION);
         loader.no_text(root);

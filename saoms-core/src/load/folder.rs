@@ -137,7 +137,10 @@ impl Files {
             let meant = format!("{}{meant}", prefix.unwrap_or_default());
             one.suggest(format!("replace {name} with {}", quoted(&meant)), at, meant)
         } else if let Some(other) = all.iter().find(|one| one.name == *local) {
-            one.help(format!("it has {} in the namespace {}", quoted(local), quoted(other.namespace())))
+            one.help(match other.namespace() {
+                "" => format!("it has {} in no namespace", quoted(local)),
+                namespace => format!("it has {} in the namespace {}", quoted(local), quoted(namespace)),
+            })
         } else if names.clone().next().is_none() {
             one.help("it has none of this namespace")
         } else {

@@ -86,6 +86,7 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
             gathered: Gathered::default(),
             is_replicated: false,
             severities: Vec::new(),
+            newer: Vec::new(),
         };
         if loader.root(document.root()) {
             loader.near_namespaces(&document);
@@ -127,6 +128,8 @@ struct Loader<'d> {
     gathered: Gathered,
     /// Whether the component at hand is replicated, so that its texts can hold expressions.
     is_replicated: bool,
+    /// The attributes of SCA 1.1 in a file of 1.0 that were told.
+    newer: Vec<&'static str>,
     /// What is said about severities.
     severities: Vec<SeverityRule>,
 }

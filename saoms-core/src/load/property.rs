@@ -10,7 +10,10 @@ use crate::xml::{Element, ElementId};
 
 impl Loader<'_> {
     pub(super) fn property(&mut self, element: Element<'_>, kind: &'static Kind) -> Property {
-        let is_plain = self.is_plain(element, kind, &["name", "value"]);
+        // In SCA 1.0 the first `value` is told.
+        let knows_value = self.version.is_1_1() || self.newer.contains(&"value");
+        let usual: &[&str] = if knows_value { &["name", "value"] } else { &["name"] };
+        let is_plain = self.is_plain(element, kind, usual);
         let name = self.name(element);
         let mut values = Vec::new();
         let mut content = Vec::new();

@@ -9,9 +9,9 @@ use crate::source::{FileId, Location, Sources, Span, Text};
 /// The columns that can say which replica a line is about.
 const KEYS: [&str; 2] = ["index", "name"];
 
-/// Reads a table. `None` with a fault, which is reported at its line and column; all of them are.
+/// Reads a table. What is wrong with it is reported at its line and column. `None` where it has no columns; otherwise all that can be understood,
+/// so that what is wrong with names and values is found together with a line that is too long.
 pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
-    let before = diagnostics.errors();
     let lines = lines(file, sources.get(file).text(), diagnostics);
     let mut lines = lines.into_iter();
     let Some(mut head) = lines.next().map(Vec::into_iter) else {
@@ -19,7 +19,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         diagnostics.push(one.help("its first line names the columns: `index` or `name`, and properties"));
         return None;
     };
-    let key = head.next()?;
+    let mut key = head.next()?;
     let report = |at: Location, message: String| Diagnostic::new(&codes::OVERRIDES, at, message);
     if !KEYS.contains(&key.as_str()) {
         let one = report(
@@ -30,14 +30,21 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
             Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), key.location, meant),
             None => one.help("it says which replica a line is about, the other columns are properties"),
         });
+        // As the lines look.
+        let has_number =
+            lines.as_slice().first().and_then(|line| line.first()?.parse::<i64>().ok()).is_some();
+        key.value = nearest(&key, KEYS).unwrap_or(KEYS[usize::from(!has_number)]).into();
     }
     let properties: Vec<Text> = head.collect();
     let mut first: HashMap<&str, Location> = HashMap::new();
-    for name in &properties {
+    let mut is_usable = vec![true; properties.len()];
+    for (name, is_usable) in properties.iter().zip(&mut is_usable) {
         if name.is_empty() {
+            *is_usable = false;
             let one = report(name.location, "a column without a name".to_owned());
             diagnostics.push(one.help("the first line names the property of each column"));
         } else if let Some(first) = first.insert(name, name.location) {
+            *is_usable = false;
             let one = report(name.location, format!("there are two columns {}", quoted(name)));
             diagnostics.push(one.label(first, "the first").help("make one of them"));
         }
@@ -64,10 +71,16 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
                 "a column that says nothing about a replica is an empty value: end the line with its comma",
             ));
         }
-        values.resize(properties.len(), None);
+        if count == properties.len() + 1 {
+            let unusable = values.iter_mut().zip(&is_usable).filter(|(_, is_usable)| !**is_usable);
+            unusable.for_each(|(value, _)| *value = None);
+        } else {
+            // Which of its values belongs to which column is not known.
+            values = vec![None; properties.len()];
+        }
         rows.push(Row { key: of, values });
     }
-    (diagnostics.errors() == before).then_some(Table { file, key, properties, rows })
+    Some(Table { file, key, properties, rows })
 }
 
 /// An empty value is none.

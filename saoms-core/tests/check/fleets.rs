@@ -9,7 +9,7 @@ use saoms_core::source::Sources;
 
 use crate::classes::registry;
 use crate::files::checked;
-use crate::support::{outcome, part, shown};
+use crate::support::{faults_of, outcome, part, shown};
 
 /// A composite with the prefix of SAOMS.
 fn fleet(inside: &str) -> String {
@@ -269,8 +269,18 @@ fn tables_say_what_differs() {
     "#]]
     .assert_eq(&found("robot,colour,colour,\n1,red,blue,x\n"));
     expect![[r#"
+        robots.csv:2:3-6 error S3009: property `colour`: `rde` is not allowed: expected `red` or `blue` (in `R01`, index 1)
+          help: the default is `blue`
+          fix: replace `rde` with `red` [robots.csv:2:3-6 "red"]
+        robots.csv:3:1-2 warning S2047: there is no replica `5`
+          help: the indices go from 1 to 4
+        robots.csv:4:1-2 error S2047: there are two lines about the replica `1`
+          robots.csv:2:1-2 the first
+          help: make one of them
         robots.csv:4:9-10 error S2047: a line with 4 values, and there are 3 columns
           help: a value that holds a comma stands between two `"`
+        robots.csv:5:1-2 error S2047: there is no replica `x`
+          help: the indices go from 1 to 4
         robots.csv:6:8-9 error S2047: `x` behind a closing `"`
           help: a `"` in a value between two of them is written twice
         robots.csv:6:10-11 error S2047: a `"` that is never closed
@@ -458,4 +468,19 @@ fn values_come_from_the_environment_unless_somebody_gives_one() {
           help: `speed`: How fast it drives; the default is `1.0`
     "#]]
     .assert_eq(&found(&[("SPEED", "9"), ("ROBOTS", "many")], &[]));
+}
+
+#[test]
+fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
+    let inside = r#"<property name="robots" type="xsd:int">2</property><property name="day" type="xsd:boolean">perhaps</property>
+<component xmlns:saoms="urn:saoms:1" name="R${index}" saoms:count="robots + 1" saoms:if="day and index > 0"><implementation.java class="example.Robot"/>
+<property name="ID">R${index}</property><property name="period">100</property><property name="number">${robots}</property></component>"#;
+    expect![[r#"
+        2:92-99 error S2042: the property `day` is of the type `xsd:boolean`: found `perhaps`, expected `true` or `false`
+          2:79-90 the type
+          help: change the value, or the type
+        --set:1:8-12 error S2042: the property `robots` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
+          2:31-38 the type
+          help: change the value, or the type
+    "#]].assert_eq(&faults_of(&[&crate::support::fleet(inside)], &["robots=many"]));
 }

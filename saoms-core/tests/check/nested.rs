@@ -410,3 +410,18 @@ fn what_a_composite_of_1_0_promotes_by_itself_is_a_warning() {
     let (_, diagnostics, _) = nested(&[&inner], &[], true);
     assert_eq!(diagnostics.iter().filter(|one| one.severity == Severity::Error).count(), 2);
 }
+
+#[test]
+fn what_a_missing_include_would_bring_is_not_told_again() {
+    let fleet = part(
+        "fleet",
+        "",
+        r#"<include name="t:hall"/><service name="s" promote="R/x"/><wire source="R/gps" target="S"/>
+<component name="N"><implementation.java class="example.Navigator"/><reference name="wheels" target="R/move"/></component>"#,
+    );
+    for assumes in [false, true] {
+        let (_, found, sources) = nested(&[&fleet], &[], assumes);
+        let found: Vec<String> = found.iter().map(|one| shown(one, &sources)).collect();
+        assert!(found.len() == 1 && found[0].contains("S2030"), "{found:?}");
+    }
+}

@@ -86,6 +86,9 @@ fn targets_lead_to_services() {
           3:34-35 the first
           help: keep one of them
         R R/move
+        3:36-42 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          3:34-35 the first
+          help: keep one of them
     "#]].assert_eq(&all);
 }
 
@@ -132,7 +135,6 @@ fn wires_of_composites() {
     let wire = |wires: &str| faults(&format!("{wires}\n{}", navigator("")));
     for wires in [
         r#"<wire source="N/wheels" target="R"/>"#,
-        r#"<wire source="N/wheels" target="R/move"/><wire source="N/wheels" target="R"/>"#,
         r#"<wire source="N/wheels" target="T/left"/><wire source="N/wheels" target="R/move" replace="true"/>"#,
         r#"<wire source="G" target="G2"/><wire source="N/wheels" target="T/right"/><component name="G2"><implementation.java class="example.Gps"/></component>"#,
     ] {
@@ -260,4 +262,54 @@ fn autowire_finds_the_only_fitting_service() {
           help: autowire finds no service with this interface
     "#]]
     .assert_eq(&faults_of(&[&text("true", "")], &[]));
+}
+
+#[test]
+fn one_service_is_a_target_once_where_one_is_taken() {
+    let wired = |of: &dyn Fn(&str) -> String, target: &str, wire: &str| {
+        let inside = format!(
+            r#"<component name="T"><implementation.java class="example.Robot"/><property name="ID">T</property><property name="period">1s</property><property name="number">1</property></component>
+<component name="N"><implementation.java class="example.Navigator"/><reference name="wheels" target="{target}"/></component>
+{wire}"#
+        );
+        faults_of(&[&of(&inside)], &[])
+    };
+    let again = r#"<wire source="N/wheels" target="T/move"/>"#;
+    expect![[r#"
+        3:109-115 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          3:102-108 the first
+          help: keep one of them
+    "#]]
+    .assert_eq(&wired(&fleet, "T/move T/move", ""));
+    expect![[r#"
+        4:33-39 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          3:102-108 the first
+          help: keep one of them
+    "#]]
+    .assert_eq(&wired(&fleet, "T/move", again));
+    expect![[r#"
+        4:33-39 warning S2017: reference `wheels` of component `N` takes one target, and here are 2
+          3:102-108 the first
+          help: keep one of them
+    "#]]
+    .assert_eq(&wired(&fleet_1_0, "T/move", again));
+    assert_eq!(wired(&fleet, "T/move", &again.replace("/>", " replace=\"true\"/>")), "");
+}
+
+#[test]
+fn both_ends_of_a_wire_can_be_wrong() {
+    expect![[r#"
+        3:15-16 error S2011: there is no component `H`
+          help: the components are `G`
+        3:30-31 error S2011: there is no component `I`
+          help: the components are `G`
+        3:57-65 error S2010: `G/other/` has the wrong form
+          help: write `component` or `component/name`
+        3:77-82 error S2012: component `G` has no service `posit`
+          help: its services are `position`
+    "#]]
+    .assert_eq(&faults(
+        r#"<component name="G"><implementation.java class="example.Gps"/></component>
+<wire source="H/gps" target="I/position"/><wire source="G/other/" target="G/posit"/>"#,
+    ));
 }

@@ -151,7 +151,7 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
     let both = |properties: &str| found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", properties)]));
     expect![""].assert_eq(&both(&slow("11")));
     expect![[r#"
-        3:18-19 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P`, and 10 find room
+        3:161-163 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P`, and 10 find room
           help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
           help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
     "#]].assert_eq(&both(&slow("10")));

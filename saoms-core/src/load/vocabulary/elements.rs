@@ -3,7 +3,7 @@
 use super::{Holds, Kind, Known};
 
 pub(super) const fn known(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { name, holds, doc, required: false, only_1_0: false }
+    Known { name, holds, doc, required: false, only_1_0: false, only_1_1: false }
 }
 
 pub(super) const fn required(name: &'static str, holds: Holds, doc: &'static str) -> Known {
@@ -12,6 +12,10 @@ pub(super) const fn required(name: &'static str, holds: Holds, doc: &'static str
 
 const fn old(name: &'static str, holds: Holds, doc: &'static str) -> Known {
     Known { only_1_0: true, ..known(name, holds, doc) }
+}
+
+const fn new(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+    Known { only_1_1: true, ..known(name, holds, doc) }
 }
 
 const REQUIRES: Known = known("requires", Holds::Names, "The intents of policies that apply.");
@@ -100,7 +104,7 @@ pub static WIRE: Kind = Kind {
     attributes: &[
         required("source", Holds::End, "The reference that calls: `Component/reference`."),
         required("target", Holds::End, "The service that is called: `Component`, or `Component/service`."),
-        known(
+        new(
             "replace",
             Holds::Boolean,
             "Whether this wire takes the place of the targets that the reference names itself.",
@@ -204,7 +208,7 @@ pub static COMPONENT_REFERENCE: Kind = Kind {
         MULTIPLICITY,
         AUTOWIRE,
         WIRED_BY_IMPL,
-        known(
+        new(
             "nonOverridable",
             Holds::Boolean,
             "Whether composites around this one must not give it other targets.",
@@ -247,7 +251,7 @@ const ELEMENT: Known = known(
     "The global element of a schema, instead of a type: the value is such an element, and components take what is inside.",
 );
 const MANY: Known = known("many", Holds::Boolean, "Whether it has any number of values, each in a `value`.");
-const VALUE: Known = known("value", Holds::Value, "The value, instead of the text inside.");
+const VALUE: Known = new("value", Holds::Value, "The value, instead of the text inside.");
 
 /// A property of a component, or of a loop.
 pub static COMPONENT_PROPERTY: Kind = Kind {
@@ -303,7 +307,7 @@ const POLICY_CHILDREN: &[&str] =
 const INTERFACE_ATTRIBUTES: &[Known] = &[
     required("interface", Holds::Interface, "The interface's name."),
     known("callbackInterface", Holds::Interface, "The interface by which the service calls back."),
-    known("remotable", Holds::Boolean, "Whether calls may come from other processes."),
+    new("remotable", Holds::Boolean, "Whether calls may come from other processes."),
     REQUIRES,
     POLICY_SETS,
 ];

@@ -44,8 +44,10 @@ pub struct Known {
     pub doc: &'static str,
     /// Whether the element has to have it.
     pub required: bool,
-    /// Whether it is of 1.0 alone: a mistake in 1.1. Those of 1.1 alone are understood in 1.0 as well.
+    /// Whether it is of 1.0 alone: a mistake in 1.1.
     pub only_1_0: bool,
+    /// Whether it is of 1.1 alone: understood in 1.0 as well, with a warning.
+    pub only_1_1: bool,
 }
 
 /// What the value of an attribute is.
@@ -114,7 +116,12 @@ pub enum Holds {
 impl Kind {
     /// Whether an element of this version has the attribute.
     pub fn has(&self, name: &str, version: Version) -> bool {
-        self.of(version).any(|known| known.name == name)
+        self.find(name, version).is_some()
+    }
+
+    /// What is known of an attribute of an element of this version.
+    pub(super) fn find(&self, name: &str, version: Version) -> Option<&'static Known> {
+        self.of(version).find(|known| known.name == name)
     }
 
     /// The attributes in this version.

@@ -3,7 +3,7 @@
 use super::{Holds, Kind, Known};
 
 const fn own(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { name, holds, doc, required: false, only_1_0: false }
+    Known { name, holds, doc, required: false, only_1_0: false, only_1_1: false }
 }
 
 const fn must(name: &'static str, holds: Holds, doc: &'static str) -> Known {
