@@ -24,7 +24,7 @@ impl Fleet {
     pub fn expect_expanded(&self, path: impl AsRef<Path>) {
         let path = path.as_ref();
         let text = self.expanded();
-        let text = match xml::parse(FileId(0), &text.as_str().into()).document {
+        let text = match xml::parse(FileId(0), &std::sync::Arc::new(text.clone())).document {
             Some(document) => format(&document, WIDTH),
             None => text,
         };

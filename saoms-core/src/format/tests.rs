@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use expect_test::{Expect, expect};
 
 use super::{WIDTH, format};
@@ -5,7 +7,7 @@ use crate::source::FileId;
 use crate::xml::parse;
 
 fn formatted(text: &str, width: usize) -> String {
-    let parsed = parse(FileId(0), &text.into());
+    let parsed = parse(FileId(0), &Arc::new(text.into()));
     assert!(parsed.fault.is_none(), "{text}: {:?}", parsed.fault);
     format(&parsed.document.unwrap(), width)
 }

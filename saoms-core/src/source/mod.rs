@@ -80,7 +80,8 @@ pub struct Location {
 #[derive(Debug)]
 pub struct SourceFile {
     path: Arc<str>,
-    text: Arc<str>,
+    // A text as it was read: it may be as large as the rest of the program, and is never copied.
+    text: Arc<String>,
     lines: OnceLock<LineIndex>,
 }
 
@@ -91,7 +92,7 @@ impl SourceFile {
     }
 
     /// The whole text, a byte order mark included.
-    pub fn text(&self) -> &Arc<str> {
+    pub fn text(&self) -> &Arc<String> {
         &self.text
     }
 
@@ -152,11 +153,11 @@ impl Sources {
     ///
     /// # Panics
     /// When `text` has 4 GiB or more (a span could not name its bytes), or after 2^32 files.
-    pub fn add(&mut self, path: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> FileId {
-        let text = text.into();
+    pub fn add(&mut self, path: impl Into<Arc<str>>, text: impl Into<String>) -> FileId {
+        let text: String = text.into();
         assert!(u32::try_from(text.len()).is_ok(), "a source text is below 4 GiB");
         let id = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
-        self.files.push(SourceFile { path: path.into(), text, lines: OnceLock::new() });
+        self.files.push(SourceFile { path: path.into(), text: Arc::new(text), lines: OnceLock::new() });
         id
     }
 

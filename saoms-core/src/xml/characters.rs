@@ -39,5 +39,8 @@ pub(super) fn forbidden(input: Input<'_>, at: u32) -> Diagnostic {
 
 /// Whether there is nothing but white space.
 pub(super) fn is_blank(bytes: &[u8]) -> bool {
-    bytes.iter().all(|byte| matches!(byte, b' ' | b'\t' | b'\r' | b'\n'))
+    // Mostly it is a line end and the blanks of an indentation.
+    let (chunks, rest) = bytes.as_chunks::<8>();
+    let is_space = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\r' | b'\n');
+    chunks.iter().all(|chunk| chunk == b"        " || chunk.iter().all(is_space)) && rest.iter().all(is_space)
 }

@@ -337,7 +337,7 @@ impl<'a> Attribute<'a> {
     pub fn trimmed(self) -> Text {
         let whole = self.raw_value();
         // Most values are names: one look at their bytes tells that they mean themselves.
-        if whole.bytes().all(|byte| byte > b' ' && byte != b'&') {
+        if value::is_plain(whole.as_bytes()) {
             return Located::new(whole.into(), self.raw.value.in_file(self.document.file));
         }
         self.located(value::trim(whole))

@@ -35,7 +35,7 @@ pub struct Parsed {
 /// assert_eq!(fleet.children().next().unwrap().name(), "robot");
 /// assert_eq!(fleet.text(), "idle");
 /// ```
-pub fn parse(file: FileId, text: &Arc<str>) -> Parsed {
+pub fn parse(file: FileId, text: &Arc<String>) -> Parsed {
     // A character that XML forbids ends the text for all that follows: faults before it come first.
     let bad = first_forbidden(text.as_bytes());
     let visible = &text[..bad.unwrap_or(text.len())];
@@ -369,7 +369,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn into_document(mut self, text: &Arc<str>) -> Option<Document> {
+    fn into_document(mut self, text: &Arc<String>) -> Option<Document> {
         // Behind a fault the open elements end where reading ended.
         for open in &self.open {
             self.nodes[open.node as usize].end = self.start;

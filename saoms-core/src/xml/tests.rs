@@ -1,10 +1,12 @@
 use std::sync::Arc;
 
+use proptest::prelude::*;
+
 use super::*;
 use crate::source::{FileId, Sources, Span};
 
 fn tree(text: &str) -> Document {
-    let parsed = parse(FileId(0), &Arc::from(text));
+    let parsed = parse(FileId(0), &Arc::new(text.into()));
     assert!(parsed.fault.is_none(), "{text}: {:?}", parsed.fault);
     parsed.document.unwrap()
 }
@@ -224,7 +226,7 @@ fn what_looks_odd_and_is_fine() {
 #[test]
 fn a_tree_ends_at_the_fault() {
     let text = "<a><b x='1'>t</b><c>u<d>&nope;</d></c></a>";
-    let parsed = parse(FileId(0), &Arc::from(text));
+    let parsed = parse(FileId(0), &Arc::new(text.into()));
     assert!(parsed.fault.is_some());
     let document = parsed.document.unwrap();
     let shown: Vec<_> = document
@@ -242,7 +244,7 @@ fn a_tree_ends_at_the_fault() {
         ]
     );
     assert_eq!(document.root().text_span(), None);
-    assert!(parse(FileId(0), &Arc::from("  x")).document.is_none());
+    assert!(parse(FileId(0), &Arc::new("  x".into())).document.is_none());
 }
 
 /// Depth, width and length cost time in proportion; a test that hangs or overflows the stack fails.
@@ -263,4 +265,18 @@ fn neither_depth_nor_width_matters() {
     let document = tree(&flat);
     assert_eq!(document.root().children().count(), 100_000);
     assert_eq!(document.root().text().len(), 200_000);
+}
+
+proptest! {
+    #[test]
+    fn a_value_is_plain_without_blanks_and_references(bytes in prop::collection::vec(prop_oneof![any::<u8>(), 0x1e..0x28_u8, Just(b'a')], 0..40)) {
+        let expected = bytes.iter().all(|byte| *byte > b' ' && *byte != b'&');
+        prop_assert_eq!(super::value::is_plain(&bytes), expected);
+    }
+
+    #[test]
+    fn a_text_is_blank_with_white_space_alone(bytes in prop::collection::vec(prop_oneof![9 => Just(b' '), 1 => Just(b'\n'), 1 => 8..34_u8], 0..40)) {
+        let expected = bytes.iter().all(|byte| b" \t\r\n".contains(byte));
+        prop_assert_eq!(super::characters::is_blank(&bytes), expected);
+    }
 }

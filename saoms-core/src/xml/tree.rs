@@ -60,7 +60,7 @@ pub(super) struct RawAttribute {
 #[derive(Debug)]
 pub struct Document {
     pub(super) file: FileId,
-    pub(super) text: Arc<str>,
+    pub(super) text: Arc<String>,
     pub(super) nodes: Vec<Node>,
     pub(super) attributes: Vec<RawAttribute>,
     pub(super) namespaces: Vec<Box<str>>,
@@ -82,7 +82,7 @@ impl Document {
     }
 
     /// The text it was read from.
-    pub fn text(&self) -> &Arc<str> {
+    pub fn text(&self) -> &Arc<String> {
         &self.text
     }
 

@@ -157,7 +157,7 @@ fn contribution() -> (Vec<Diagnostic>, Sources) {
 fn by_file_name(sources: &Sources) -> Sources {
     let mut renamed = Sources::new();
     for (_, file) in sources.iter() {
-        renamed.add(Path::new(file.path()).file_name().unwrap().to_string_lossy(), file.text().clone());
+        renamed.add(Path::new(file.path()).file_name().unwrap().to_string_lossy(), file.text().as_str());
     }
     renamed
 }
@@ -233,7 +233,7 @@ fn unreadable(id: &str) -> (Vec<Diagnostic>, Sources) {
     let shown = |text: &str| text.replace(&format!("{here}/"), "").replace(&here, "fleets");
     let mut renamed = Sources::new();
     for (_, file) in sources.iter() {
-        renamed.add(shown(file.path()), file.text().clone());
+        renamed.add(shown(file.path()), file.text().as_str());
     }
     let mut diagnostics = diagnostics.into_sorted();
     for one in &mut diagnostics {

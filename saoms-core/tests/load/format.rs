@@ -73,13 +73,13 @@ fn sections(text: &str) -> Vec<String> {
 }
 
 fn holds(text: &str, width: usize) {
-    let parsed = parse(FileId(0), &Arc::from(text));
+    let parsed = parse(FileId(0), &Arc::new(text.into()));
     assert!(parsed.fault.is_none(), "{text:?}: {:?}", parsed.fault);
     let document = parsed.document.unwrap();
     let once = format(&document, width);
     assert_eq!(infoset(&once), infoset(text), "{text:?} became {once:?}");
     assert_eq!(sections(&once), sections(text), "{text:?} became {once:?}");
-    let again = parse(FileId(0), &Arc::from(&*once)).document.map(|document| format(&document, width));
+    let again = parse(FileId(0), &Arc::new(once.clone())).document.map(|document| format(&document, width));
     assert_eq!(again.as_deref(), Some(&*once), "{text:?}");
 }
 

@@ -8,7 +8,7 @@ use saoms_core::xml;
 
 /// A tree as text: each element with namespace, attributes and its own text.
 fn ours(text: &str) -> Result<String, Box<Diagnostic>> {
-    let parsed = xml::parse(FileId(0), &Arc::from(text));
+    let parsed = xml::parse(FileId(0), &Arc::new(text.into()));
     if let Some(fault) = parsed.fault {
         return Err(Box::new(fault));
     }

@@ -51,7 +51,9 @@ pub(crate) fn checked(name: &str, text: &str) -> Vec<String> {
 
 /// The places of all names, attributes, values and texts.
 fn places(text: &str) -> HashSet<Span> {
-    let Some(document) = xml::parse(saoms_core::source::FileId(0), &text.into()).document else {
+    let Some(document) =
+        xml::parse(saoms_core::source::FileId(0), &std::sync::Arc::new(text.into())).document
+    else {
         return HashSet::new();
     };
     let mut all = HashSet::new();

@@ -33,7 +33,11 @@ pub(crate) fn check(bytes: &[u8]) {
                     Census::of(&fleet, registry, &Options::default(), &sources, &mut Diagnostics::new());
                 let diagram = Diagram::of(&fleet, registry, &census);
                 let pictures = [svg(&diagram), dot(&diagram), mermaid(&diagram)];
-                assert!(xml::parse(FileId(0), &Arc::from(&*pictures[0])).fault.is_none(), "{}", pictures[0]);
+                assert!(
+                    xml::parse(FileId(0), &Arc::new(pictures[0].clone())).fault.is_none(),
+                    "{}",
+                    pictures[0]
+                );
             }
             let options = Options { assume_classes, ..Options::default() };
             let assembly = check_fleet(&fleet, registry, &options, &sources, &mut diagnostics);
@@ -79,7 +83,7 @@ impl Loaded {
 }
 
 fn parsed(text: &str) -> Option<Document> {
-    let parsed = xml::parse(FileId(0), &Arc::from(text));
+    let parsed = xml::parse(FileId(0), &Arc::new(text.into()));
     parsed.document.filter(|_| parsed.fault.is_none())
 }
 
