@@ -1,5 +1,7 @@
 //! `saoms expand`: shows what is left of composites when all is resolved.
 
+use std::sync::Arc;
+
 use saoms_core::assembly::expanded;
 use saoms_core::check::Options;
 use saoms_core::diagnostic::Severity;
@@ -22,9 +24,9 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
         eprint(&format!("\n{}: nothing to expand\n", counted(outcome.count(Severity::Error), "error")));
         return Exit::WrongInput;
     };
-    let text = expanded(assembly, first, outcome.diagnostics());
+    let text = Arc::new(expanded(assembly, first, outcome.diagnostics()));
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
-    match xml::parse(FileId(0), &text.as_str().into()).document {
+    match xml::parse(FileId(0), &text).document {
         Some(document) => print(&format(&document, WIDTH)),
         None => print(&text),
     }

@@ -166,6 +166,6 @@ impl<'s> Found<'s> {
 /// A table of replicas; `None` where it has a fault.
 fn table_of(file: &File) -> Option<Table> {
     let mut sources = Sources::new();
-    let id = sources.add(file.path.display().to_string(), file.text.clone());
+    let id = sources.add(file.path.display().to_string(), file.text.to_string());
     table(id, &sources, &mut Diagnostics::new())
 }

@@ -159,7 +159,7 @@ impl<W: Write> Server<W> {
         let scene = self.scene(&params.text_document.uri)?;
         let file = scene.file();
         let mut sources = Sources::new();
-        let id = sources.add(file.path.display().to_string(), file.text.clone());
+        let id = sources.add(file.path.display().to_string(), file.text.to_string());
         let parsed = xml::parse(id, sources.get(id).text());
         let Some(document) = parsed.document.filter(|_| parsed.fault.is_none()) else { return Ok(None) };
         let formatted = format(&document, WIDTH);
