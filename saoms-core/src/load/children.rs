@@ -116,7 +116,12 @@ impl Loader<'_> {
         for child in element.children() {
             let family = self.family(child);
             let name = child.local_name();
-            let is_known = vocabulary::children(kind).any(|known| known == name);
+            // Formats and selectors are made by those who make bindings.
+            let is_made = |known: &&str| {
+                matches!(*known, "wireFormat." | "operationSelector.") && name.starts_with(*known)
+            };
+            let is_known =
+                vocabulary::children(kind).any(|known| known == name) || kind.children.iter().any(is_made);
             if family == Family::Own
                 && name == "severity"
                 && vocabulary::SEVERITY_PARENTS.contains(&kind.name)

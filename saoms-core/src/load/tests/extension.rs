@@ -30,6 +30,15 @@ fn bindings_of_ejb_are_of_a_known_kind() {
 }
 
 #[test]
+fn formats_are_of_those_who_make_bindings() {
+    binding("<binding.sca><wireFormat.default/><operationSelector.own/></binding.sca>", "");
+    binding(
+        "<binding.sca><format.default/></binding.sca>",
+        "4:15 [format.default] error S1004 SCA 1.0 has no element `format.default`",
+    );
+}
+
+#[test]
 fn parts_of_jms_are_named_and_their_values_known() {
     binding(
         "<binding.jms><destination name='a' create='ifnotexist'/><resourceAdapter name='b'/></binding.jms>",
