@@ -74,8 +74,11 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
             let message =
                 format!("nothing describes what component {} offers", quoted(&member.component.name));
             let one = Diagnostic::new(&codes::COMPONENT_TYPE_MISSING, implementation.tag(), message);
-            report
-                .push(one.help("write a file of the implementation's name that ends with `.componentType`"));
+            let kind = implementation.origin.element(&member.composite.document).local_name();
+            report.push(one.help(format!(
+                "{} does not say it by itself: write a file of its name that ends with `.componentType`",
+                quoted(kind)
+            )));
         }
     }
     report.about_all();

@@ -241,7 +241,7 @@ impl Loader<'_> {
         if let Some(token) = unknown.filter(|_| !self.version.is_1_1()) {
             let message = format!("a URI of JMS has no {}", quoted(token));
             let known: Vec<String> = JMS_TOKENS.iter().copied().map(quoted).collect();
-            self.wrong_value(attribute, message, &format!("it can have {}", known.join(", ")));
+            self.wrong_value(attribute, message, &format!("`uri` can have {}", known.join(", ")));
         }
     }
 

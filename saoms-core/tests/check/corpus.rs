@@ -8,7 +8,7 @@ use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity};
 use saoms_core::load::{MAX_SIZE, load, load_named};
 use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
-use saoms_core::source::{Location, Sources};
+use saoms_core::source::{Location, Sources, Span};
 use saoms_core::xml;
 
 use crate::support::shown;
@@ -56,16 +56,15 @@ fn rows(folder: &Path) -> Vec<Row> {
     table.lines().skip(1).map(row).collect()
 }
 
-/// Files that nobody calls invalid and that the schema lets pass, with the error that they have all the same, and where. Every one of them
-/// breaks a rule that no schema can state.
+/// Files that nobody calls invalid, and that are taken elsewhere, with the error that they have all the same, and where. Each of them breaks a rule.
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     // These two include each other, so that neither has an end (ASM60031: what is left after inclusion has to be valid). They are there to show
     // that a runtime does not hang; what it makes of them nobody asserts.
     ("itest/recursive/src/main/resources/Demo1Composite.composite", "S2032", "sample:Demo1Composite"),
     ("itest/recursive/src/main/resources/Demo2Composite.composite", "S2032", "sample:Demo2Composite"),
-    // Four references of the composite have one name (ASM60006, and SCA 1.0 alike). It is run as a whole only, where nobody names them; the
-    // same project calls the same mistake invalid elsewhere (`DuplicateImplementationReferenceName`).
-    ("itests/soap12/HelloWorldSOAP12.composite", "S2003", "helloWorldWS"),
+    // An attribute is misspelt, so that the intent that it names holds nowhere. The schema forbids it (ASM13001); the test that reads the file is
+    // about other parts of it.
+    ("org/apache/tuscany/sca/policy/xml/Calculator.composite", "S1007", "requiers"),
     // A component gives one property two values in two elements, of which nothing says which counts (ASM50031): what this file is there to show.
     // The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
     (
@@ -77,29 +76,57 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("vtest/assembly/component/src/main/resources/referencename_2.composite", "S2004", "b"),
 ];
 
+/// How many files there are of a kind, and how many of them have errors.
+#[derive(Default)]
+struct Tally {
+    files: usize,
+    faulty: usize,
+}
+
+impl Tally {
+    fn add(&mut self, is_faulty: bool) {
+        self.files += 1;
+        self.faulty += usize::from(is_faulty);
+    }
+
+    /// Whether at most this many of a hundred have errors.
+    fn holds(&self, most: usize) -> bool {
+        self.faulty * 100 <= self.files * most
+    }
+}
+
+/// All that a test asserts to be valid, and 99 of 100 of those that a test loads and of those that the schema lets pass.
 #[test]
 fn files_that_nobody_calls_invalid_have_no_errors() {
     let Some(folder) = collection() else { return };
-    let (mut sound, mut known) = (0, 0);
+    let [mut asserted, mut loaded, mut passed] = [Tally::default(), Tally::default(), Tally::default()];
+    let mut open: Vec<&str> = EXCEPTIONS.iter().map(|(path, ..)| *path).collect();
     for row in rows(&folder) {
-        let is_strong = row.verdict == "valid" && !row.evidence.contains("heuristic");
-        if row.verdict == "invalid" || !(row.is_valid_by_schema || is_strong) {
+        let is_called_valid = row.verdict == "valid";
+        let is_passed = row.is_valid_by_schema && row.verdict != "invalid";
+        if !(is_called_valid || is_passed) {
             continue;
         }
         let (diagnostics, sources) = checked(&folder.join("files").join(&row.path));
-        let Some(error) = diagnostics.iter().find(|one| one.severity == Severity::Error) else {
-            sound += 1;
-            continue;
-        };
+        let error = diagnostics.iter().find(|one| one.severity == Severity::Error);
+        if is_called_valid {
+            let is_weak = row.evidence.contains("heuristic");
+            if is_weak { &mut loaded } else { &mut asserted }.add(error.is_some());
+        }
+        if is_passed {
+            passed.add(error.is_some());
+        }
+        let Some(error) = error else { continue };
         let exception = EXCEPTIONS.iter().find(|(path, ..)| row.path.ends_with(path));
-        let Some((_, code, at)) = exception.filter(|_| !is_strong) else {
-            panic!("{}: {}", row.path, shown(error, &sources));
-        };
+        let Some((path, code, at)) = exception else { panic!("{}: {}", row.path, shown(error, &sources)) };
         assert_eq!((error.code.id, sources.snippet(error.location)), (*code, *at), "{}", row.path);
-        known += 1;
+        open.retain(|known| known != path);
     }
-    assert!(known <= EXCEPTIONS.len() && sound >= 99 * known, "{sound} without errors, {known} known");
-    assert!(sound > 500, "{sound} files were looked at");
+    assert!(asserted.holds(0), "{} of {}", asserted.faulty, asserted.files);
+    assert!(loaded.holds(1), "{} of {}", loaded.faulty, loaded.files);
+    assert!(passed.holds(1), "{} of {}", passed.faulty, passed.files);
+    assert!(asserted.files >= 15 && loaded.files > 200 && passed.files > 500, "{}", passed.files);
+    assert!(open.is_empty(), "no exceptions any more: {open:?}");
 }
 
 /// What the messages of Tuscany come to here: code, and the text that it points at. `docs/rules.md` has the same by code.
@@ -230,30 +257,60 @@ fn files_that_are_invalid_by_what_is_written_have_a_diagnostic_there() {
     assert!(found >= 32, "{found} rows were looked at");
 }
 
-/// Every diagnostic about every file of the collection is at a name, an attribute, a value or a text, or in one.
+/// Every diagnostic about every file of the collection, and about what is beside it, is at the name of an element, at an attribute, its name or
+/// its value, at a text, or at a part of one that stands by itself; and the diagnostic speaks of that, or of what it is a part of.
 #[test]
-fn diagnostics_are_at_things_that_can_be_named() {
+fn diagnostics_are_at_what_they_name() {
     let Some(folder) = collection() else { return };
-    let mut count = 0;
+    let (mut count, mut beside) = (0, 0);
     for row in rows(&folder) {
         let (diagnostics, sources) = checked(&folder.join("files").join(&row.path));
         for one in &diagnostics {
             let labels = one.labels.iter().map(|label| label.location);
             for place in labels.chain([one.location]) {
-                assert!(is_at_a_thing(place, &sources), "{}: {}", row.path, shown(one, &sources));
+                let things = things_at(place, &sources);
+                assert!(things.is_some(), "{}: {}", row.path, shown(one, &sources));
                 count += 1;
+                beside += usize::from(!sources.get(place.file).path().ends_with(&row.path));
             }
+            let said = [&[one.message.clone()], &one.help[..]].concat().join("\n");
+            let things = things_at(one.location, &sources).unwrap_or_default();
+            let is_named = things.is_empty() || things.iter().any(|thing| said.contains(thing.as_str()));
+            assert!(is_named, "{}: none of {things:?} is in {}", row.path, shown(one, &sources));
         }
     }
-    assert!(count > 200, "{count} places were looked at");
+    assert!(count > 200 && beside > 0, "{count} places were looked at, {beside} of them beside the files");
 }
 
-fn is_at_a_thing(place: Location, sources: &Sources) -> bool {
+/// The text at a place, the name of the attribute and the element that it is in; `None` where it is at no such thing. None at all where the file is
+/// no well-formed XML, in which a place is at what is not understood.
+fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
     let text = sources.get(place.file).text();
-    let Some(document) = xml::parse(place.file, text).document else { return true };
+    let Some(document) = xml::parse(place.file, text).document else { return Some(Vec::new()) };
     let element = document.element_at(place.span.start);
-    let names = [Some(element.name_span()), element.text_span(), element.end_name_span()];
-    let attributes = element.attributes().chain(element.namespace_declarations()).map(|one| one.span());
-    !place.span.is_empty()
-        && names.into_iter().flatten().chain(attributes).any(|thing| thing.contains(place.span))
+    let snippet = sources.snippet(place);
+    let mut things = vec![snippet.to_owned(), element.local_name().to_owned()];
+    things.extend(snippet.split([':', '/']).filter(|part| !part.is_empty()).map(str::to_owned));
+    if [Some(element.name_span()), element.end_name_span()].contains(&Some(place.span)) {
+        return Some(things);
+    }
+    let mut attributes = element.attributes().chain(element.namespace_declarations());
+    if let Some(attribute) = attributes.find(|one| one.span().contains(place.span)) {
+        things.push(attribute.name().to_owned());
+        let is_whole = place.span == attribute.span() || place.span == attribute.name_span();
+        return (is_whole || is_part(place, attribute.value_span(), text)).then_some(things);
+    }
+    is_part(place, element.text_span()?, text).then_some(things)
+}
+
+/// Whether a place is a part of a value, or all of it, that begins and ends where a word does.
+fn is_part(place: Location, value: Span, text: &str) -> bool {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let (start, end) = (place.span.start as usize, place.span.end as usize);
+    let is_cut = |before: Option<char>, behind: Option<char>| {
+        before.is_some_and(is_word) && behind.is_some_and(is_word)
+    };
+    let starts = !is_cut(text[..start].chars().next_back(), text[start..].chars().next());
+    let ends = !is_cut(text[..end].chars().next_back(), text[end..].chars().next());
+    value.contains(place.span) && !place.span.is_empty() && starts && ends
 }
