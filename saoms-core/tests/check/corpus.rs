@@ -131,6 +131,7 @@ fn files_that_nobody_calls_invalid_have_no_errors() {
 
 /// What the messages of Tuscany come to here: code, and the text that it points at. `docs/rules.md` has the same by code.
 pub(crate) const MESSAGES: &[(&str, &str, &str)] = &[
+    ("AttributeCompositeMissing", "S1008", "deployable"),
     ("AttributeNameSpaceMissing", "S1004", "export"),
     ("AttributePackageMissing", "S1004", "export.java"),
     ("AttributeUnrecognizedNamespace", "S1011", "hna:HelloWorld"),
@@ -286,7 +287,9 @@ fn diagnostics_are_at_what_they_name() {
 /// no well-formed XML, in which a place is at what is not understood.
 fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
     let text = sources.get(place.file).text();
-    let Some(document) = xml::parse(place.file, text).document else { return Some(Vec::new()) };
+    let xml::Parsed { document: Some(document), fault: None } = xml::parse(place.file, text) else {
+        return Some(Vec::new());
+    };
     let element = document.element_at(place.span.start);
     let snippet = sources.snippet(place);
     let mut things = vec![snippet.to_owned(), element.local_name().to_owned()];
