@@ -16,7 +16,7 @@ use crate::Exit;
 use crate::arguments::{GraphArguments, Picture};
 use crate::fleet::{SET, SEVERITY, options, read_or_input};
 use crate::folder::one_fleet;
-use crate::output::{counted, eprint, try_print};
+use crate::output::{eprint, try_print};
 use crate::plugins::{registry, search};
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
@@ -67,12 +67,13 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         eprint(&human(shown, &sources, io::stderr().is_terminal()));
         return Exit::WrongInput;
     }
-    let errors = found.iter().filter(|one| one.severity == Severity::Error).count();
-    if errors > 0 {
-        let errors = counted(errors, "error");
+    // How many there are, a check finds: a picture asks for no more than it needs.
+    if found.iter().any(|one| one.severity == Severity::Error) {
         let names: Vec<String> = fleet.files.iter().map(|file| file.display().to_string()).collect();
         let name = names.join(" ");
-        eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows {errors}\n"));
+        eprint(&format!(
+            "warning: drawn as far as it is understood; `saoms check {name}` shows what is wrong\n"
+        ));
     }
     let diagram = Diagram::of(&contribution, &registry, &census);
     let text = match picture {

@@ -125,6 +125,85 @@ fn topics_of_loops_are_drawn_as_the_wiring_report_has_them() {
     assert!(drawn.contains(&"OTHER") && drawn.contains(&"CSMSTOPIC"), "{drawn:?}");
 }
 
+/// What is inside is drawn as often as it is there in one of the composites around it, and what it promotes is joined to its component.
+#[test]
+fn what_is_in_replicas_is_counted_in_each_of_them() {
+    let folder = tempdir().unwrap();
+    let composite = |file: &str, inside: &str| {
+        let head = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' xmlns:s='urn:saoms:1' xmlns:h='urn:h' targetNamespace='urn:h'";
+        fs::write(
+            folder.path().join(format!("{file}.composite")),
+            format!("{head} name='{file}'>{inside}</composite>"),
+        )
+        .unwrap();
+    };
+    let hall = |name: &str, count: &str, hall: &str| {
+        format!(
+            "<component name='{name}' {count}><implementation.composite name='h:hall'/><property name='hall'>{hall}</property><property name='bots'>{}</property><reference name='world' target='W'/></component>",
+            if hall == "9" { 5 } else { 2 }
+        )
+    };
+    let world = "<component name='W'><implementation.rust class='saoms.World'/><property name='ID'>W</property><property name='period'>9</property></component>";
+    let halls = hall("Hall${index}", "s:count='3'", "${index}");
+    composite(
+        "site",
+        &format!(
+            "{world}{halls}{}<component name='Lost'><implementation.composite name='h:no'/></component>",
+            hall("North", "", "9")
+        ),
+    );
+    composite(
+        "hall",
+        "<property name='hall'>1</property><property name='bots'>2</property><reference name='world' promote='Bot*/world'/>
+         <component name='Bot${index}' s:count='bots'><implementation.rust class='saoms.Robot'/><property name='ID'>R${hall}${index}</property>
+         <property name='period'>9</property><property name='chargeX'>1</property><property name='chargeY'>${index}</property><property name='topicRename'>POSTOPIC,pos${hall}</property></component>",
+    );
+    let path = folder.path().join("site.composite").display().to_string();
+    let (code, shown, _) = graph(&[&path]);
+    assert_eq!(code, 0);
+    for part in [
+        ">Hall* \u{d7} 3<",
+        ">Bot* \u{d7} 2<",
+        ">Bot* \u{d7} 5<",
+        ">pos*<",
+        "pos1, pos2, pos3\n",
+        ">pos9<",
+        "no such composite is found",
+        ">reads a topic<",
+    ] {
+        assert!(shown.contains(part), "{part} in {shown}");
+    }
+    let (_, shown, _) = graph(&[&path, "--format", "mermaid"]);
+    assert!(shown.contains("c1_r0 -->|\"world \u{2192} hardware\"| c0"), "{shown}");
+    let (_, shown, _) = graph(&[&path, "--format", "dot"]);
+    assert!(shown.contains("c1_r0 -> c1:r0 [style=dashed]"), "{shown}");
+    // The legend has what the picture has.
+    let lone = folder.path().join("lone.composite");
+    composite("lone", world);
+    let (_, shown, _) = graph(&[lone.to_str().unwrap()]);
+    assert!(
+        shown.contains(">property<") && !shown.contains(">promotion<") && !shown.contains(">wire<"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn long_names_keep_their_ends() {
+    let folder = tempdir().unwrap();
+    let long = "TheVeryLongNameOfAComponentThatSomebodyWrites";
+    let of = |number: u32| {
+        format!("<component name='{long}{number}'><implementation.rust class='saoms.World'/></component>")
+    };
+    let head = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='urn:c'>";
+    let path = folder.path().join("c.composite");
+    fs::write(&path, format!("{head}{}{}</composite>", of(1), of(2))).unwrap();
+    let (_, shown, _) = graph(&[path.to_str().unwrap()]);
+    for number in [1, 2] {
+        assert!(shown.contains(&format!("<title>{long}{number}")), "{shown}");
+        assert!(shown.contains(&format!("TheVeryLongNameO\u{2026}SomebodyWrites{number}<")), "{shown}");
+    }
+}
+
 #[test]
 fn severities_count_as_for_the_check_that_it_points_to() {
     let folder = tempfile::tempdir().unwrap();
@@ -142,7 +221,7 @@ fn severities_count_as_for_the_check_that_it_points_to() {
     let (code, _, told) = of("S2001=note");
     assert_eq!((code, told.as_str()), (0, ""));
     let (code, _, told) = of("S2001=error");
-    assert!(code == 0 && told.contains("shows 1 error"), "{told}");
+    assert!(code == 0 && told.contains("shows what is wrong"), "{told}");
     let (code, _, told) = of("S2001=eror");
     assert!(code == 2 && told.contains("replace it with `error`"), "{told}");
 }

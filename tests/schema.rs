@@ -14,6 +14,7 @@ use saoms_components as _;
 use saoms_core::assembly::TaskProperties;
 use saoms_core::registry::Registry;
 
+const XSD: &str = "http://www.w3.org/2001/XMLSchema";
 const FILES: [&str; 5] = ["sca-1.1.xsd", "sca-1.1-draft.xsd", "sca-1.0.xsd", "saoms.xsd", "catalog.xml"];
 
 fn schema(folder: &Path, arguments: &[&str]) -> Output {
@@ -82,6 +83,22 @@ fn xsd_1_1_asserts_what_xsd_1_0_cannot_say() {
     assert!(tests.len() > 50, "{}", tests.len());
     let battery = tests.iter().find(|test| test.contains("'battery'") && test.contains("xs:double")).unwrap();
     assert!(battery.contains("'robot.Robot010'") && battery.contains("xs:double($v) le 100.0"), "{battery}");
+}
+
+/// Two components of one name, of which a condition leaves one, are no mistake: that needs an assertion.
+#[test]
+fn xsd_1_1_refuses_repeated_components_and_unknown_attributes_of_saoms() {
+    let all = written(&["--xsd", "1.1"]);
+    for (text, target) in [(&all[0], "##targetNamespace ##local urn:saoms:1"), (&all[2], "urn:saoms:1")] {
+        let document = Document::parse(text).unwrap();
+        let mut asserted = document.descendants().filter_map(|node| node.attribute("test"));
+        assert!(asserted.any(|test| test.starts_with("count(component[not(@saoms:if)]/@name)")));
+        let open = document.descendants().filter(|node| node.has_tag_name((XSD, "anyAttribute")));
+        let open: Vec<_> = open.filter(|node| node.attribute("processContents") == Some("lax")).collect();
+        assert!(open.len() > 10 && open.iter().all(|node| node.attribute("notNamespace") == Some(target)));
+    }
+    let plain = written(&[]);
+    assert!(plain.iter().all(|text| !text.contains("notNamespace") && !text.contains("xs:assert")));
 }
 
 #[test]

@@ -19,8 +19,13 @@ use crate::xml::ElementId;
 #[derive(Clone, Debug, Default)]
 pub struct Census {
     counts: HashMap<(FileId, ElementId), usize>,
-    topics: HashMap<(FileId, ElementId), Vec<TopicUse>>,
+    /// The fewest and the most in one of the composites around them.
+    ranges: HashMap<Way, (usize, usize)>,
+    topics: HashMap<Way, Vec<TopicUse>>,
 }
+
+/// A component, with those around it that composites implement before it, the outermost first.
+type Way = Vec<(FileId, ElementId)>;
 
 /// A topic that a component publishes or subscribes to, itself or by one of its loops.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,47 +55,95 @@ impl Census {
         let parameters = Parameters::of(&fleet, options, report);
         report.finish();
         severities.apply(0, report.diagnostics());
-        let topics = topics(&mut fleet, parameters, registry, sources);
+        let ways = ways(&fleet);
+        let topics = topics(&mut fleet, &ways, parameters, registry, sources);
         let mut counts: HashMap<(FileId, ElementId), usize> = HashMap::new();
         for composite in contribution.composites() {
             let special = composite.components.iter();
             let special = special.filter(|one| one.replicas.is_some() || one.condition.is_some());
             counts.extend(special.map(|one| ((one.origin.file(), one.origin.element), 0)));
         }
+        let mut here: HashMap<(usize, (FileId, ElementId)), usize> = HashMap::new();
         for member in fleet.members.iter().filter(|member| !member.is_absent) {
-            let origin = member.component.origin;
-            if let Some(count) = counts.get_mut(&(origin.file(), origin.element)) {
+            let place = place(member.component.origin);
+            if let Some(count) = counts.get_mut(&place) {
                 *count += 1;
+                *here.entry((member.scope, place)).or_default() += 1;
             }
         }
+        // How often each composite is there at the same place of the picture.
+        let mut times: HashMap<&[(FileId, ElementId)], usize> = HashMap::new();
+        for (way, scope) in ways.iter().zip(&fleet.scopes) {
+            let is_there = scope.owner.is_none_or(|owner| !fleet.members[owner].is_absent);
+            *times.entry(way).or_default() += usize::from(is_there);
+        }
+        let mut all: HashMap<Way, (usize, usize, usize)> = HashMap::new();
+        for ((scope, place), count) in here {
+            let (least, most, found) = all.entry(within(&ways[scope], place)).or_insert((count, count, 0));
+            (*least, *most, *found) = ((*least).min(count), (*most).max(count), *found + 1);
+        }
+        let ranges = all.into_iter().map(|(way, (least, most, found))| {
+            let is_everywhere = times.get(&way[..way.len() - 1]).is_none_or(|times| *times <= found);
+            (way, (if is_everywhere { least } else { 0 }, most))
+        });
+        let ranges = ranges.collect();
         counts.extend(fleet.conditional.iter().map(|(place, is_there)| (*place, usize::from(*is_there))));
-        Self { counts, topics }
+        Self { counts, ranges, topics }
     }
 
-    /// How many times a part is there; `None` for one that is neither replicated nor conditional.
-    pub fn count(&self, origin: Origin) -> Option<usize> {
-        self.counts.get(&(origin.file(), origin.element)).copied()
+    /// The fewest and the most of a component in one of the composites that implement `around`, the outermost first; `None` for one that is neither
+    /// replicated nor conditional.
+    pub fn range(&self, around: &[Origin], origin: Origin) -> Option<(usize, usize)> {
+        self.counts.get(&place(origin))?;
+        Some(self.ranges.get(&way(around, origin)).copied().unwrap_or_default())
     }
 
-    /// Whether it is there at all.
+    /// Whether a part is there at all.
     pub fn is_there(&self, origin: Origin) -> bool {
-        self.count(origin) != Some(0)
+        self.counts.get(&place(origin)) != Some(&0)
     }
 
-    /// The topics that a component and its loops use, those of all its replicas.
-    pub fn topics(&self, origin: Origin) -> &[TopicUse] {
-        self.topics.get(&(origin.file(), origin.element)).map_or(&[], Vec::as_slice)
+    /// The topics that a component in the composites that implement `around` and its loops use, those of all its replicas.
+    pub fn topics(&self, around: &[Origin], origin: Origin) -> &[TopicUse] {
+        self.topics.get(&way(around, origin)).map_or(&[], Vec::as_slice)
     }
+}
+
+fn place(origin: Origin) -> (FileId, ElementId) {
+    (origin.file(), origin.element)
+}
+
+fn way(around: &[Origin], origin: Origin) -> Way {
+    around.iter().copied().chain([origin]).map(place).collect()
+}
+
+fn within(way: &[(FileId, ElementId)], place: (FileId, ElementId)) -> Way {
+    way.iter().copied().chain([place]).collect()
+}
+
+/// The components around each scope.
+fn ways(fleet: &Fleet<'_>) -> Vec<Way> {
+    let mut all: Vec<Way> = Vec::with_capacity(fleet.scopes.len());
+    for scope in &fleet.scopes {
+        // A scope comes behind that of the component that it implements.
+        let way = scope.owner.map(|owner| {
+            let owner = &fleet.members[owner];
+            within(&all[owner.scope], place(owner.component.origin))
+        });
+        all.push(way.unwrap_or_default());
+    }
+    all
 }
 
 /// The topics of all components whose classes are known, found in the way in which the checker finds them. What is wrong with them is
 /// left to it.
 fn topics<'a>(
     fleet: &mut Fleet<'a>,
+    ways: &[Way],
     mut parameters: Parameters<'a>,
     registry: &'a Registry,
     sources: &Sources,
-) -> HashMap<(FileId, ElementId), Vec<TopicUse>> {
+) -> HashMap<Way, Vec<TopicUse>> {
     let mut unheard = Diagnostics::new();
     let report = &mut Report::new(sources, &mut unheard);
     report.assumes = true;
@@ -107,8 +160,8 @@ fn topics<'a>(
             true => task::check(member.component, (index, class), checked, &mut before, report).renames,
             false => Vec::new(),
         };
-        let origin = member.component.origin;
-        let uses = all.entry((origin.file(), origin.element)).or_default();
+        let way = within(&ways[member.scope], place(member.component.origin));
+        let uses = all.entry(way).or_default();
         let published = class.publishes.iter().map(|topic| (*topic, true));
         for (declared, is_published) in published.chain(class.subscribes.iter().map(|topic| (*topic, false)))
         {

@@ -28,8 +28,8 @@ pub struct Diagram {
 pub struct Component {
     /// Its name; that of a replicated one with `*` for each expression.
     pub name: String,
-    /// How many replicas there are, where it is replicated and that is known.
-    pub replicas: Option<usize>,
+    /// The fewest and the most replicas in one of the composites that it is in, where it is replicated and that is known.
+    pub replicas: Option<(usize, usize)>,
     /// What it is an instance of: a class, or a kind of implementation; empty where the file says nothing.
     pub class: String,
     /// What is known of that.
@@ -45,12 +45,21 @@ pub struct Component {
 }
 
 impl Component {
-    /// Its name as a picture has it: `Robot* × 40` for forty replicas.
+    /// Its name as a picture has it: `Robot* × 40` for forty replicas, `Robot* × 2–4` where halls have two to four.
     pub(super) fn label(&self) -> String {
         match self.replicas {
-            Some(count) => format!("{} \u{d7} {count}", self.name),
+            Some((least, most)) if least != most => format!("{} \u{d7} {least}\u{2013}{most}", self.name),
+            Some((count, _)) => format!("{} \u{d7} {count}", self.name),
             None => self.name.clone(),
         }
+    }
+}
+
+impl Diagram {
+    /// Whether this is so of it, or of what is inside one of its components.
+    pub(super) fn any(&self, is_so: &dyn Fn(&Self) -> bool) -> bool {
+        let mut inside = self.components.iter().filter_map(|component| component.inside.as_deref());
+        is_so(self) || inside.any(|inside| inside.any(is_so))
     }
 }
 
@@ -59,8 +68,8 @@ impl Component {
 pub enum State {
     /// Its class is registered, or its implementation is of another kind.
     Known,
-    /// Its class is not registered.
-    UnknownClass,
+    /// Its class is not registered, or its composite is not found.
+    NotFound,
     /// Something names it, and the composite does not have it.
     Missing,
 }
@@ -120,8 +129,10 @@ pub enum End {
 /// A topic with its ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Topic {
-    /// Its name after renaming.
+    /// Its name after renaming, or what its names have in common, with `*` for the rest.
     pub name: String,
+    /// Its names, where replicas have one each that all their ends share.
+    pub names: Vec<String>,
     /// State or event.
     pub kind: TopicKind,
     /// The type of its messages.

@@ -11,29 +11,38 @@ pub fn dot(diagram: &Diagram) -> String {
     out.push_str(
         "  node [fontname=\"Helvetica\", fontsize=11];\n  edge [fontname=\"Helvetica\", fontsize=9];\n",
     );
-    composite(diagram, "", "composite", &diagram.name, &mut out);
+    open("composite", &diagram.name, &mut out);
+    composite(diagram, "", &mut out);
     out.push_str("}\n");
     out
 }
 
-/// Draws a composite as the cluster `id`; the names of all nodes in it start with `prefix`.
-fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut String) {
+/// Starts the cluster `id`.
+fn open(id: &str, label: &str, out: &mut String) {
     let _ = writeln!(out, "  subgraph cluster_{id} {{\n    label={};", quoted(label));
     out.push_str("    style=rounded; color=\"#46617e\"; fontname=\"Helvetica\";\n");
+}
+
+/// Draws a composite in the cluster that is open, and ends that; the names of all nodes in it start with `prefix`.
+fn composite(diagram: &Diagram, prefix: &str, out: &mut String) {
     for (place, component) in diagram.components.iter().enumerate() {
         let style = match component.state {
             State::Known => "style=\"rounded,filled\", fillcolor=\"#d8e6f5\", color=\"#46617e\"",
-            State::UnknownClass => {
-                "style=\"rounded,filled,dashed\", fillcolor=\"#d8e6f5\", color=\"#c0392b\""
-            }
+            State::NotFound => "style=\"rounded,filled,dashed\", fillcolor=\"#d8e6f5\", color=\"#c0392b\"",
             State::Missing => "style=\"rounded,dashed\", color=\"#c0392b\"",
         };
         let label = record(component);
         let id = format!("{prefix}c{place}");
-        let _ = writeln!(out, "    {id} [shape=record, {style}, label=\"{label}\"];");
-        if let Some(inside) = &component.inside {
-            composite(inside, &format!("{id}_"), &id, &format!("inside {}", component.label()), out);
-        }
+        let node = format!("    {id} [shape=record, {style}, label=\"{label}\"];\n");
+        let Some(inside) = &component.inside else {
+            out.push_str(&node);
+            continue;
+        };
+        // A cluster has no ports: a node in it has them, and is joined to what the composite inside promotes.
+        open(&id, &component.label(), out);
+        out.push_str(&node);
+        composite(inside, &format!("{id}_"), out);
+        ties(component, inside, &id, out);
     }
     for (place, topic) in diagram.topics.iter().enumerate() {
         let (name, tooltip) =
@@ -58,6 +67,21 @@ fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut S
         out.push_str("  }\n");
     }
     edges(diagram, prefix, out);
+}
+
+/// Joins the parts of a component to what the composite that implements it promotes.
+fn ties(component: &Component, inside: &Diagram, id: &str, out: &mut String) {
+    let named = |ports: &[Port], name: &str| ports.iter().position(|port| port.name == name);
+    for (place, port) in inside.services.iter().enumerate() {
+        if let Some(outer) = named(&component.services, &port.name) {
+            let _ = writeln!(out, "  {id}:s{outer} -> {id}_s{place} [style=dashed];");
+        }
+    }
+    for (place, port) in inside.references.iter().enumerate() {
+        if let Some(outer) = named(&component.references, &port.name) {
+            let _ = writeln!(out, "  {id}_r{place} -> {id}:r{outer} [style=dashed];");
+        }
+    }
 }
 
 fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {

@@ -26,7 +26,7 @@ fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut S
         }
         let class = match component.state {
             State::Known => "component",
-            State::UnknownClass => "unknown",
+            State::NotFound => "unknown",
             State::Missing => "missing",
         };
         let id = format!("{prefix}c{place}");
@@ -59,13 +59,19 @@ fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
     for link in &diagram.links {
         let (from, source) = match link.from {
             End::Component { component, port } => {
-                (format!("c{component}"), name(&diagram.components[component].references, port))
+                let one = &diagram.components[component];
+                let name = name(&one.references, port);
+                let inside = one.inside.as_deref().and_then(|inside| named(&inside.references, &name));
+                (format!("c{component}{}", inside.map_or(String::new(), |place| format!("_r{place}"))), name)
             }
             End::Composite(place) => (format!("s{place}"), String::new()),
         };
         let (to, target) = match link.to {
             End::Component { component, port } => {
-                (format!("c{component}"), name(&diagram.components[component].services, port))
+                let one = &diagram.components[component];
+                let name = name(&one.services, port);
+                let inside = one.inside.as_deref().and_then(|inside| named(&inside.services, &name));
+                (format!("c{component}{}", inside.map_or(String::new(), |place| format!("_s{place}"))), name)
             }
             End::Composite(place) => (format!("r{place}"), String::new()),
         };
@@ -90,6 +96,11 @@ fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
             }
         }
     }
+}
+
+/// What a composite promotes under a name, which stands for that of its component.
+fn named(ports: &[Port], name: &str) -> Option<usize> {
+    ports.iter().position(|port| port.name == name)
 }
 
 fn quoted(text: &str) -> String {

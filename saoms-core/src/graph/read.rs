@@ -2,10 +2,10 @@
 
 use super::diagram::{Component, Diagram, Port, Setting, State};
 use super::{topics, wiring};
-use crate::check::Census;
+use crate::check::{Census, TopicUse};
 use crate::expression::pattern;
 use crate::model::{
-    self, Composite, Contribution, ImplementationKind, Interface, Link, Reference, Service, Wire,
+    self, Composite, Contribution, ImplementationKind, Interface, Link, Origin, Reference, Service, Wire,
 };
 use crate::registry::{Class, Registry};
 
@@ -24,7 +24,16 @@ impl Diagram {
             return Self::default();
         }
         let asked_for = (0..contribution.asked_for().len()).collect();
-        Reader { contribution, registry, census, open: Vec::new(), left: MOST_INSIDE }.diagram(asked_for)
+        let mut reader = Reader {
+            contribution,
+            registry,
+            census,
+            open: Vec::new(),
+            around: Vec::new(),
+            times: 1,
+            left: MOST_INSIDE,
+        };
+        reader.diagram(asked_for)
     }
 }
 
@@ -32,10 +41,17 @@ impl Diagram {
 pub(super) struct View<'c> {
     composites: Vec<&'c Composite>,
     census: &'c Census,
+    /// The components around them.
+    around: Vec<Origin>,
 }
 
 impl<'c> View<'c> {
-    fn of(contribution: &'c Contribution, census: &'c Census, mut places: Vec<usize>) -> Self {
+    fn of(
+        contribution: &'c Contribution,
+        census: &'c Census,
+        around: Vec<Origin>,
+        mut places: Vec<usize>,
+    ) -> Self {
         let mut at = 0;
         while let Some(place) = places.get(at) {
             let includes = contribution.composites()[*place].includes.iter();
@@ -51,7 +67,12 @@ impl<'c> View<'c> {
             at += 1;
         }
         let composites = places.into_iter().map(|place| &contribution.composites()[place]).collect();
-        Self { composites, census }
+        Self { composites, census, around }
+    }
+
+    /// The topics that a component of them uses.
+    pub(super) fn topics(&self, component: &model::Component) -> &'c [TopicUse] {
+        self.census.topics(&self.around, component.origin)
     }
 
     pub(super) fn composites(&self) -> impl Iterator<Item = &'c Composite> {
@@ -63,7 +84,9 @@ impl<'c> View<'c> {
         let all = self
             .composites()
             .flat_map(|composite| composite.components.iter().map(move |one| (composite, one)));
-        all.filter(|(_, component)| self.census.is_there(component.origin))
+        all.filter(|(_, component)| {
+            self.census.range(&self.around, component.origin).is_none_or(|(_, most)| most > 0)
+        })
     }
 
     pub(super) fn wires(&self) -> impl Iterator<Item = &'c Wire> {
@@ -86,6 +109,10 @@ struct Reader<'c> {
     census: &'c Census,
     /// The composites that are being read.
     open: Vec<usize>,
+    /// The components that they implement.
+    around: Vec<Origin>,
+    /// How often what is being read is there.
+    times: usize,
     /// How many more components there may be inside others.
     left: usize,
 }
@@ -100,7 +127,7 @@ impl Reader<'_> {
         let namespace = namespace.map(ToString::to_string);
         let outside = self.open.len();
         self.open.extend(&places);
-        let view = View::of(self.contribution, self.census, places);
+        let view = View::of(self.contribution, self.census, self.around.clone(), places);
         let mut diagram = Diagram {
             name,
             namespace,
@@ -109,8 +136,9 @@ impl Reader<'_> {
             references: view.references().map(|one| port(&one.name, one.interface.as_deref())).collect(),
             components: view.components().map(|(_, one)| self.component(one)).collect(),
             links: Vec::new(),
-            topics: topics::of(&view, self.census),
+            topics: topics::of(&view),
         };
+        topics::join(&mut diagram, self.times > 1);
         self.open.truncate(outside);
         wiring::link(&view, &mut diagram);
         diagram
@@ -119,9 +147,16 @@ impl Reader<'_> {
     fn component(&mut self, one: &model::Component) -> Component {
         let mut component = component(one, self.registry);
         if one.replicas.is_some() {
-            component.replicas = self.census.count(one.origin);
+            component.replicas = self.census.range(&self.around, one.origin);
         }
         let named = one.implementation.as_ref().and_then(|one| self.contribution.link(one.origin));
+        let is_composite = one
+            .implementation
+            .as_ref()
+            .is_some_and(|one| matches!(one.kind, ImplementationKind::Composite { .. }));
+        if is_composite && !matches!(named, Some(Link::To(_))) {
+            component.state = State::NotFound;
+        }
         if let Some(Link::To(place)) = named
             && !self.open.contains(place)
             && self.open.len() <= MOST_DEEP
@@ -129,7 +164,12 @@ impl Reader<'_> {
             let count = self.contribution.composites()[*place].components.len();
             if let Some(left) = self.left.checked_sub(count) {
                 self.left = left;
+                let times = self.times;
+                self.times = times.saturating_mul(component.replicas.map_or(1, |(_, most)| most));
+                self.around.push(one.origin);
                 let inside = self.diagram(vec![*place]);
+                self.around.pop();
+                self.times = times;
                 declared(pairs(&inside.services), &mut component.services);
                 declared(pairs(&inside.references), &mut component.references);
                 component.inside = Some(Box::new(inside));
@@ -169,7 +209,7 @@ fn component(component: &model::Component, registry: &Registry) -> Component {
         },
         replicas: None,
         class: label(component),
-        state: if is_unknown { State::UnknownClass } else { State::Known },
+        state: if is_unknown { State::NotFound } else { State::Known },
         properties: component.properties.iter().map(setting).collect(),
         services,
         references,

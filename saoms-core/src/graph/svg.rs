@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use super::diagram::{Component, Diagram, Port, Setting, State, Topic};
+use super::diagram::{Component, Diagram, LinkKind, Port, Setting, State, Topic};
 use super::layout::measure::{CHEVRON, CHIP_HEIGHT, CHIP_SIZE, Chip, LABEL, NAME_SIZE, SMALL_SIZE};
 use super::layout::{LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, layout};
 use super::text::{width, xml};
@@ -47,6 +47,11 @@ pub fn svg(diagram: &Diagram) -> String {
     out.text.push_str("</svg>\n");
     out.text
 }
+
+/// Where the lines are from the sides of a component that join what is inside to it.
+const TIE: i32 = 4;
+/// The names of one rail that its tooltip has.
+const MOST_NAMES: usize = 40;
 
 #[derive(Default)]
 struct Out {
@@ -106,7 +111,7 @@ impl Out {
     fn composite(&mut self, diagram: &Diagram, layout: &Layout) {
         self.rect("composite", layout.frame, 14);
         let Rect { x, y, .. } = layout.frame;
-        let name = Point { x: x + 16, y: y + 23 };
+        let name = Point { x: x + 16, y: y + 23 + layout.name };
         let _ = write!(self.text, "<g>");
         self.title(diagram.namespace.as_deref());
         self.label("name", name, &diagram.name, NAME_SIZE + 2, "start");
@@ -118,7 +123,7 @@ impl Out {
         let Placed { rect, plan } = placed;
         let class = match component.state {
             State::Known => "component",
-            State::UnknownClass => "component unknown",
+            State::NotFound => "component unknown",
             State::Missing => "missing",
         };
         self.text.push_str("<g>");
@@ -128,7 +133,10 @@ impl Out {
         }
         match component.state {
             State::Known => {}
-            State::UnknownClass => about.push_str("\nno such class is registered"),
+            State::NotFound => about.push_str(match component.class.strip_prefix("composite ") {
+                Some(_) => "\nno such composite is found",
+                None => "\nno such class is registered",
+            }),
             State::Missing => about.push_str("\nthe composite has no such component"),
         }
         self.title(Some(&about));
@@ -142,29 +150,69 @@ impl Out {
         self.chips(&plan.chips, &component.properties, Point { x: rect.x, y: rect.y });
         for (place, port) in component.services.iter().enumerate() {
             let at = Point { x: rect.x, y: rect.y + plan.port(place) };
-            let shown = Port { name: plan.services[place].clone(), interface: port.interface.clone() };
-            self.port("service", at, &shown, Point { x: at.x + LABEL, y: at.y }, "start");
+            let label = Point { x: at.x + LABEL, y: at.y };
+            self.port_as("service", at, port, &plan.services[place], label, "start");
         }
         for (place, port) in component.references.iter().enumerate() {
             let at = Point { x: rect.x + rect.width, y: rect.y + plan.port(place) };
-            let shown = Port { name: plan.references[place].clone(), interface: port.interface.clone() };
-            self.port("reference", at, &shown, Point { x: at.x - LABEL, y: at.y }, "end");
+            let label = Point { x: at.x - LABEL, y: at.y };
+            self.port_as("reference", at, port, &plan.references[place], label, "end");
         }
         if let (Some((picture, at)), Some(inside)) = (&plan.inside, &component.inside) {
             let Point { x, y } = Point { x: rect.x + at.x, y: rect.y + at.y };
             let _ = writeln!(self.text, "<g transform=\"translate({x},{y})\">");
             self.draw(inside, picture);
             self.text.push_str("</g>");
+            self.ties(placed, component, inside, picture, Point { x, y });
         }
         self.text.push_str("</g>\n");
     }
 
+    /// Joins what a composite promotes to the parts of its component of the same names: on each side by one line, as the names say which belong together.
+    fn ties(
+        &mut self,
+        placed: &Placed,
+        component: &Component,
+        inside: &Diagram,
+        picture: &Layout,
+        at: Point,
+    ) {
+        let Placed { rect, plan } = placed;
+        let (left, right) = (rect.x + TIE, rect.x + rect.width - TIE);
+        let sides = [
+            (left, 1, &component.services, &inside.services, &picture.services),
+            (right, -1, &component.references, &inside.references, &picture.references),
+        ];
+        for (x, inwards, outer, inner, places) in sides {
+            let mut path = String::new();
+            let (mut top, mut bottom) = (i32::MAX, i32::MIN);
+            for (place, port) in inner.iter().enumerate() {
+                let Some(outer) = outer.iter().position(|one| one.name == port.name) else { continue };
+                let end = Point { x: at.x + places[place].x, y: at.y + places[place].y };
+                // Up to its name, which stands outside of the frame.
+                let room = LABEL + width(&port.name, SMALL_SIZE, false) + 2;
+                let _ = write!(path, "M{x},{}H{}", end.y, end.x - inwards * room);
+                (top, bottom) = (top.min(rect.y + plan.port(outer)), bottom.max(end.y));
+            }
+            if !path.is_empty() {
+                let _ = writeln!(self.text, "<path class=\"promotion\" d=\"M{x},{top}V{bottom}{path}\"/>");
+            }
+        }
+    }
+
     fn port(&mut self, class: &str, at: Point, port: &Port, label: Point, anchor: &str) {
+        self.port_as(class, at, port, &port.name, label, anchor);
+    }
+
+    /// A port with its name as it is shown; the whole name is in the tooltip.
+    fn port_as(&mut self, class: &str, at: Point, port: &Port, shown: &str, label: Point, anchor: &str) {
         self.text.push_str("<g>");
-        self.title(port.interface.as_deref());
+        let about: Vec<&str> =
+            [Some(port.name.as_str()), port.interface.as_deref()].into_iter().flatten().collect();
+        self.title(Some(&about.join("\n")));
         self.chevron(class, at);
-        if !port.name.is_empty() {
-            self.label("", Point { y: label.y + 3, ..label }, &port.name, SMALL_SIZE, anchor);
+        if !shown.is_empty() {
+            self.label("", Point { y: label.y + 3, ..label }, shown, SMALL_SIZE, anchor);
         }
         self.text.push_str("</g>");
     }
@@ -201,7 +249,9 @@ impl Out {
         let Rect { x, y, width, height } = rail.label;
         let middle = y + height / 2;
         self.text.push_str("<g>");
-        self.title(Some(&format!("{}\n{} topic of {}", topic.name, topic.kind.name(), topic.message)));
+        let shown = topic.names.iter().take(MOST_NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = if topic.names.len() > MOST_NAMES { ", ..." } else { "" };
+        self.title(Some(&format!("{shown}{more}\n{} topic of {}", topic.kind.name(), topic.message)));
         let _ = write!(
             self.text,
             "<path class=\"rail\" stroke=\"{color}\" d=\"M{},{middle}H{}\"/>",
@@ -246,17 +296,34 @@ impl Out {
             out.label("small", Point { x: x + 24, y: y + 4 }, text, SMALL_SIZE, "start");
             x += 24 + width(text, SMALL_SIZE, false) + 16;
         };
-        entry(self, "service", &|out, x| out.chevron("service", Point { x: x + 9, y }));
-        entry(self, "reference", &|out, x| out.chevron("reference", Point { x: x + 9, y }));
-        entry(self, "property", &|out, x| {
-            out.rect("property", Rect { x, y: y - 6, width: 18, height: 12 }, 0);
-        });
-        entry(self, "wire", &|out, x| _ = write!(out.text, "<path class=\"wire\" d=\"M{x},{y}h18\"/>"));
-        entry(self, "promotion", &|out, x| {
-            let _ = write!(out.text, "<path class=\"promotion\" d=\"M{x},{y}h18\"/>");
-        });
-        if !diagram.topics.is_empty() {
+        let has_ports = |ports: fn(&Component) -> bool| diagram.any(&|one| one.components.iter().any(ports));
+        let has = |kind: LinkKind| diagram.any(&|one| one.links.iter().any(|link| link.kind == kind));
+        let has_properties = |one: &Diagram| {
+            !one.properties.is_empty() || one.components.iter().any(|one| !one.properties.is_empty())
+        };
+        if has_ports(|one| !one.services.is_empty()) {
+            entry(self, "service", &|out, x| out.chevron("service", Point { x: x + 9, y }));
+        }
+        if has_ports(|one| !one.references.is_empty()) {
+            entry(self, "reference", &|out, x| out.chevron("reference", Point { x: x + 9, y }));
+        }
+        if diagram.any(&has_properties) {
+            entry(self, "property", &|out, x| {
+                out.rect("property", Rect { x, y: y - 6, width: 18, height: 12 }, 0);
+            });
+        }
+        if has(LinkKind::Wire) {
+            entry(self, "wire", &|out, x| _ = write!(out.text, "<path class=\"wire\" d=\"M{x},{y}h18\"/>"));
+        }
+        if has(LinkKind::Promotion) {
+            entry(self, "promotion", &|out, x| {
+                let _ = write!(out.text, "<path class=\"promotion\" d=\"M{x},{y}h18\"/>");
+            });
+        }
+        if diagram.any(&|one| one.topics.iter().any(|topic| !topic.publishers.is_empty())) {
             entry(self, "publishes a topic", &|out, x| out.triangle(x + 9, y - 4, y + 4, TOPICS[0], true));
+        }
+        if diagram.any(&|one| one.topics.iter().any(|topic| !topic.subscribers.is_empty())) {
             entry(self, "reads a topic", &|out, x| out.triangle(x + 9, y + 4, y - 4, TOPICS[0], false));
         }
         self.text.push('\n');

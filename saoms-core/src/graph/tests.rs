@@ -118,7 +118,7 @@ fn composites_are_drawn_inside_the_components_that_they_implement() {
     let others = asked_for.split_off(1);
     let contribution = Contribution::with(asked_for, others);
     let diagram = Diagram::of(&contribution, &Registry::new(), &Census::default());
-    expect![[r##"
+    expect![[r#"
         flowchart LR
           subgraph composite ["outer"]
           subgraph c0 ["Hall<br/>composite c:inner"]
@@ -130,8 +130,8 @@ fn composites_are_drawn_inside_the_components_that_they_implement() {
             c1("Door<br/>a.Door"):::unknown
             c2("Bell<br/>a.Bell"):::unknown
           end
-          c1 -->|"r → light"| c0
-    "##]]
+          c1 -->|"r → light"| c0_s0
+    "#]]
     .assert_eq(mermaid(&diagram).split("  classDef").next().unwrap());
     let drawn = svg(&diagram);
     let document = roxmltree::Document::parse(&drawn).unwrap();

@@ -27,13 +27,16 @@ fn thousandths(character: char) -> u16 {
     }
 }
 
-/// The start of a text of at most so many characters, with an ellipsis when some are missing.
-pub(super) fn start(text: &str, most: usize) -> String {
+/// The start and the end of a text, of at most so many characters with an ellipsis between them when some are missing: long names differ at their ends.
+pub(super) fn short(text: &str, most: usize) -> String {
     let text = plain(text);
-    if text.chars().count() <= most {
+    let count = text.chars().count();
+    if count <= most {
         return text;
     }
-    text.chars().take(most.saturating_sub(1)).chain(['…']).collect()
+    let kept = most.saturating_sub(1);
+    let end = kept / 2;
+    text.chars().take(kept - end).chain(['…']).chain(text.chars().skip(count - end)).collect()
 }
 
 /// The end of a text of at most so many characters: what tells classes of one package apart.

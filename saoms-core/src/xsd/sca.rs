@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::node::Node;
 use super::own::{any, type_of};
-use super::{OWN_FILE, root};
+use super::{OWN_FILE, assertions, root};
 use crate::load::vocabulary::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
@@ -48,7 +48,7 @@ const OTHER_ROOTS: &[(&str, &str)] = &[
     ("definitions", "Policies. What is inside is not described here."),
 ];
 
-/// What can be named once only within an element. Of two components under two conditions (`saoms:if`) one may be left.
+/// What can be named once only within an element. Of two components under two conditions (`saoms:if`) one may be left, which only assertions can say.
 const UNIQUE: &[(&Kind, &str)] = &[
     (&COMPOSITE, "property"),
     (&COMPOSITE, "service"),
@@ -70,15 +70,23 @@ pub(super) fn schema(version: Version, assertions: Vec<Node>) -> Node {
         root =
             root.with("xmlns:vc", "http://www.w3.org/2007/XMLSchema-versioning").with("vc:minVersion", "1.1");
     }
-    let others = TYPES.iter().filter(|(_, kind)| !std::ptr::eq(*kind, &COMPONENT));
+    let has_assertions = !assertions.is_empty();
+    let others = TYPES.iter().filter(|(_, kind)| {
+        !std::ptr::eq(*kind, &COMPONENT) && !(has_assertions && std::ptr::eq(*kind, &COMPOSITE))
+    });
+    let composite = has_assertions.then(|| {
+        let whole = complex(&COMPOSITE, version, has_assertions);
+        whole.child(assertions::of_composites(version))
+    });
     root.child(own)
         .child(element("composite", Some(&COMPOSITE)))
         // Loops, which are of another namespace, hold those of a component.
         .child(element("property", Some(&COMPONENT_PROPERTY)))
         .children(everywhere().into_iter().map(|(name, kind)| element(name, kind)))
         .children(roots)
-        .children(others.map(|(_, kind)| complex(kind, version)))
-        .child(complex(&COMPONENT, version).children(assertions))
+        .children(composite)
+        .children(others.map(|(_, kind)| complex(kind, version, has_assertions)))
+        .child(complex(&COMPONENT, version, has_assertions).children(assertions))
         .child(open())
 }
 
@@ -122,7 +130,8 @@ fn element(name: &str, kind: Option<&Kind>) -> Node {
         .children(unique)
 }
 
-fn complex(kind: &'static Kind, version: Version) -> Node {
+/// The type of an element. Other namespaces are open; that of SAOMS has what is known alone, where XSD can say so: with assertions.
+fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> Node {
     let node = Node::new("xs:complexType").with("name", name_of(kind));
     let is_property =
         [&COMPONENT_PROPERTY, &COMPOSITE_PROPERTY].into_iter().any(|one| std::ptr::eq(one, kind));
@@ -139,10 +148,14 @@ fn complex(kind: &'static Kind, version: Version) -> Node {
     let own = own_attributes(kind)
         .map(|known| Node::new("xs:attribute").with("ref", format!("saoms:{}", known.name)));
     // The schema of SCA 1.0 lets any attribute pass.
-    let others = if version.is_1_1() { "##other" } else { "##any" };
-    node.children(attributes(kind, version))
-        .children(own)
-        .child(Node::new("xs:anyAttribute").with("namespace", others).with("processContents", "lax"))
+    let others = Node::new("xs:anyAttribute");
+    let others = match (version.is_1_1(), has_assertions) {
+        (true, true) => others.with("notNamespace", format!("##targetNamespace ##local {SAOMS_NAMESPACE}")),
+        (false, true) => others.with("notNamespace", SAOMS_NAMESPACE),
+        (true, false) => others.with("namespace", "##other"),
+        (false, false) => others.with("namespace", "##any"),
+    };
+    node.children(attributes(kind, version)).children(own).child(others.with("processContents", "lax"))
 }
 
 /// The declarations of the attributes of an element.

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::{Layout, Point, layout};
 use crate::graph::diagram::{Component, Port, Setting};
-use crate::graph::text::{end, start, width};
+use crate::graph::text::{end, short, width};
 
 /// All boxes and lines stand on a grid of so many pixels: two lines are one or well apart.
 pub(in crate::graph) const GRID: i32 = 8;
@@ -55,9 +55,9 @@ pub(in crate::graph) struct Plan {
 impl Plan {
     pub(in crate::graph) fn of(component: &Component, has_topics: bool) -> Self {
         let label = component.label();
-        let name_text = start(if label.is_empty() { "?" } else { &label }, 32);
+        let name_text = short(if label.is_empty() { "?" } else { &label }, 32);
         let class_text = end(&component.class, 36);
-        let labels = |ports: &[Port]| ports.iter().map(|port| start(&port.name, 28)).collect();
+        let labels = |ports: &[Port]| ports.iter().map(|port| short(&port.name, 28)).collect();
         let services: Vec<String> = labels(&component.services);
         let references: Vec<String> = labels(&component.references);
         let rows = services.len().max(references.len());
@@ -69,8 +69,9 @@ impl Plan {
         let texts = texts.into_iter().map(|text| text + 20);
         let inside = (0..rows).map(row).chain(texts).chain([96]).max().unwrap_or_default();
         let (chips, chips_width, chips_height) = chips(&component.properties, (inside - 16).max(184));
-        let body = (chips_height - GRID).max(0);
-        let top = body + if chips.is_empty() { 0 } else { GRID };
+        // The first row sticks out of the body, the others are in it.
+        let body = if chips.is_empty() { 0 } else { GRID };
+        let top = chips_height;
         let header = if class_text.is_empty() { 3 * GRID } else { 5 * GRID };
         let ports = top + header + PITCH * rows as i32;
         let topics = has_topics.then_some(ports + GRID);
@@ -78,7 +79,8 @@ impl Plan {
         let mut height = if has_topics || rows > 0 { ports + 2 * GRID } else { ports + GRID };
         let inside = component.inside.as_deref().map(|diagram| {
             let picture = layout(diagram, false);
-            width = width.max(on_grid(picture.width) + 2 * GRID);
+            // On both sides is room for the lines of what it promotes.
+            width = width.max(on_grid(picture.width) + 4 * GRID);
             let at = Point { x: (width - picture.width) / 2, y: height };
             height += on_grid(picture.height) + GRID;
             (Rc::new(picture), at)
@@ -117,7 +119,7 @@ pub(in crate::graph) fn chips(settings: &[Setting], most: i32) -> (Vec<Chip>, i3
     let mut chips: Vec<Chip> = Vec::with_capacity(settings.len());
     let (mut x, mut y, mut widest) = (0, 0, 0);
     for setting in settings {
-        let text = start(&setting.name, 24);
+        let text = short(&setting.name, 24);
         let width = width(&text, CHIP_SIZE, false) + 8;
         if x > 0 && x + width > most {
             (x, y) = (0, y + PITCH);

@@ -97,6 +97,8 @@ pub(super) struct Layout {
     pub(super) height: i32,
     /// The box of the composite.
     pub(super) frame: Rect,
+    /// How far its name is below the usual place, below its properties.
+    pub(super) name: i32,
     /// Its properties.
     pub(super) chips: Vec<Chip>,
     /// The middles of its services and references.
@@ -166,13 +168,16 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> La
     let widths = column_widths(diagram, plans, &items);
     let (lefts, channels, right) = routes.columns(&widths);
 
-    let title = TITLE.max(GRID * routes.lanes() + TITLE);
     let (chips, _, chips_height) = chips(&diagram.properties, (right - 2 * GRID).max(184));
+    // The first row of properties sticks out of the frame, the others are in it.
+    let name = (chips_height - 2 * GRID).max(0);
+    let title = name + TITLE.max(GRID * routes.lanes() + TITLE);
     let longest = |names: Vec<&str>| names.into_iter().map(|name| width(name, SMALL_SIZE, false)).max();
     let outside = |names: Vec<&str>| longest(names).map_or(0, |width| width + CHEVRON + 4);
     let left_labels = outside(diagram.services.iter().map(|port| &*port.name).collect());
     let right_labels = outside(diagram.references.iter().map(|port| &*port.name).collect());
-    let origin = Point { x: around + left_labels, y: around + (chips_height - GRID).max(0) + GRID + title };
+    let origin =
+        Point { x: around + left_labels, y: around + if chips.is_empty() { 0 } else { GRID } + GRID + title };
 
     let bottom = items.height();
     let title_width = width(&diagram.name, NAME_SIZE + 2, true) + 4 * GRID;
@@ -188,9 +193,10 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> La
         width: (frame.x + frame.width + right_labels + around).max(least),
         height: frame.y + frame.height + around + legend,
         frame,
+        name,
         chips: chips
             .into_iter()
-            .map(|chip| Chip { x: frame.x + chip.x, y: frame.y - chips_height + GRID + chip.y, ..chip })
+            .map(|chip| Chip { x: frame.x + chip.x, y: frame.y - GRID + chip.y, ..chip })
             .collect(),
         ..Layout::default()
     };
@@ -219,7 +225,7 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> La
     // Those of topics first: the others are drawn over them.
     let (rails, marks, mut lines) =
         rails::draw(diagram, &routes, &sides, &channels, origin.y + bottom + 2 * GRID);
-    lines.extend(routes.draw(&sides, &channels, frame.y + TITLE));
+    lines.extend(routes.draw(&sides, &channels, frame.y + name + TITLE));
     (layout.rails, layout.marks, layout.lines) = (rails, marks, lines);
     layout
 }

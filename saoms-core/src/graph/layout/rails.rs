@@ -4,7 +4,7 @@ use super::lines::{Owner, Routes};
 use super::measure::{GRID, SMALL_SIZE};
 use super::{Line, LineKind, Mark, Point, Rail, Rect, Sides};
 use crate::graph::diagram::Diagram;
-use crate::graph::text::{start, width};
+use crate::graph::text::{short, width};
 
 /// From one rail to the next.
 const PITCH: i32 = 3 * GRID;
@@ -22,7 +22,7 @@ pub(super) fn label_width(diagram: &Diagram) -> i32 {
 }
 
 fn label(name: &str) -> String {
-    start(name, 32)
+    short(name, 32)
 }
 
 /// The rails from `top` on, and what components do with them; the lines of components are drawn into `lines` of the layout.

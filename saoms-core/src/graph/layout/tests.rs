@@ -58,6 +58,7 @@ fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], p
         (0..count).filter(move |place| (place + from).is_multiple_of(step.max(1))).collect()
     };
     let topic = |(place, (from, step)): (usize, &(usize, usize))| Topic {
+        names: Vec::new(),
         name: format!("TOPIC{place}"),
         kind: TopicKind::Event,
         message: "M".to_owned(),
