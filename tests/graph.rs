@@ -176,7 +176,7 @@ fn what_is_in_replicas_is_counted_in_each_of_them() {
     let (_, shown, _) = graph(&[&path, "--format", "mermaid"]);
     assert!(shown.contains("c1_r0 -->|\"world \u{2192} hardware\"| c0"), "{shown}");
     let (_, shown, _) = graph(&[&path, "--format", "dot"]);
-    assert!(shown.contains("c1_r0 -> c1:r0 [style=dashed]"), "{shown}");
+    assert!(shown.contains("c1_r0 -> c0:s0:w;"), "{shown}");
     // The legend has what the picture has.
     let lone = folder.path().join("lone.composite");
     composite("lone", world);

@@ -38,11 +38,13 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut String) {
             out.push_str(&node);
             continue;
         };
-        // A cluster has no ports: a node in it has them, and is joined to what the composite inside promotes.
-        open(&id, &component.label(), out);
-        out.push_str(&node);
+        let about = [component.label(), component.class.clone()];
+        open(&id, about.join(" ").trim_end(), out);
+        // Wires lead to what the composite inside promotes; for the rest there is a node.
+        if !is_all_inside(component, inside) {
+            out.push_str(&node);
+        }
         composite(inside, &format!("{id}_"), out);
-        ties(component, inside, &id, out);
     }
     for (place, topic) in diagram.topics.iter().enumerate() {
         let (name, tooltip) =
@@ -69,29 +71,39 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut String) {
     edges(diagram, prefix, out);
 }
 
-/// Joins the parts of a component to what the composite that implements it promotes.
-fn ties(component: &Component, inside: &Diagram, id: &str, out: &mut String) {
-    let named = |ports: &[Port], name: &str| ports.iter().position(|port| port.name == name);
-    for (place, port) in inside.services.iter().enumerate() {
-        if let Some(outer) = named(&component.services, &port.name) {
-            let _ = writeln!(out, "  {id}:s{outer} -> {id}_s{place} [style=dashed];");
-        }
-    }
-    for (place, port) in inside.references.iter().enumerate() {
-        if let Some(outer) = named(&component.references, &port.name) {
-            let _ = writeln!(out, "  {id}_r{place} -> {id}:r{outer} [style=dashed];");
-        }
-    }
+/// What a composite promotes under a name, which stands for that of its component.
+fn named(ports: &[Port], name: &str) -> Option<usize> {
+    ports.iter().position(|port| port.name == name)
+}
+
+/// Whether all services and references of a component are promoted by the composite inside it.
+fn is_all_inside(component: &Component, inside: &Diagram) -> bool {
+    let are = |outer: &[Port], inner: &[Port]| outer.iter().all(|port| named(inner, &port.name).is_some());
+    are(&component.services, &inside.services) && are(&component.references, &inside.references)
 }
 
 fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
     for link in &diagram.links {
         let from = match link.from {
-            End::Component { component, port } => format!("{prefix}c{component}:r{port}:e"),
+            End::Component { component, port } => {
+                let one = &diagram.components[component];
+                let inside = one.inside.as_deref();
+                match inside.and_then(|inside| named(&inside.references, &one.references[port].name)) {
+                    Some(place) => format!("{prefix}c{component}_r{place}"),
+                    None => format!("{prefix}c{component}:r{port}:e"),
+                }
+            }
             End::Composite(place) => format!("{prefix}s{place}"),
         };
         let to = match link.to {
-            End::Component { component, port } => format!("{prefix}c{component}:s{port}:w"),
+            End::Component { component, port } => {
+                let one = &diagram.components[component];
+                let inside = one.inside.as_deref();
+                match inside.and_then(|inside| named(&inside.services, &one.services[port].name)) {
+                    Some(place) => format!("{prefix}c{component}_s{place}"),
+                    None => format!("{prefix}c{component}:s{port}:w"),
+                }
+            }
             End::Composite(place) => format!("{prefix}r{place}"),
         };
         let style = if link.kind == LinkKind::Promotion { " [style=dashed]" } else { "" };

@@ -148,6 +148,10 @@ impl Out {
             self.label("small", middle(plan.class), &plan.class_text, SMALL_SIZE, "middle");
         }
         self.chips(&plan.chips, &component.properties, Point { x: rect.x, y: rect.y });
+        // Behind the chevrons that it joins.
+        if let (Some((picture, at)), Some(inside)) = (&plan.inside, &component.inside) {
+            self.ties(placed, component, inside, picture, Point { x: rect.x + at.x, y: rect.y + at.y });
+        }
         for (place, port) in component.services.iter().enumerate() {
             let at = Point { x: rect.x, y: rect.y + plan.port(place) };
             let label = Point { x: at.x + LABEL, y: at.y };
@@ -163,7 +167,6 @@ impl Out {
             let _ = writeln!(self.text, "<g transform=\"translate({x},{y})\">");
             self.draw(inside, picture);
             self.text.push_str("</g>");
-            self.ties(placed, component, inside, picture, Point { x, y });
         }
         self.text.push_str("</g>\n");
     }
