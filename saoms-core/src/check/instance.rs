@@ -89,7 +89,8 @@ impl Instance {
             component.services.retain(|service| !has_expression(&service.name));
             component.references.retain(|reference| !has_expression(&reference.name));
             component.loops.retain(|one| {
-                let texts = [Some(&one.name), one.class.as_ref(), one.before.as_ref(), one.after.as_ref()];
+                let texts =
+                    [Some(&one.name), one.class.as_deref(), one.before.as_deref(), one.after.as_deref()];
                 !texts.into_iter().flatten().any(|text| has_expression(text))
             });
         }
@@ -136,7 +137,7 @@ fn each_text(component: &mut Component, each: &mut dyn FnMut(&mut Text)) {
     }
     for one in &mut component.loops {
         each(&mut one.name);
-        [&mut one.class, &mut one.before, &mut one.after].into_iter().flatten().for_each(&mut *each);
+        [&mut one.class, &mut one.before, &mut one.after].into_iter().flatten().for_each(|text| each(text));
         one.properties.iter_mut().for_each(|property| of_property(property, each));
     }
 }

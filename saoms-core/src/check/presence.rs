@@ -80,7 +80,7 @@ impl<'a> Unfolding<'a> {
     /// Finds the wires of a composite that conditions keep away.
     pub(super) fn wires(&mut self, composite: &'a Composite, unit: usize, report: &mut Report<'_>) {
         for wire in &composite.wires {
-            if !self.is_there(wire.condition.as_ref(), wire.origin, unit, report) {
+            if !self.is_there(wire.condition(), wire.origin, unit, report) {
                 self.fleet.absent_wires.insert((unit, wire.origin.file(), wire.origin.element));
             }
         }

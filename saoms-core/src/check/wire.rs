@@ -34,7 +34,7 @@ pub(super) fn wires<'f>(
                 let _ = (Uri::of(source, 2, report), Uri::of(to, 3, report));
                 continue;
             }
-            let is_replacing = wire.replace.as_ref().is_some_and(|replace| replace.value);
+            let is_replacing = wire.replace().is_some_and(|replace| replace.value);
             for (one, _) in spread(source, scope, fleet) {
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
                     // Both ends can be wrong.

@@ -85,9 +85,9 @@ impl Loader<'_> {
                 }
             }
         }
-        component.properties = self.gathered.properties.drain(..).collect();
-        component.services = self.gathered.services.drain(..).collect();
-        component.references = self.gathered.references.drain(..).collect();
+        component.properties = parted(&mut self.gathered.properties);
+        component.services = parted(&mut self.gathered.services);
+        component.references = parted(&mut self.gathered.references);
         self.is_replicated = false;
         // An element that was not read to its end may have had one.
         if component.implementation.is_none() && !has_faulty && element.is_closed() {
@@ -182,4 +182,16 @@ impl Loader<'_> {
         let one = Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message);
         self.report(one.severity(severity).help(help));
     }
+}
+
+/// The parts that were gathered for a component, in a list of their size.
+fn parted<T>(gathered: &mut Vec<T>) -> Vec<T> {
+    /// Up to here the memory of the list is kept for the next component; a longer one is not copied.
+    const FEW: usize = 64;
+    if gathered.len() > FEW {
+        let mut all = std::mem::take(gathered);
+        all.shrink_to_fit();
+        return all;
+    }
+    gathered.drain(..).collect()
 }

@@ -8,7 +8,7 @@ use super::vocabulary::{
     COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INCLUDE, WIRE,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Composite, Include, Origin, Wire};
+use crate::model::{Composite, Include, Origin, Wire, WireDetails};
 use crate::source::{Located, Text};
 use crate::xml::{Document, Element};
 
@@ -94,12 +94,17 @@ impl Loader<'_> {
         let is_plain = self.is_plain(element, &WIRE, &["source", "target"]);
         self.no_text(element);
         self.leaf(element, &WIRE);
-        Wire {
+        let mut wire = Wire {
             origin: Origin::of(element),
             source: self.required(element, "source"),
             target: self.required(element, "target"),
-            replace: if is_plain { None } else { self.boolean(element, "replace") },
-            condition: if is_plain { None } else { self.own(element, "if") },
+            details: None,
+        };
+        if !is_plain {
+            let (replace, condition) = (self.boolean(element, "replace"), self.own(element, "if"));
+            let is_given = replace.is_some() || condition.is_some();
+            wire.details = is_given.then(|| Box::new(WireDetails { replace, condition }));
         }
+        wire
     }
 }

@@ -24,9 +24,9 @@ impl Loader<'_> {
         Loop {
             origin: Origin::of(element),
             name: self.name(element),
-            class: self.optional(element, "class"),
-            before: self.optional(element, "before"),
-            after: self.optional(element, "after"),
+            class: self.optional(element, "class").map(Box::new),
+            before: self.optional(element, "before").map(Box::new),
+            after: self.optional(element, "after").map(Box::new),
             remove: self.boolean(element, "remove"),
             properties,
         }

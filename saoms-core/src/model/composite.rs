@@ -66,10 +66,29 @@ pub struct Wire {
     pub source: Option<Text>,
     /// `target`: `component`, `component/service` or `component/service/binding`; `None` when the file has none.
     pub target: Option<Text>,
+    /// What few wires have.
+    pub details: Option<Box<WireDetails>>,
+}
+
+/// What few wires have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WireDetails {
     /// `replace` (1.1)
     pub replace: Option<Located<bool>>,
     /// `if`, in the namespace of SAOMS: it is there only where this is true.
     pub condition: Option<Text>,
+}
+
+impl Wire {
+    /// `replace` (1.1)
+    pub fn replace(&self) -> Option<Located<bool>> {
+        self.details.as_ref()?.replace
+    }
+
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub fn condition(&self) -> Option<&Text> {
+        self.details.as_ref()?.condition.as_ref()
+    }
 }
 
 parts!(Composite, Include, Wire);

@@ -12,11 +12,11 @@ pub struct Loop {
     /// `name`: what the loop is called within the component; empty, at the tag, when the file has none.
     pub name: Text,
     /// `class`: a name in the registry.
-    pub class: Option<Text>,
+    pub class: Option<Box<Text>>,
     /// `before`: the loop that it stands directly before.
-    pub before: Option<Text>,
+    pub before: Option<Box<Text>>,
     /// `after`: the loop that it stands directly after.
-    pub after: Option<Text>,
+    pub after: Option<Box<Text>>,
     /// `remove`.
     pub remove: Option<Located<bool>>,
     /// Its properties in order.

@@ -20,7 +20,7 @@ mod version;
 
 pub use component::{Component, Implementation, ImplementationKind};
 pub use component_type::ComponentType;
-pub use composite::{Composite, Include, Wire};
+pub use composite::{Composite, Include, Wire, WireDetails};
 pub use contract::{
     Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
 };

@@ -163,7 +163,7 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
     let wire = &composite.wires[0];
     assert_eq!(both(wire.source.as_ref().unwrap()).1, "Robot/gps");
     assert_eq!(both(wire.target.as_ref().unwrap()).1, "Gps3/Where");
-    assert!(*wire.replace.unwrap());
+    assert!(*wire.replace().unwrap());
 }
 
 #[test]
