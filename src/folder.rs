@@ -126,6 +126,11 @@ pub(crate) fn checked_each<T>(
     Ok(Several { checked, made, fleets: count })
 }
 
+/// Whether it is for those who use a composite to mend: it is no fault where these may be elsewhere.
+pub(crate) fn is_of_user(one: &Diagnostic) -> bool {
+    [&codes::COMPOSITE_PROPERTY_MISSING, &codes::PROMOTED_UNWIRED].contains(&one.code)
+}
+
 /// The diagnostics of several fleets, in which composites can be that several of them name.
 #[derive(Default)]
 struct Merged {
@@ -140,9 +145,7 @@ impl Merged {
     /// Adds those of a fleet. One that nobody says runs by itself may lack what those that use it give.
     fn add(&mut self, found: Vec<Diagnostic>, is_deployable: bool, sources: &Sources) {
         for one in found {
-            let is_of_user =
-                one.code == &codes::COMPOSITE_PROPERTY_MISSING || one.code == &codes::PROMOTED_UNWIRED;
-            if is_of_user && !is_deployable && !self.is_one {
+            if is_of_user(&one) && !is_deployable && !self.is_one {
                 continue;
             }
             if one.code == &codes::UNKNOWN_SETTING {

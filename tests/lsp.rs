@@ -296,3 +296,62 @@ fn what_is_wrong_is_mended_and_names_are_changed_in_all_files() {
     assert!(laid_out.contains("\n  <wire source"), "{laid_out}");
     assert_eq!(editor.end(), 0);
 }
+
+#[test]
+fn composites_are_checked_as_the_description_of_their_contribution_says() {
+    let open = "<property name=\"size\" mustSupply=\"true\"/>\n<component name=\"GPS\"><implementation.java class=\"resources.robotEnvironment.GPS\"/></component>";
+    let (library, first) = (composite(open).replace("\"fleet\"", "\"library\""), composite(open));
+    let second = first.replace("\"fleet\"", "\"second\"").replace(" mustSupply=\"true\"", "");
+    let description = "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:f=\"urn:f\"><deployable composite=\"f:fleet\"/><deployable composite=\"f:second\"/></contribution>";
+    let mut editor = Editor::started(
+        "contribution",
+        &[
+            ("fleet.composite", &first),
+            ("second.composite", &second),
+            ("library.composite", &library),
+            ("sca-contribution.xml", description),
+        ],
+    );
+    editor.open("fleet.composite", &first);
+    editor.open("library.composite", &library);
+    // Both deployables have a component of one name, and the value that is missing in what is only used by others is theirs.
+    let mut shown = std::collections::BTreeMap::new();
+    while shown.len() < 3 {
+        let message = editor.receive();
+        let uri = message["params"]["uri"].as_str().unwrap_or_default().to_owned();
+        if let Some(all) = message["params"]["diagnostics"].as_array() {
+            let mut codes: Vec<&str> = all.iter().map(|one| one["code"].as_str().unwrap()).collect();
+            codes.sort_unstable();
+            shown.insert(uri.rsplit('/').next().unwrap().to_owned(), codes.join(" "));
+        }
+    }
+    let expected = [
+        ("fleet.composite", "S2025 S2026"),
+        ("library.composite", "S2026"),
+        ("second.composite", "S2002 S2026"),
+    ];
+    assert_eq!(shown, expected.map(|(name, codes)| (name.to_owned(), codes.to_owned())).into());
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn a_text_without_a_file_is_checked_and_completed() {
+    let mut editor = Editor::started("untitled", &[]);
+    let text = composite("<wrie/>");
+    let uri = "untitled:Untitled-1";
+    let document = json!({ "uri": uri, "languageId": "saoms", "version": 1, "text": text });
+    editor.tell("textDocument/didOpen", json!({ "textDocument": document }));
+    loop {
+        let message = editor.receive();
+        if message["params"]["uri"] == uri {
+            let all = message["params"]["diagnostics"].as_array().unwrap();
+            assert!(all.iter().any(|one| one["range"]["start"]["line"] == 1), "{all:?}");
+            break;
+        }
+    }
+    let position = json!({ "line": 1, "character": 3 });
+    let answer = editor
+        .ask("textDocument/completion", json!({ "textDocument": { "uri": uri }, "position": position }));
+    assert_eq!(answer["result"]["items"][0]["label"], "wire");
+    assert_eq!(editor.end(), 0);
+}

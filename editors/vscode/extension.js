@@ -16,7 +16,7 @@ async function start() {
   const folder = workspace.workspaceFolders?.[0]?.uri.fsPath;
   const server = { ...commandLine(workspace.getConfiguration("saoms")), options: { cwd: folder } };
   client = new LanguageClient("saoms", "SAOMS", server, {
-    documentSelector: [{ scheme: "file", language: "saoms" }],
+    documentSelector: ["file", "untitled"].map((scheme) => ({ scheme, language: "saoms" })),
   });
   try {
     await client.start();

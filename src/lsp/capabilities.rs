@@ -63,10 +63,11 @@ pub(super) fn capabilities() -> Value {
     })
 }
 
-/// The files whose changes on disk are of interest: what is checked, and the libraries of plugins.
+/// The files whose changes on disk are of interest: what is checked, tables and texts that values are in, and the libraries of plugins.
 pub(super) fn watchers() -> Value {
-    let globs = ["**/*.composite", "**/*.componentType", "**/sca-contribution.xml", "**/*.so"];
-    let watchers = globs.map(|glob| json!({ "globPattern": glob }));
+    let endings = ["composite", "componentType", "csv", "txt", "so"].map(|ending| format!("**/*.{ending}"));
+    let globs = endings.into_iter().chain(["**/sca-contribution.xml".to_owned()]);
+    let watchers: Vec<Value> = globs.map(|glob| json!({ "globPattern": glob })).collect();
     json!({ "registrations": [{
         "id": "files",
         "method": "workspace/didChangeWatchedFiles",

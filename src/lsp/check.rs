@@ -17,9 +17,10 @@ use saoms_api::contain::contained;
 
 use super::diagnostics::{Reported, reported};
 use super::registries::Registries;
-use super::scene::Scene;
+use super::scene::{Fleet, Scene};
 use super::workspace::Workspace;
 use crate::fleet::{Asked, checked_with};
+use crate::folder::is_of_user;
 use crate::output::eprint;
 
 /// How long nothing has to change before a check starts.
@@ -83,34 +84,37 @@ impl Checker {
         let mut files: BTreeMap<PathBuf, Vec<Reported>> = BTreeMap::new();
         let (mut checked, mut seen) = (HashSet::new(), HashSet::new());
         for path in &job.paths {
-            for root in self.roots(path) {
-                if checked.insert(root.clone()) {
-                    self.one(&root, &job, &mut files, &mut seen)?;
+            for (fleet, may_be_part) in self.fleets(path) {
+                if checked.insert(fleet.clone()) {
+                    self.one(&fleet, may_be_part, &job, &mut files, &mut seen)?;
                 }
             }
-            // A root that is broken does not lead here.
-            if !seen.contains(path) && checked.insert(path.clone()) {
-                self.one(path, &job, &mut files, &mut seen)?;
+            // A fleet that is broken does not lead here.
+            let alone = vec![path.clone()];
+            if !seen.contains(path) && checked.insert(alone.clone()) {
+                self.one(&alone, false, &job, &mut files, &mut seen)?;
             }
         }
         (self.newest.load(Ordering::Relaxed) == job.generation)
             .then_some(Outcome { generation: job.generation, files })
     }
 
-    /// The composites that are checked for the sake of one: those that it is part of and nothing else names.
-    fn roots(&mut self, path: &Path) -> Vec<PathBuf> {
+    /// The fleets that one composite is part of, and of each whether others elsewhere may use it.
+    fn fleets(&mut self, path: &Path) -> Vec<(Vec<PathBuf>, bool)> {
         let files = self.workspace.around(path);
         if files.first().is_none_or(|first| first.path != path) {
-            return vec![path.to_owned()];
+            return vec![(vec![path.to_owned()], false)];
         }
         let scene = Scene::new(files, self.registries.of(path, &[]));
-        scene.roots().into_iter().map(|root| scene.files[root].path.clone()).collect()
+        let paths = |fleet: &Fleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
+        scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect()
     }
 
-    /// Checks one composite with all that it names. `None` where something changed in the meantime.
+    /// Checks composites as one fleet, with all that they name. `None` where something changed in the meantime.
     fn one(
         &self,
-        root: &Path,
+        fleet: &[PathBuf],
+        may_be_part: bool,
         job: &Job,
         files: &mut BTreeMap<PathBuf, Vec<Reported>>,
         seen: &mut HashSet<PathBuf>,
@@ -121,15 +125,16 @@ impl Checker {
         // Nothing of a plugin runs because somebody looks at a file.
         let options =
             Options { assume_classes: self.assume_classes, without_plugin_code: true, ..Options::default() };
+        let Some(root) = fleet.first() else { return Some(()) };
         let registry = Registry::clone(&self.registries.of(root, &[]));
         let search = self.registries.search(root);
         let sources = Sources::with_open(job.open.clone());
-        let asked = Asked { files: &[root.to_owned()], max_size: MAX_SIZE, options, search: &search };
+        let asked = Asked { files: fleet, max_size: MAX_SIZE, options, search: &search };
         let found = checked_with(count, asked, registry, sources, Diagnostics::new());
         for (_, file) in found.sources.iter() {
             seen.insert(identity(Path::new(file.path())));
         }
-        let told: Vec<_> = found.told().cloned().collect();
+        let told: Vec<_> = found.told().filter(|one| !(may_be_part && is_of_user(one))).cloned().collect();
         for (path, one) in reported(&told, &found.sources) {
             let known = files.entry(path).or_default();
             // Composites that several others name have their faults once.

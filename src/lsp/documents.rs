@@ -27,12 +27,11 @@ pub(super) struct Documents {
 }
 
 impl Documents {
-    /// Takes in a text; one without a file of its own is none that can be asked about.
+    /// Takes in a text. One that has no file yet, as `untitled:Untitled-1`, counts as one in the folder that the server was started in.
     pub(super) fn open(&mut self, uri: String, version: i32, text: String) {
-        if let Some(path) = uri::path(&uri) {
-            let path = identity(&path);
-            self.all.insert(uri, Document { path, version, text: text.into() });
-        }
+        let path = uri::path(&uri).unwrap_or_else(|| uri.replace('/', "_").into());
+        let path = identity(&path);
+        self.all.insert(uri, Document { path, version, text: text.into() });
     }
 
     pub(super) fn change(&mut self, uri: &str, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
@@ -77,8 +76,11 @@ fn apply(text: &mut String, change: TextDocumentContentChangeEvent) {
 #[cfg(test)]
 mod tests {
     use lsp_types::{Position, Range};
+    use proptest::prelude::*;
 
     use super::*;
+    use crate::lsp::file::File;
+    use crate::lsp::workspace::Workspace;
 
     fn change(from: (u32, u32), to: (u32, u32), text: &str) -> TextDocumentContentChangeEvent {
         let range = Range::new(Position::new(from.0, from.1), Position::new(to.0, to.1));
@@ -107,5 +109,63 @@ mod tests {
         all.change("file:///other", 4, vec![whole("x")]);
         all.close(uri);
         assert!(all.get(uri).is_none());
+    }
+
+    /// The same change on UTF-16 units, as the protocol describes it.
+    fn replaced(text: &[u16], from: (u32, u32), to: (u32, u32), new: &str) -> Vec<u16> {
+        let is = |at: usize, sign: char| text.get(at) == Some(&(sign as u16));
+        let offset = |(line, column): (u32, u32)| {
+            let mut at = usize::from(text.first() == Some(&0xfeff));
+            for _ in 0..line {
+                while at < text.len() && !is(at, '\n') && !is(at, '\r') {
+                    at += 1;
+                }
+                if at == text.len() {
+                    return at;
+                }
+                at += if is(at, '\r') && is(at + 1, '\n') { 2 } else { 1 };
+            }
+            let mut column = column;
+            while column > 0 && at < text.len() && !is(at, '\n') && !is(at, '\r') {
+                let is_pair = (0xd800..0xdc00).contains(&text[at]);
+                // A place within a character is before it.
+                if is_pair && column == 1 {
+                    break;
+                }
+                (at, column) = if is_pair { (at + 2, column - 2) } else { (at + 1, column - 1) };
+            }
+            at
+        };
+        let (start, end) = (offset(from), offset(to));
+        [&text[..start], &new.encode_utf16().collect::<Vec<u16>>(), &text[end.max(start)..]].concat()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn any_changes_come_to_the_text_that_the_editor_has(
+            first in "\u{feff}?(<a>|ä|🤖|\r\n|\n|\r|x){0,12}",
+            edits in prop::collection::vec(((0u32..6, 0u32..8), (0u32..6, 0u32..8), "(<b|\"|🤖|ü|\r\n|\n|\r|y){0,4}"), 1..12),
+        ) {
+            let folder = tempfile::tempdir().unwrap();
+            let uri = &uri::uri(&folder.path().join("fleet.composite"));
+            let mut all = Documents::default();
+            let mut expected: Vec<u16> = first.encode_utf16().collect();
+            all.open(uri.clone(), 0, first);
+            for (version, (from, to, new)) in (1..).zip(&edits) {
+                all.change(uri, version, vec![change(*from, *to, new)]);
+                expected = replaced(&expected, *from, *to, new);
+            }
+            let (text, expected) = (all.get(uri).unwrap().text.to_string(), String::from_utf16(&expected).unwrap());
+            prop_assert_eq!(&text, &expected);
+            // What is known of it is what a file with that text would show.
+            let mut workspace = Workspace::default();
+            workspace.set_open(all.texts());
+            let around = workspace.around(&all.get(uri).unwrap().path);
+            let read = File::new("/fleet.composite".into(), expected.into());
+            prop_assert_eq!(format!("{:?}", around[0].outline), format!("{:?}", read.outline));
+            prop_assert_eq!(format!("{:?}", around[0].tree), format!("{:?}", read.tree));
+        }
     }
 }

@@ -27,7 +27,7 @@ impl<'s> Found<'s> {
         if let Some(name) = &outline.name {
             all.add(name, true, || Some(Symbol::Composite { file }));
         }
-        for name in &outline.includes {
+        for name in outline.includes.iter().chain(&outline.deployables) {
             all.add(name, false, || Some(Symbol::Composite { file: scene.composite(file, name)? }));
         }
         for name in &outline.properties {

@@ -19,6 +19,8 @@ pub(super) struct Outline {
     pub(super) components: Vec<Component>,
     /// The composites that it includes.
     pub(super) includes: Vec<Named>,
+    /// The composites that the description of a contribution says run.
+    pub(super) deployables: Vec<Named>,
     pub(super) properties: Vec<Named>,
     pub(super) services: Vec<Named>,
     pub(super) references: Vec<Named>,
@@ -110,6 +112,11 @@ impl Outline {
         }
         for place in 0..outline.components.len() {
             outline.templates(text, tree, place);
+        }
+        if !tree.elements.is_empty() && tree.local(text, 0) == "contribution" {
+            let inside = tree.children(0).filter(|child| tree.local(text, *child) == "deployable");
+            let named = inside.filter_map(|element| Reader { text, tree, element }.named("composite"));
+            outline.deployables.extend(named);
         }
         outline
     }

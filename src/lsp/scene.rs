@@ -27,6 +27,14 @@ pub(super) struct Scene {
     beside: HashMap<PathBuf, usize>,
 }
 
+/// Composites that are checked as one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Fleet {
+    pub(super) files: Vec<usize>,
+    /// Whether others elsewhere may use it, so that what it leaves open is no fault.
+    pub(super) may_be_part: bool,
+}
+
 /// The files whose components, wires and properties form one composite.
 #[derive(Debug)]
 struct Unit {
@@ -91,26 +99,37 @@ impl Scene {
         reached(vec![file], |place| self.includes[place].clone())
     }
 
-    /// The files that are checked for the sake of the first: those from which it is reached by includes and implementations, and that nothing
-    /// reaches itself.
-    pub(super) fn roots(&self) -> Vec<usize> {
-        let names: Vec<Vec<usize>> = (0..self.files.len())
-            .map(|place| {
-                let outline = &self.files[place].outline;
-                let implementations = outline.components.iter().filter_map(|one| match &one.implementation {
-                    Some(Implementation::Composite(name)) => self.composite(place, name),
-                    _ => None,
-                });
-                self.includes[place].iter().copied().chain(implementations).collect()
-            })
-            .collect();
-        let users = |place: usize| -> Vec<usize> {
-            (0..names.len()).filter(|other| *other != place && names[*other].contains(&place)).collect()
-        };
-        let roots: Vec<usize> =
-            reached(vec![0], users).into_iter().filter(|one| users(*one).is_empty()).collect();
-        // Composites that go around in circles have none.
-        if roots.is_empty() { vec![0] } else { roots }
+    /// The fleets that the first file is part of, as a check of the whole folder has them: what the description of the contribution calls deployable is one, and
+    /// every other composite that no composite names is one of its own.
+    pub(super) fn fleets(&self) -> Vec<Fleet> {
+        let (mut names, mut users) = (Vec::new(), vec![Vec::new(); self.files.len()]);
+        for place in 0..self.files.len() {
+            let components = &self.files[place].outline.components;
+            let implementations = components.iter().filter_map(|one| match &one.implementation {
+                Some(Implementation::Composite(name)) => self.composite(place, name),
+                _ => None,
+            });
+            let named: BTreeSet<usize> =
+                self.includes[place].iter().copied().chain(implementations).collect();
+            named.iter().filter(|one| **one != place).for_each(|one| users[*one].push(place));
+            names.push(named);
+        }
+        let described = self.files.iter().enumerate().flat_map(|(file, one)| {
+            one.outline.deployables.iter().filter_map(move |name| self.composite(file, name))
+        });
+        let deployed: BTreeSet<usize> = described.collect();
+        let is_alone = |one: &usize| users[*one].is_empty() && !deployed.contains(one);
+        let composites = (0..self.files.len()).filter(|one| self.files[*one].outline.name.is_some());
+        let others = composites.filter(is_alone).count();
+        let may_be_part = others + usize::from(!deployed.is_empty()) > 1;
+        let alone = reached(vec![0], |place| users[place].clone()).into_iter().filter(is_alone);
+        let mut fleets: Vec<Fleet> = alone.map(|root| Fleet { files: vec![root], may_be_part }).collect();
+        let deployed: Vec<usize> = deployed.into_iter().collect();
+        if reached(deployed.clone(), |place| names[place].iter().copied().collect()).contains(&0) {
+            fleets.insert(0, Fleet { files: deployed, may_be_part: false });
+        }
+        // Composites that go around in circles have nothing around them.
+        if fleets.is_empty() { vec![Fleet { files: vec![0], may_be_part: false }] } else { fleets }
     }
 
     fn included(&self, file: usize) -> Vec<usize> {

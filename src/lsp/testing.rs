@@ -21,7 +21,11 @@ pub(super) fn scene(marked: &str, others: &[(&str, &str)]) -> (Scene, usize) {
 pub(super) fn scene_of(text: &str, others: &[(&str, &str)]) -> Scene {
     let all = [("fleet.composite", text)].into_iter().chain(others.iter().copied());
     let files = all.map(|(name, text)| {
-        let make = if name.ends_with(".composite") { File::new } else { File::beside };
+        let make = if [".composite", ".xml"].iter().any(|ending| name.ends_with(ending)) {
+            File::new
+        } else {
+            File::beside
+        };
         Arc::new(make(PathBuf::from("/fleet").join(name), text.into()))
     });
     Scene::new(files.collect(), Arc::clone(&REGISTRY))

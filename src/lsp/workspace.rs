@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
-use saoms_core::load::{MAX_SIZE, composites_near};
+use saoms_core::load::{MAX_SIZE, composites_near, description_near};
 use saoms_core::source::{OpenTexts, identity};
 
 use super::file::File;
@@ -19,7 +19,14 @@ const FRESH: Duration = Duration::from_secs(5);
 pub(super) struct Workspace {
     open: OpenTexts,
     files: HashMap<PathBuf, (Option<Stamp>, Arc<File>)>,
-    listings: HashMap<PathBuf, (Instant, Vec<PathBuf>)>,
+    listings: HashMap<PathBuf, (Instant, Listing)>,
+}
+
+/// The composites around a folder, and what describes their contribution.
+#[derive(Clone, Debug, Default)]
+struct Listing {
+    composites: Vec<PathBuf>,
+    description: Option<PathBuf>,
 }
 
 /// By what a change on disk shows.
@@ -65,16 +72,20 @@ impl Workspace {
         Some(file)
     }
 
-    /// The composites that one in this file can name, and it itself, first; then the files that these take values from.
+    /// The composites that one in this file can name, and it itself, first; then what describes their contribution, and the files that they take
+    /// values from.
     pub(super) fn around(&mut self, path: &Path) -> Vec<Arc<File>> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let is_fresh = |(then, _): &(Instant, _)| then.elapsed() < FRESH;
+        let is_fresh = |(then, _): &(Instant, Listing)| then.elapsed() < FRESH;
         if !self.listings.get(&folder).is_some_and(is_fresh) {
-            let found = composites_near(&folder, &self.open);
+            let composites = composites_near(&folder, &self.open);
+            let description = description_near(&folder).map(|path| identity(&path));
+            let found = Listing { composites, description };
             self.listings.insert(folder.clone(), (Instant::now(), found));
         }
         let listed = self.listings.get(&folder).map(|(_, found)| found.clone()).unwrap_or_default();
-        let others = listed.iter().filter(|other| *other != path).map(PathBuf::as_path);
+        let others = listed.composites.iter().chain(&listed.description);
+        let others = others.filter(|other| *other != path).map(PathBuf::as_path);
         let mut all: Vec<Arc<File>> =
             [path].into_iter().chain(others).filter_map(|one| self.file(one, File::new)).collect();
         let mut known: HashSet<PathBuf> = all.iter().map(|file| file.path.clone()).collect();

@@ -37,7 +37,7 @@ pub use component_type::load_component_type;
 pub use folder::{FolderFleet, load_folder};
 pub use named::load_named;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
-pub use shelf::composites_near;
+pub use shelf::{composites_near, description_near};
 pub use table::table;
 pub use values::read_values;
 

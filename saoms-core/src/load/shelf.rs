@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
+use super::description;
 use crate::diagnostic::quoted;
 use crate::source::OpenTexts;
 
@@ -227,6 +228,11 @@ pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
         }
     }
     all
+}
+
+/// The file that describes the contribution that a folder is in; `None` where there is none.
+pub fn description_near(folder: &Path) -> Option<PathBuf> {
+    description::path_in(&root(folder))
 }
 
 /// Whether a folder has a description of a contribution: one of its own, and not for the folder around it.

@@ -49,7 +49,7 @@ fn ask_all(text: &str, at: usize) {
     for (place, _) in rename(&scene, at, "new").unwrap_or_default() {
         assert!(scene.files[place.file].text.get(place.start..place.end).is_some());
     }
-    scene.roots();
+    scene.fleets();
 }
 
 #[test]

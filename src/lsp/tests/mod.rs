@@ -2,6 +2,7 @@
 
 mod broken;
 mod expressions;
+mod fleets;
 mod hover;
 mod marked;
 mod names;
