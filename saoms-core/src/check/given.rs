@@ -222,6 +222,9 @@ fn fits(own: Typed<'_>, declared: Option<Typed<'_>>, found: &Result<Found<'_>, (
             Piece::Text(text) => {
                 let _ = typed.iter().all(|typed| value_type::holds(typed, text, &codes::VALUE_TYPE, report));
             }
+            Piece::Whole(text, ..) => {
+                let _ = typed.iter().all(|typed| value_type::holds(typed, text, &codes::VALUE_TYPE, report));
+            }
             Piece::Elements(elements, _) => {
                 let simple = typed.iter().find_map(|typed| value_type::simple(typed));
                 if let (Some(of), Some(first)) = (simple, elements.first()) {

@@ -49,7 +49,11 @@ pub(super) fn walk<'a>(mut whole: Raw<'a>, path: &str) -> Result<Raw<'a>, Fault>
     let (mut around, mut here): (Vec<Element<'a>>, Vec<Element<'a>>) = (Vec::new(), Vec::new());
     let first = steps.peek().map_or("", |(_, step)| *step);
     for piece in whole.0 {
-        let Piece::Elements(elements, of) = piece else { continue };
+        let (elements, of) = match piece {
+            Piece::Elements(elements, of) => (elements, of),
+            Piece::Whole(_, root, of) => (vec![root], of),
+            Piece::Text(_) => continue,
+        };
         instance = of;
         // `$order/total` also means the `total` of a value that is written as one element.
         match elements[..] {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::instance::Instance;
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Part, Property};
+use crate::model::{Part, Property, ValueDocument};
 use crate::source::{Located, Location, Text};
 use crate::xml::{Document, Element};
 
@@ -18,6 +18,8 @@ pub(super) enum Piece<'a> {
     Text(Cow<'a, Text>),
     /// Elements: the named values of a complex property, and the replica whose numbers are in their texts.
     Elements(Vec<Element<'a>>, Option<&'a Instance>),
+    /// The root of XML in a file, with the whole text: what counts is for the one who takes it to say.
+    Whole(&'a Text, Element<'a>, Option<&'a Instance>),
 }
 
 impl<'a> Raw<'a> {
@@ -55,6 +57,7 @@ impl<'a> Piece<'a> {
     pub(super) fn location(&self) -> Location {
         match self {
             Self::Text(text) => text.location,
+            Self::Whole(text, ..) => text.location,
             // Never without any: it was made from some.
             Self::Elements(elements, _) => elements[0].name_location(),
         }
@@ -89,7 +92,11 @@ pub(super) fn raw<'a>(
         let elements = property.content().iter().map(|id| document.element(*id)).collect();
         ways.push((document.element(*first).name_location(), Raw(vec![Piece::Elements(elements, instance)])));
     }
-    if let Some(file) = property.file() {
+    if let Some(file) = property.file()
+        && let Some(from) = property.document()
+    {
+        ways.push((file.location, document_value(from, property, instance)));
+    } else if let Some(file) = property.file() {
         let Some(value) = property.from_file() else {
             // As a rule it was reported by who tried to read it.
             if !report.has_errors() {
@@ -112,4 +119,22 @@ pub(super) fn raw<'a>(
         return Err(());
     }
     Ok(raw)
+}
+
+/// The values of XML in a file.
+fn document_value<'a>(
+    from: &'a ValueDocument,
+    property: &'a Property,
+    instance: Option<&'a Instance>,
+) -> Raw<'a> {
+    let root = from.document.root();
+    if let (false, Some(text)) = (from.is_list, property.from_file()) {
+        return Raw(vec![Piece::Whole(text, root, instance)]);
+    }
+    let is_value = |one: &Element<'_>| one.local_name() == "value" && one.namespace() == root.namespace();
+    let children: Vec<Element<'a>> = root.children().collect();
+    match children.iter().all(is_value) {
+        true => Raw::of_elements(&children, instance),
+        false => Raw(vec![Piece::Elements(children, instance)]),
+    }
 }

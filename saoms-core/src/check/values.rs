@@ -113,6 +113,13 @@ impl<'a> Values<'a> {
             (Piece::Elements(elements, instance), PropertyKind::Complex) => {
                 self.complex((&elements, instance), path, main, used, report)
             }
+            (Piece::Whole(_, root, instance), PropertyKind::Complex) => {
+                // A part by its name, or all of them in an element around them.
+                let is_part = main.properties.iter().any(|part| part.name == root.local_name());
+                let elements = if is_part { vec![root] } else { root.children().collect() };
+                self.complex((&elements, instance), path, main, used, report)
+            }
+            (Piece::Whole(text, ..), _) => self.text(text, path, declarations.iter().copied(), used, report),
             (Piece::Elements(elements, _), _) => {
                 let at = elements.first().map_or(used.property, |first| first.name_location());
                 let message = format!(

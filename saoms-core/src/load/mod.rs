@@ -27,6 +27,7 @@ mod shelf;
 mod table;
 #[cfg(test)]
 mod tests;
+mod value_file;
 mod values;
 pub mod vocabulary;
 

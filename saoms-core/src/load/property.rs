@@ -60,6 +60,7 @@ impl Loader<'_> {
             file: if has_file { self.optional(element, "file") } else { None },
             env: self.own(element, "env"),
             from_file: None,
+            document: None,
             values,
             content,
         }))

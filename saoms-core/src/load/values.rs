@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::read;
 use super::table::table;
+use super::value_file::{self, FileValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
 use crate::model::Composite;
 use crate::source::{Sources, Span, Text};
@@ -13,8 +14,8 @@ use crate::source::{Sources, Span, Text};
 /// Reads the files that properties of the composite's components and their loops name with `file`, each of at most `max_size` bytes. A name is a URI
 /// (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the composite; files are read from disk alone.
 ///
-/// What the file holds, without white space at its ends, is the value; its place is in that file. A file that cannot be read is
-/// reported where it is named. So are the tables that replicated components name with `overrides`.
+/// What the file holds, without white space at its ends, is the value; its place is in that file. XML with the root `values` of SCA holds values in elements
+/// (ASM50046). A file that cannot be read is reported where it is named. So are the tables that replicated components name with `overrides`.
 pub fn read_values(
     composite: &mut Composite,
     max_size: u64,
@@ -24,7 +25,7 @@ pub fn read_values(
     let own = Path::new(sources.get(composite.file()).path());
     let folder = own.parent().map(Path::to_owned).unwrap_or_default();
     // Many components may share a file.
-    let mut known: HashMap<PathBuf, Text> = HashMap::new();
+    let mut known: HashMap<PathBuf, FileValue> = HashMap::new();
     let properties = composite.components.iter_mut().flat_map(|component| {
         let of_loops = component.loops.iter_mut().flat_map(|one| &mut one.properties);
         component.properties.iter_mut().chain(of_loops)
@@ -41,11 +42,17 @@ pub fn read_values(
         };
         if !known.contains_key(&path) {
             match read::value(&path, max_size, file.location, sources.open()) {
-                Ok(text) => _ = known.insert(path.clone(), add(&path, text, sources)),
+                Ok(text) => {
+                    let text = add(&path, text, sources);
+                    let value = value_file::read(text.location.file, text, sources, diagnostics);
+                    known.insert(path.clone(), value);
+                }
                 Err(diagnostic) => diagnostics.push(*diagnostic),
             }
         }
-        details.from_file = known.get(&path).cloned();
+        if let Some(FileValue { text, document }) = known.get(&path).cloned() {
+            (details.from_file, details.document) = (text, document);
+        }
     }
     for replicas in composite.components.iter_mut().filter_map(|component| component.replicas.as_mut()) {
         let Some(file) = &replicas.overrides else { continue };

@@ -28,7 +28,7 @@ pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
 pub use looping::Loop;
 pub use origin::{Origin, Part};
 pub use policy::Policy;
-pub use property::{Property, PropertyDetails, PropertyValue};
+pub use property::{Property, PropertyDetails, PropertyValue, ValueDocument};
 pub use replicas::{Replicas, Row, Table};
 pub use severity::SeverityRule;
 pub use version::{SAOMS_NAMESPACE, Version};

@@ -1,9 +1,11 @@
 //! Properties of components and composites.
 
+use std::sync::Arc;
+
 use super::Origin;
 use super::origin::parts;
 use crate::source::{Located, Text};
-use crate::xml::ElementId;
+use crate::xml::{Document, ElementId};
 
 /// A property: of a component, where it gives a value, or of a composite, where it is declared.
 ///
@@ -41,10 +43,27 @@ pub struct PropertyDetails {
     pub env: Option<Text>,
     /// What that file holds; `None` until [`read_values`](crate::load::read_values), and where it cannot be read.
     pub from_file: Option<Text>,
+    /// The same, where it is XML that is more than a text.
+    pub document: Option<ValueDocument>,
     /// Its `<value>` elements.
     pub values: Vec<PropertyValue>,
     /// Other elements inside: a complex value.
     pub content: Vec<ElementId>,
+}
+
+/// The XML of a file that a property takes its value from.
+#[derive(Clone, Debug)]
+pub struct ValueDocument {
+    /// All of it.
+    pub document: Arc<Document>,
+    /// Whether its root is `values` of SCA, which holds each value in an element.
+    pub is_list: bool,
+}
+
+impl PartialEq for ValueDocument {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.document, &other.document)
+    }
 }
 
 /// A `<value>` of a property.
@@ -99,6 +118,11 @@ impl Property {
     /// What the file that `file` names holds, once it is read.
     pub fn from_file(&self) -> Option<&Text> {
         self.details.as_ref()?.from_file.as_ref()
+    }
+
+    /// The XML that the file that `file` names holds, where it is more than a text.
+    pub fn document(&self) -> Option<&ValueDocument> {
+        self.details.as_ref()?.document.as_ref()
     }
 
     /// Its `<value>` elements.

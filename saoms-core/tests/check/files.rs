@@ -218,3 +218,71 @@ fn a_file_of_a_component_that_is_taken_as_given_may_come_with_it() {
     assert_eq!(found(true), "2 warning\n4 error\n");
     assert_eq!(found(false), "2 error\n4 error\n");
 }
+
+#[test]
+fn values_of_a_file_are_in_elements() {
+    let inside = robot(
+        "<property name=\"number\" file=\"number.xml\"/>
+<property name=\"stops\" file=\"stops.xml\"/>
+<property name=\"charger\" file=\"charger.xml\"/>",
+    );
+    let values = |inside: &str| {
+        format!(
+            "<?xml version='1.0'?>\n<s:values xmlns:s='http://docs.oasis-open.org/ns/opencsa/sca/200912'>{inside}</s:values>"
+        )
+    };
+    let number = values("\n<s:value> 7 </s:value>");
+    let outcome = |stops: &str, charger: &str| {
+        let files: [(&str, &[u8]); 3] = [
+            ("number.xml", number.as_bytes()),
+            ("stops.xml", stops.as_bytes()),
+            ("charger.xml", charger.as_bytes()),
+        ];
+        checked(&inside, &files, MAX_SIZE)
+    };
+    let stops = values("<s:value>1</s:value><s:value>2</s:value>");
+    for charger in
+        [values("<s:value><x>3</x></s:value>"), "<at><x>3</x></at>".to_owned(), "<x>3</x>".to_owned()]
+    {
+        let (assembly, found) = outcome(&stops, &charger);
+        assert_eq!(found, "");
+        let assembly = assembly.unwrap();
+        assert_eq!(value(&assembly, "number"), "7".into());
+        assert_eq!(value(&assembly, "stops"), PropertyValue::Many(vec!["1".into(), "2".into()]));
+        assert_eq!(value(&assembly, "charger"), PropertyValue::Complex(vec![("x".to_owned(), "3".into())]));
+    }
+    let (_, found) =
+        outcome(&values("<s:value>1</s:value><s:value>two</s:value>"), "<at>\n<x>three</x><z>4</z></at>");
+    expect![[r#"
+        stops.xml:2:99-102 error S3007: property `stops`: `two` is not a whole number: expected a whole number from 0 to 65535
+        charger.xml:2:4-9 error S3007: property `charger.x`: `three` is not a whole number: expected a whole number from -2147483648 to 2147483647
+        charger.xml:2:14-15 error S3004: the property `charger` has no part `z`
+          help: its parts are `x` and `y`
+          help: `charger`: Where it charges
+    "#]].assert_eq(&found);
+    for wrong in [
+        values(""),
+        values("\n7"),
+        values("<s:vale>7</s:vale>"),
+        values("<s:component/>"),
+        values("<s:value>7</s:value><x>7</x>"),
+        "<values><value>7</value></values>".to_owned(),
+        values("<s:value>7</s:val>"),
+    ] {
+        let (_, found) = outcome(&wrong, "<x>3</x>");
+        assert!(found.starts_with("stops.xml:") && found.matches(" error ").count() == 1, "{wrong}: {found}");
+    }
+}
+
+/// What a text holds is the business of the one who takes it.
+#[test]
+fn a_text_may_look_like_xml() {
+    for text in ["<robot>", "<robot>7</robot>", "< 7"] {
+        let (_, found) = checked(
+            &robot("<property name=\"grace\" file=\"grace\"/>"),
+            &[("grace", text.as_bytes())],
+            MAX_SIZE,
+        );
+        assert!(found.starts_with("grace:1:1-") && found.contains("S3007"), "{found}");
+    }
+}

@@ -1,0 +1,116 @@
+//! What files hold that properties take their values from: a text, or XML.
+
+use std::sync::Arc;
+
+use super::children::renaming;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::model::{ValueDocument, Version};
+use crate::source::{FileId, Sources, Text};
+use crate::xml::{self, Element};
+
+/// The element of SCA that holds the values of a file.
+const VALUES: &str = "values";
+
+/// What a file holds.
+#[derive(Clone, Default)]
+pub(super) struct FileValue {
+    /// The text, where that is all.
+    pub(super) text: Option<Text>,
+    /// XML that is more than a text.
+    pub(super) document: Option<ValueDocument>,
+}
+
+/// Reads the `text` of a file (SCA Assembly 1.1, 4.1.3; ASM50046): XML with the root `values` of SCA holds a `value` for each value, or elements;
+/// other XML is one value as a whole, with the root as its name; all else is a text. Faults are reported in the file.
+pub(super) fn read(file: FileId, text: Text, sources: &Sources, diagnostics: &mut Diagnostics) -> FileValue {
+    if !text.starts_with('<') {
+        return FileValue { text: Some(text), document: None };
+    }
+    let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
+    let document = match (document, fault) {
+        (Some(document), None) => Arc::new(document),
+        (_, fault) if is_meant_as_values(&text) => {
+            fault.into_iter().for_each(|fault| diagnostics.push(fault));
+            return FileValue::default();
+        }
+        // A text that begins like XML and is none is a text.
+        _ => return FileValue { text: Some(text), document: None },
+    };
+    let root = document.root();
+    if root.local_name() != VALUES {
+        let document = Some(ValueDocument { document: Arc::clone(&document), is_list: false });
+        return FileValue { text: Some(text), document };
+    }
+    if let Some(fault) = wrong(root) {
+        diagnostics.push(fault);
+        return FileValue::default();
+    }
+    // One plain value is a text, whatever is around it.
+    let mut children = root.children();
+    let only = children.next().filter(|only| is_value(*only) && only.children().next().is_none());
+    match (only, children.next()) {
+        (Some(only), None) => {
+            let nothing = || Text::new("".into(), only.name_location());
+            FileValue { text: Some(only.trimmed_text().unwrap_or_else(nothing)), document: None }
+        }
+        _ => {
+            let document = Some(ValueDocument { document: Arc::clone(&document), is_list: true });
+            FileValue { text: None, document }
+        }
+    }
+}
+
+/// Whether the first tag of a text is `values`.
+fn is_meant_as_values(text: &str) -> bool {
+    let tags = text.split('<').skip(1);
+    let mut names = tags.filter(|tag| tag.starts_with(|first: char| first.is_alphabetic() || first == '_'));
+    let first = names.next().and_then(|tag| tag.split([' ', '\n', '\r', '\t', '>', '/']).next());
+    first.is_some_and(|name| name.rsplit(':').next() == Some(VALUES))
+}
+
+fn is_value(element: Element<'_>) -> bool {
+    element.local_name() == "value" && Version::from_namespace(element.namespace()).is_some()
+}
+
+/// The fault of `values`.
+fn wrong(root: Element<'_>) -> Option<Diagnostic> {
+    let fault = |at, message: String| Diagnostic::new(&codes::VALUE_FILE, at, message);
+    let at = root.name_location();
+    if Version::from_namespace(root.namespace()).is_none() {
+        let found = match root.namespace() {
+            "" => "no namespace".to_owned(),
+            namespace => format!("the namespace {}", quoted(namespace)),
+        };
+        let one = fault(at, format!("`values` is in {found}, and has to be in one of SCA"));
+        return Some(one.help(format!(
+            "that of {} is `{}`",
+            Version::ALL[0].label(),
+            Version::ALL[0].namespace()
+        )));
+    }
+    if let Some(span) = root.text_span() {
+        let one = fault(span.in_file(at.file), "text in `values`, which holds elements".to_owned());
+        return Some(one.help("write each value as `<value>...</value>`"));
+    }
+    let Some(first) = root.children().next() else {
+        return Some(
+            fault(at, "`values` holds no value".to_owned())
+                .help("write each value as `<value>...</value>` in it"),
+        );
+    };
+    let is_slip = |one: &Element<'_>| one.namespace() == root.namespace() && !is_value(*one);
+    if let Some(other) = root.children().find(is_slip) {
+        let (name, at) = (other.local_name(), other.name_location());
+        let one = fault(at, format!("{} cannot stand in `values`", quoted(other.name())));
+        return Some(match nearest(name, ["value"]) {
+            Some(meant) => {
+                let edits = renaming(other, other.prefix(), meant);
+                one.suggest_edits(format!("replace {} with `value`", quoted(name)), edits)
+            }
+            None => one.help("it holds `value`, or elements of another namespace"),
+        });
+    }
+    let other = root.children().find(|one| is_value(*one) != is_value(first))?;
+    let one = fault(other.name_location(), "`values` holds both `value` and other elements".to_owned());
+    Some(one.label(first.name_location(), "the first of the others").help("write all of them in one way"))
+}
