@@ -131,8 +131,67 @@ fn chargers_are_looked_at_in_the_world_that_they_are_in() {
         [
             "error S5002 the charger of robot 2 is at (0,2), blocked on the map",
             "error S5002 the charger of robot 9 is at (0,9), outside the map, which goes from (0,0) to (3,3)",
+            "warning S5009 this robot is wired to no world, and others are: neither the world nor they know where it is",
         ]
     );
+}
+
+/// Robots that move beside a world: all of them, or some. A mistake in a wire is told alone.
+#[test]
+fn robots_outside_of_the_world_are_told_unless_a_wire_has_a_fault() {
+    let world = ("World", "saoms.World", &[][..], false);
+    fn robot(name: &str, is_wired: bool) -> Component<'_> {
+        (name, "saoms.Robot", &[], is_wired)
+    }
+    let beside = "warning S5009 this robot is wired to no world, and others are: neither the world nor they know where it is";
+    assert_eq!(
+        found(&[world, ROBOT, robot("Robot2", false), robot("Robot3", false), robot("Robot4", true)]),
+        [beside, beside]
+    );
+    let text = fleet(&[world, ROBOT]);
+    for (right, wrong, code) in [
+        ("target=\"World\"", "target=\"Wrld\"", "S2011"),
+        ("target=\"World\"", "target=\"World/hardwere\"", "S2012"),
+        ("name=\"world\"", "name=\"wrld\"", "S2006"),
+        ("target=\"World\"", "targt=\"World\"", "S1007"),
+        (
+            "target=\"World\"/></component>",
+            "/></component><wire source=\"Q*/world\" target=\"World\"/>",
+            "S2011",
+        ),
+    ] {
+        let found = Fleet::of_text(text.replace(right, wrong)).diagnostics();
+        assert!(found.lines().count() == 1 && found.contains(code), "{wrong}: {found}");
+    }
+    // What has nothing to do with wires is told together with them.
+    let far: &[(&str, &str)] = &[("chargeX", "40"), ("battery", "10")];
+    let text = fleet(&[
+        ("World", "saoms.World", &[], false),
+        ("Environment", "saoms.Environment", &[("scenario", "at 1s breakdown Robot7")], false),
+        ("Robot1", "saoms.Robot", far, true),
+    ]);
+    let found = Fleet::of_text(text.replace("target=\"World\"", "target=\"Wrld\"")).diagnostics();
+    assert!(found.contains("S2011") && found.contains("S5005"), "{found}");
+}
+
+#[test]
+fn an_id_without_a_number_is_shown_at_the_id_alone() {
+    for id in ["Alpha", "R${index}"] {
+        let text = fleet(&[
+            ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (1,1) to (2,2)")], false),
+            MASTER,
+            ("Robot1", "saoms.Robot", &[], false),
+        ]);
+        let text = text.replace("<property name=\"ID\">Robot1<", &format!("<property name=\"ID\">{id}<"));
+        let found = Fleet::of_text(text.clone()).diagnostics();
+        assert_eq!(found.lines().count(), 1, "{found}");
+        let column = text.lines().nth(3).unwrap().find(id).unwrap() + 1;
+        assert!(found.contains(&format!("4:{column}")) && found.contains("S3014"), "{column}: {found}");
+    }
+    let same: &[(&str, &str)] = &[("number", "1"), ("chargeX", "3")];
+    let twice = fleet(&[("Robot1", "saoms.Robot", &[], false), ("R", "saoms.Robot", same, false)]);
+    let found = Fleet::of_text(twice.replace("name=\"ID\">R<", "name=\"ID\">Robot1<")).diagnostics();
+    assert!(found.lines().count() == 1 && found.contains("S3013"), "{found}");
 }
 
 #[test]

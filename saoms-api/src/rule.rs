@@ -145,7 +145,8 @@ impl<'a> FleetView<'a> {
     }
 
     /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their classes and
-    /// of those that these extend, as far as they are known.
+    /// of those that these extend, as far as they are known. Where faults leave wires open, the classes of components that these may start
+    /// from are among them, too.
     #[must_use]
     pub fn without(self, missing: &'a [Option<Vec<&'a str>>]) -> FleetView<'a> {
         FleetView { missing, ..self }
@@ -156,7 +157,8 @@ impl<'a> FleetView<'a> {
         self.missing
     }
 
-    /// Whether a component that is, or may be, of this class or one that extends it is left out for a fault of its own.
+    /// Whether a component that is, or may be, of this class or one that extends it is left out for a fault of its own, or has references whose
+    /// wires are not known for a fault.
     pub fn misses<C: Class>(&self) -> bool {
         self.missing
             .iter()

@@ -1,4 +1,4 @@
-use saoms_api::{Failure, Properties, PropertyField};
+use saoms_api::{Failure, Finding, Place, Properties, PropertyField};
 
 use crate::grid::Block;
 
@@ -49,10 +49,13 @@ impl RobotProperties {
         let digits = &id[id.trim_end_matches(|sign: char| sign.is_ascii_digit()).len()..];
         match digits.parse() {
             Ok(number @ 1..) => Ok(number),
-            _ => Err(Failure::new(format!(
-                "found the ID `{id}` without a number from 1 to {} at its end, and no property `number`: expected one of them",
-                u32::MAX
-            ))),
+            _ => {
+                let message = format!(
+                    "found the ID `{id}` without a number from 1 to {} at its end, and no property `number`: expected one of them",
+                    u32::MAX
+                );
+                Err(Finding::new(Place::property("ID"), message).into())
+            }
         }
     }
 

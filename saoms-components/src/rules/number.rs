@@ -28,8 +28,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             first.insert(robot.number, robot);
             continue;
         };
-        // Two that are given outright are found by the property itself.
-        if robot.properties.number.is_some() && other.properties.number.is_some() {
+        // Two that are given outright, and two of one ID, are found by the property itself.
+        let is_same_id = robot.properties.id.trim() == other.properties.id.trim();
+        if is_same_id || robot.properties.number.is_some() && other.properties.number.is_some() {
             continue;
         }
         let name = |robot: &Known| fleet.components()[robot.index].path;

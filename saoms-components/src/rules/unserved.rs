@@ -6,7 +6,7 @@ use super::robots::{Known, may_be_others, publishes_beside_robots, robots};
 use crate::environment::{Environment, Happening, Scenario};
 use crate::master::MasterRobot;
 use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
-use crate::robot::Policy;
+use crate::robot::{Policy, Robot};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -70,7 +70,10 @@ fn judge(fleet: &FleetView<'_>, has: &Happenings, is_awaked: bool) -> Option<(&'
         return None;
     }
     if robots.is_empty() {
-        return Some(("no robot is there to bring the luggage of this scenario", "add a `saoms.Robot`"));
+        // One with a fault of its own is there, too.
+        let is_none = fleet.indices::<Robot>().next().is_none();
+        return is_none
+            .then_some(("no robot is there to bring the luggage of this scenario", "add a `saoms.Robot`"));
     }
     let message = "all robots sleep, and none is awaked to bring the luggage of this scenario";
     if !publishes_beside_robots(fleet, ROBOT_STATE.name()) {

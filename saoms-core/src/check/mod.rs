@@ -33,6 +33,7 @@ mod promote;
 mod properties;
 mod raw;
 mod rename;
+mod renames;
 mod replicas;
 mod replicate;
 mod report;
@@ -153,10 +154,13 @@ fn examine<T>(
     let (checked, loops) = absent::remove(&mut fleet, checked, loops);
     let (resolved, halves) = components(&fleet, &classes, checked, loops, report);
     written::check(&fleet, report);
+    let misread = report.diagnostics().iter().any(|one| one.code.id.starts_with("S10"));
+    let known = report.errors();
     contracts::check(&fleet, &classes, report);
     described::check(&fleet, &classes, report);
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);
+    let has_open_wires = misread || report.errors() > known;
     saoms_api::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
         report.about(member);
@@ -179,7 +183,7 @@ fn examine<T>(
     report.about_all();
     let rules =
         registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
-    rules::check(&fleet, &classes, &resolved, &wiring, rules, report);
+    rules::check(&fleet, &classes, &resolved, (&wiring, has_open_wires), rules, report);
     if options.assume_classes {
         elsewhere(&fleet, report);
     }
@@ -284,6 +288,7 @@ fn components<'f, 'a>(
     let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
     let mut before = task::Before::default();
+    let mut listed = renames::Renames::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, ((member, checked), loops)) in fleet.members.iter().zip(checked).zip(loops).enumerate() {
         report.about(member);
@@ -294,8 +299,9 @@ fn components<'f, 'a>(
         let class = &classes[index];
         unique.add(member, class, &checked, report);
         let is_periodic = class.class.declaration().is_periodic();
-        let task =
+        let mut task =
             is_periodic.then(|| task::check(member.component, (index, class), &checked, &mut before, report));
+        listed.add(place, task.as_mut().map(|task| std::mem::take(&mut task.listed)).unwrap_or_default());
         topics.add(member, index, class, task.as_ref(), report);
         let renamed = task.as_ref().map(|task| {
             task.renames.iter().map(|(_, new)| new.clone()).zip(task.renamed_at.iter().copied()).collect()
@@ -320,6 +326,7 @@ fn components<'f, 'a>(
         all.push(resolved);
     }
     report.about_all();
+    listed.finish(fleet, report);
     (all, halves)
 }
 

@@ -1,6 +1,6 @@
 //! Names of composites and paths of components, of which there can be one each.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::fleet::Fleet;
 use super::report::Report;
@@ -26,10 +26,12 @@ pub(super) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     }
 }
 
-/// Checks that no two composites of one namespace have one name.
-pub(super) fn composites(composites: &[Composite], report: &mut Report<'_>) {
+/// Checks that no two composites of one namespace have one name; the places of those that are there again, text for text.
+pub(super) fn composites(composites: &[Composite], report: &mut Report<'_>) -> HashSet<usize> {
+    let mut again = HashSet::new();
     let mut names: HashMap<(&str, &str), &Composite> = HashMap::new();
-    for composite in composites.iter().filter(|composite| !composite.name.is_empty()) {
+    let named = composites.iter().enumerate().filter(|(_, composite)| !composite.name.is_empty());
+    for (place, composite) in named {
         let name = (composite.namespace(), composite.name.as_str());
         let Some(first) = names.get(&name) else {
             names.insert(name, composite);
@@ -41,5 +43,9 @@ pub(super) fn composites(composites: &[Composite], report: &mut Report<'_>) {
                 .label(first.name.location, "the first")
                 .help("give each its own name; was one file given twice?"),
         );
+        if first.document.text() == composite.document.text() {
+            again.insert(place);
+        }
     }
+    again
 }

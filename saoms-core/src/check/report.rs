@@ -153,7 +153,13 @@ impl<'a> Report<'a> {
     }
 
     pub(super) fn has_errors(&self) -> bool {
-        self.diagnostics.has_errors() || self.copies.iter().any(|(one, ..)| one.severity == Severity::Error)
+        self.errors() > 0
+    }
+
+    /// How many errors there are, as far as they are told.
+    pub(super) fn errors(&self) -> usize {
+        let of_copies = self.copies.iter().filter(|(one, ..)| one.severity == Severity::Error);
+        self.diagnostics.errors() + of_copies.count()
     }
 
     /// The place of a part of `text`, in bytes of the text as it is meant.

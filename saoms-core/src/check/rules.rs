@@ -1,5 +1,6 @@
 //! What rules of crates of components find in the fleet as a whole.
 
+use std::collections::HashSet;
 use std::rc::Rc;
 
 use saoms_api::{ComponentView, FleetView};
@@ -14,12 +15,18 @@ use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::registry::{Class, Rule};
 
-/// Asks the rules about the components that are resolved; where some are not, only the rules that can judge a part of a fleet.
+/// The declaration of a class and of those that it extends.
+fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
+    std::iter::once(class.class.declaration_json()).chain(class.class.extended_json()).collect()
+}
+
+/// Asks the rules about the components that are resolved; where some are not, only the rules that can judge a part of a fleet. With the wiring it
+/// is said whether faults leave some of it open.
 pub(super) fn check<'s>(
     fleet: &'s Fleet<'_>,
     classes: &'s [ClassIndex<'_>],
     resolved: &'s [Option<Box<Resolved<'_>>>],
-    wiring: &Wiring,
+    (wiring, has_open_wires): (&Wiring, bool),
     rules: impl Iterator<Item = &'s Rule>,
     report: &mut Report<'_>,
 ) {
@@ -35,10 +42,7 @@ pub(super) fn check<'s>(
         let (true, Some(resolved), Some(class)) = (member.runs(), resolved, class) else {
             places.push(None);
             if member.runs() {
-                missing.push(class.map(|class| {
-                    let own = std::iter::once(class.class.declaration_json());
-                    own.chain(class.class.extended_json()).collect()
-                }));
+                missing.push(class.map(declarations));
             }
             continue;
         };
@@ -47,6 +51,15 @@ pub(super) fn check<'s>(
         parts.push((place, resolved, class));
     }
     let Some(first) = subjects.first().copied() else { return };
+    let is_whole = missing.is_empty();
+    if has_open_wires {
+        let mut known: HashSet<*const ClassIndex<'_>> = HashSet::new();
+        for (place, _, class) in &parts {
+            if wiring.of(*place).any(<[_]>::is_empty) && known.insert(*class) {
+                missing.push(Some(declarations(class)));
+            }
+        }
+    }
     let mut lists = Lists::default();
     let views: Vec<ComponentView<'_>> = parts
         .iter()
@@ -74,7 +87,7 @@ pub(super) fn check<'s>(
         })
         .collect();
     let view = FleetView::new(&views).without(&missing);
-    for rule in rules.filter(|rule| rule.judges_parts() || missing.is_empty()) {
+    for rule in rules.filter(|rule| rule.judges_parts() || is_whole) {
         let findings = match rule.check(&view) {
             Ok(findings) => findings,
             Err(failure) => {

@@ -1,9 +1,12 @@
 //! The task properties of a component: what goes beyond each value alone.
 
+use std::collections::HashSet;
+
 use saoms_api::{PropertyField, PropertyValue};
 
 use super::classes::ClassIndex;
 use super::properties::Checked;
+use super::renames::{Listed, Unused};
 use super::report::{Report, list};
 use super::{endpoint, rename};
 use crate::assembly::{Restart, TaskSettings};
@@ -13,13 +16,15 @@ use crate::registry::TopicDeclaration;
 use crate::source::{Location, Text};
 
 /// How a component runs, and where its topics got their names.
-pub(super) struct Task {
+pub(super) struct Task<'a> {
     /// `None` where the properties are not sound.
     pub(super) settings: Option<TaskSettings>,
     /// The old and the new name of each topic that is renamed.
     pub(super) renames: Vec<(String, String)>,
     /// Where each of `renames` has its new name.
     pub(super) renamed_at: Vec<Location>,
+    /// The old names, with those that the class does not have.
+    pub(super) listed: Vec<Listed<'a>>,
 }
 
 /// The properties of which nothing is to be said that goes beyond their own values.
@@ -64,17 +69,18 @@ impl Before {
 }
 
 /// What the task properties of a component of a periodic class come to. Faults are reported.
-pub(super) fn check(
+pub(super) fn check<'a>(
     component: &Component,
-    (index, class): (usize, &ClassIndex<'_>),
+    (index, class): (usize, &ClassIndex<'a>),
     checked: &Checked,
     before: &mut Before,
     report: &mut Report<'_>,
-) -> Task {
+) -> Task<'a> {
     if checked.is_sound
         && let Some(settings) = before.with_id(index, class, checked)
     {
-        return Task { settings: Some(settings), renames: Vec::new(), renamed_at: Vec::new() };
+        let settings = Some(settings);
+        return Task { settings, renames: Vec::new(), renamed_at: Vec::new(), listed: Vec::new() };
     }
     let text = |name: &str| {
         checked.get(&class.slots, name).and_then(|given| given.text()).filter(|text| !text.trim().is_empty())
@@ -82,16 +88,16 @@ pub(super) fn check(
     if let Some(url) = text("url") {
         check_url(&url, report);
     }
-    let (renames, renamed_at) = match text("topicRename") {
+    let (renames, renamed_at, listed) = match text("topicRename") {
         Some(text) => renames(&text, class, report),
-        None => (Vec::new(), Vec::new()),
+        None => Default::default(),
     };
     use_jms(component, class, checked, report);
     let settings = checked.is_sound.then(|| settings(component, class, checked, &renames, report)).flatten();
     if let Some(settings) = &settings {
         before.keep(index, class, checked, settings);
     }
-    Task { settings, renames, renamed_at }
+    Task { settings, renames, renamed_at, listed }
 }
 
 /// The settings of a component whose properties are sound.
@@ -149,17 +155,19 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
 }
 
 /// The topics of a class, each once.
-fn topics<'c>(class: &'c ClassIndex<'_>) -> impl Iterator<Item = &'c TopicDeclaration> + Clone {
+fn topics<'c, 'a>(
+    class: &'c ClassIndex<'a>,
+) -> impl Iterator<Item = &'a TopicDeclaration> + Clone + use<'c, 'a> {
     let published = |name: &str| class.publishes.iter().any(|topic| topic.name == name);
     let others = class.subscribes.iter().filter(move |topic| !published(&topic.name));
     class.publishes.iter().chain(others).copied()
 }
 
-fn renames(
+fn renames<'a>(
     text: &Text,
-    class: &ClassIndex<'_>,
+    class: &ClassIndex<'a>,
     report: &mut Report<'_>,
-) -> (Vec<(String, String)>, Vec<Location>) {
+) -> (Vec<(String, String)>, Vec<Location>, Vec<Listed<'a>>) {
     let (pairs, faults) = rename::parse(text);
     let parts = report.parts(text);
     for fault in faults {
@@ -172,24 +180,22 @@ fn renames(
         }
         report.push(one);
     }
-    for pair in &pairs {
+    let renamed: HashSet<&str> = pairs.iter().map(|pair| pair.old.text).collect();
+    let listed = pairs.iter().map(|pair| {
         let name = pair.old.text;
-        if topics(class).any(|topic| topic.name == name) {
-            continue;
-        }
-        let names = topics(class).map(|topic| topic.name.as_str());
-        let message = format!(
-            "class {} uses no topic {}: nothing is renamed",
-            quoted(class.class.name()),
-            quoted(name)
-        );
+        let is_used = topics(class).any(|topic| topic.name == name);
+        let unused = || {
+            let names = topics(class).map(|topic| topic.name.as_str());
+            let others = names.filter(|name| !renamed.contains(name)).collect();
+            Unused { class: class.class.name(), others }
+        };
         let at = parts.part(pair.old.at.clone());
-        let one = report.unknown(&codes::RENAME_UNUSED, at, message, name, ("its topics are", names));
-        report.push(one);
-    }
+        Listed { name: name.to_owned(), at, unused: (!is_used).then(unused) }
+    });
+    let listed = listed.collect();
     let places = pairs.iter().map(|pair| parts.part(pair.new.at.clone())).collect();
     let names = pairs.iter().map(|pair| (pair.old.text.to_owned(), pair.new.text.to_owned()));
-    (names.collect(), places)
+    (names.collect(), places, listed)
 }
 
 /// Reports a component that has topics and must not use them.
@@ -200,8 +206,15 @@ fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, rep
     }
     let mut uses = Vec::new();
     for (verb, topics) in [("publishes", &class.publishes), ("subscribes to", &class.subscribes)] {
-        if !topics.is_empty() {
-            uses.push(format!("{verb} {}", list(topics.iter().map(|topic| topic.name.as_str()))));
+        // Where loops declare a topic in other ways, which is reported, it is there several times.
+        let mut names: Vec<&str> = Vec::new();
+        for topic in topics {
+            if !names.contains(&topic.name.as_str()) {
+                names.push(&topic.name);
+            }
+        }
+        if !names.is_empty() {
+            uses.push(format!("{verb} {}", list(names)));
         }
     }
     let message =

@@ -36,7 +36,7 @@ impl<'a> Topics<'a> {
         member: &'a Member<'_>,
         index: usize,
         class: &ClassIndex<'a>,
-        task: Option<&Task>,
+        task: Option<&Task<'_>>,
         report: &mut Report<'_>,
     ) {
         let renames = task.map_or(&[][..], |task| &task.renames[..]);

@@ -50,11 +50,11 @@ pub(super) fn unfold<'a>(
         replicas: replicas.end(),
         replicas_left: MOST_REPLICAS,
     };
-    once::composites(asked_for, report);
+    let again = once::composites(asked_for, report);
     let included = included(contribution);
     for (place, composite) in asked_for.iter().enumerate() {
         // It stands where it is included.
-        if !included[place] {
+        if !included[place] && !again.contains(&place) {
             let unit = unfolding.unit(0);
             unfolding.open(place, composite, unit, None, report);
             unfolding.walk(report);
@@ -427,6 +427,9 @@ fn not_found(
     if namespaces.is_none() {
         let prefix = name.split(':').next().unwrap_or_default();
         one = one.help(format!("the prefix {} is bound to no namespace", quoted(prefix)));
+    }
+    if local.ends_with(".composite") {
+        one = one.help("it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file");
     }
     for near in &missing.near {
         let replacement = super::report::escaped(near);

@@ -88,11 +88,14 @@ impl<'a> Unique<'a> {
             quoted(&declaration.name),
             quoted(&value.to_string())
         );
-        report.push(
-            Diagnostic::new(&codes::NOT_UNIQUE, seen.place, message)
-                .label(first.place, "the first")
-                .help(format!("every {word} needs its own")),
-        );
+        let one = Diagnostic::new(&codes::NOT_UNIQUE, seen.place, message);
+        let one = one.help(format!("every {word} needs its own"));
+        report.push(match first.place == seen.place {
+            // In a composite that is there several times.
+            true => one
+                .help("both have it from here: let each get its own from outside, by a property or an index"),
+            false => one.label(first.place, "the first"),
+        });
     }
 
     /// Tasks that share an ID run all the same, but people cannot tell them apart.

@@ -10,6 +10,7 @@ use super::instance::Instance;
 use super::raw::{Piece, Raw};
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
+use crate::expression::{has_expression, is_name};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
@@ -267,8 +268,18 @@ fn wrong(text: &Text, path: Path<'_>, declaration: &PropertyDeclaration, message
     let said = rest.map_or_else(|| message.to_owned(), |rest| format!("{}{rest}", quoted(text.trim())));
     let code = code(text, declaration, rest.unwrap_or_default());
     let one = Diagnostic::new(code, text.location, format!("property {}: {said}", quoted_path(path)));
-    match meant(text.trim(), declaration) {
-        Some(meant) => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),
+    if let Some(meant) = meant(text.trim(), declaration) {
+        return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
+    }
+    if has_expression(text) {
+        return one.help("`${...}` stands for a number in components with a `saoms:count` alone");
+    }
+    let argument = text.trim().strip_prefix("$(arg ").and_then(|rest| rest.strip_suffix(')'));
+    match argument.or_else(|| text.trim().strip_prefix('$')).map(str::trim).filter(|name| is_name(name)) {
+        Some(name) => one.help(format!(
+            "write `source=\"${name}\"` for the value of the property {} of the composite",
+            quoted(name)
+        )),
         None => one,
     }
 }
@@ -306,7 +317,32 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
             let unit = declaration.unit.as_deref().unwrap_or_default();
             text.strip_suffix(unit).unwrap_or(text).trim().replace(',', ".")
         }
+        (PropertyKind::Duration, _) => duration(&lower).unwrap_or(lower),
         _ => lower,
     };
     (said != text && declaration.check(&said).is_ok()).then_some(said)
+}
+
+/// A duration whose unit is written out, or how often a second.
+fn duration(text: &str) -> Option<String> {
+    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let unit = text[digits.len()..].trim();
+    let digits = digits.trim();
+    let short = match unit {
+        "hz" => {
+            let often: f64 = digits.parse().ok().filter(|often| *often > 0.0)?;
+            let micros = (1e6 / often).round() as u64;
+            return Some(match micros.is_multiple_of(1000) {
+                true => format!("{}ms", micros / 1000),
+                false => format!("{micros}us"),
+            });
+        }
+        "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => "ms",
+        "usec" | "usecs" | "\u{b5}s" | "\u{3bc}s" | "micros" | "microsecond" | "microseconds" => "us",
+        "sec" | "secs" | "second" | "seconds" => "s",
+        "mins" | "minute" | "minutes" => "min",
+        "hr" | "hrs" | "hour" | "hours" => "h",
+        _ => return None,
+    };
+    Some(format!("{digits}{short}"))
 }

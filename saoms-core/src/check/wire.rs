@@ -2,10 +2,10 @@
 
 use super::classes::ClassIndex;
 use super::fleet::{Fleet, Kind};
-use super::offer::Side;
-use super::report::{Report, list};
+use super::offer::{Offer, Side};
+use super::report::{Report, escaped, list};
 use super::target::{Uri, parts, spread, target};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::hash::Map;
 use crate::source::Text;
 
@@ -35,6 +35,22 @@ pub(super) fn wires<'f>(
                 continue;
             }
             let is_replacing = wire.replace().is_some_and(|replace| replace.value);
+            if let Some((member, name)) = backwards((source, to), scope, fleet, classes) {
+                let message = format!(
+                    "this wire goes backwards: {} is a service, and {} a reference",
+                    quoted(source),
+                    quoted(to)
+                );
+                let one = Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message);
+                let swapped = [(source, to), (to, source)];
+                let edit = |(one, other): (&Text, &Text)| Edit {
+                    location: one.location,
+                    replacement: escaped(other),
+                };
+                report.push(one.suggest_edits("swap `source` and `target`", swapped.map(edit).into()));
+                all.entry(member).or_default().push(Wire { name, target: source, scope, is_replacing });
+                continue;
+            }
             for (one, _) in spread(source, scope, fleet) {
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
                     // Both ends can be wrong.
@@ -48,6 +64,26 @@ pub(super) fn wires<'f>(
         }
     }
     all
+}
+
+/// The component and the reference that are the target of a wire, where the source is a service.
+fn backwards<'f>(
+    (source, to): (&Text, &'f Text),
+    scope: usize,
+    fleet: &'f Fleet<'_>,
+    classes: &'f [ClassIndex<'_>],
+) -> Option<(usize, &'f str)> {
+    let (Some(service), Some(reference)) = (parts(source).1, parts(to).1) else { return None };
+    let ends = [source, to].map(|end| fleet.find(scope, parts(end).0));
+    let [Some(from), Some(member)] = ends else { return None };
+    let is_reference =
+        |member, name| fleet.reference_names(member, classes).is_some_and(|names| names.contains(&name));
+    let is_service = |member, name| matches!(fleet.offer(member, name, classes), Offer::Service(_));
+    let is_backwards = !is_reference(from, service)
+        && is_service(from, service)
+        && is_reference(member, reference)
+        && !is_service(member, reference);
+    is_backwards.then_some((member, reference))
 }
 
 /// The component and the reference that a wire starts from; an empty name where any reference may be meant. `source` is `written`, or one
@@ -82,6 +118,13 @@ fn source_of<'f>(
         (Some((name, at)), names) => {
             let at = report.part(source, at.clone());
             let message = format!("component {component} has no reference {}", quoted(name));
+            if fleet.offer(member, name, classes) != Offer::Missing {
+                let one = Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, at, message);
+                let help =
+                    format!("{} is a service: a wire goes from a reference to a service", quoted(name));
+                report.push(one.help(help));
+                return None;
+            }
             let known = ("its references are", names.iter().copied());
             let one = report.unknown(&codes::UNKNOWN_WIRE_SOURCE, at, message, name, known);
             report.push(one);
@@ -90,7 +133,8 @@ fn source_of<'f>(
         (None, [only]) => Some((member, *only)),
         (None, []) => {
             let message = format!("component {component} has no references");
-            report.push(Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message));
+            let one = Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message);
+            report.push(one.help("a wire goes from a reference to a service"));
             None
         }
         (None, _) => {

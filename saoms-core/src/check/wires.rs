@@ -193,6 +193,10 @@ impl<'f, 'a> Wires<'f, 'a> {
     ) -> Ends {
         let level = self.level(place, Some(interface), report);
         let mut ends = level.ends;
+        // That the reference of a composite has too many is told where it has them.
+        ends.is_unknown |= level.written.count > 1
+            && !self.fleet.members[place.0].runs()
+            && !self.fleet.multiplicity_of(place).is_many();
         let (fleet, promoted) = (self.fleet, self.promoted);
         let outer = promoted.to.get(&place).map_or(&[][..], Vec::as_slice);
         let mut around = Ends::default();

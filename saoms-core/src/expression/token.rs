@@ -115,6 +115,13 @@ fn odd(rest: &str, first: char, at: usize) -> Fault {
         let problem = Problem::new(format!("there is no {}", quoted(written))).instead(meant);
         return problem.at(at..at + written.len());
     }
+    if let Some(inside) =
+        rest.strip_prefix("${").and_then(|rest| rest.split_once('}')).map(|(inside, _)| inside)
+    {
+        let problem =
+            Problem::new("an expression stands here by itself, without `${` and `}`").instead(inside.trim());
+        return problem.at(at..at + inside.len() + 3);
+    }
     if first == '$' {
         let problem = Problem::new("names stand for themselves here").instead("");
         return problem.help("write the name without `$`").at(at..at + 1);

@@ -99,7 +99,21 @@ impl Loader<'_> {
         let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
         let message = format!("{whose} has no element {}", quoted(name));
         let one = Diagnostic::new(code, location, message);
-        self.report(match nearest(name, known) {
+        // Of `implementation.python` nobody means all but the last letters.
+        let near = match name.split_once('.') {
+            Some((kind, variant)) if known.iter().any(|one| one.split('.').next() == Some(kind)) => {
+                let variants =
+                    known.iter().filter(|one| one.split_once('.').is_some_and(|(of, _)| of == kind));
+                let meant = nearest(variant, variants.clone().filter_map(|one| Some(one.split_once('.')?.1)));
+                meant.and_then(|meant| {
+                    variants
+                        .copied()
+                        .find(|one| one.ends_with(meant) && one.len() == kind.len() + 1 + meant.len())
+                })
+            }
+            _ => nearest(name, known),
+        };
+        self.report(match near {
             Some(meant) => {
                 let description = format!("replace {} with {}", quoted(name), quoted(meant));
                 one.suggest_edits(description, renaming(element, element.prefix(), meant))

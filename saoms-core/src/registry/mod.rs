@@ -15,7 +15,7 @@ mod team;
 mod tests;
 mod validate;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -257,8 +257,7 @@ impl Registry {
         self.classes.is_empty()
     }
 
-    /// Up to three names that are like `name`, the likeliest first: by spelling, or by what follows the last dot when
-    /// nothing is spelt alike.
+    /// Up to three names that are like `name`, the likeliest first: those that end alike behind the last dot, or else those that are spelt alike.
     pub fn nearest(&self, name: &str) -> Vec<&str> {
         near(name, self.classes.keys().map(String::as_str))
     }
@@ -289,12 +288,17 @@ impl Registry {
 }
 
 fn near<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Vec<&'n str> {
-    let alike = nearest_few(name, names.clone(), OFFERED);
-    if !alike.is_empty() {
-        return alike;
-    }
     let last = simple(name);
-    names.filter(|known| !last.is_empty() && simple(known).eq_ignore_ascii_case(last)).take(OFFERED).collect()
+    let same = names.clone().filter(|known| !last.is_empty() && simple(known).eq_ignore_ascii_case(last));
+    let mut all = nearest_few(name, same.clone(), OFFERED);
+    all.extend(same.take(OFFERED));
+    if all.is_empty() {
+        return nearest_few(name, names, OFFERED);
+    }
+    let mut seen = HashSet::new();
+    all.retain(|known| seen.insert(*known));
+    all.truncate(OFFERED);
+    all
 }
 
 /// What follows the last dot: the class without its package.

@@ -93,9 +93,9 @@ fn the_files_of_the_manual() {
     );
     expect![[r#"
         more.composite:11:38-44 warning S4003: class `robot.Robot001` uses no topic `POS001`: nothing is renamed
-          help: its topics are `POSTOPIC` and `ORDERS`
+          help: topics that keep their names are `ORDERS` and `POSTOPIC`
         more.composite:11:54-60 warning S4003: class `robot.Robot001` uses no topic `POS002`: nothing is renamed
-          help: its topics are `POSTOPIC` and `ORDERS`
+          help: topics that keep their names are `ORDERS` and `POSTOPIC`
         0 MessageBrokerComponent is a unibg.robotics.tca.MessageBrokerImpl
           IP = Text("localhost")
           port = Text("61616")

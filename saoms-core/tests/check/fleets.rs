@@ -200,6 +200,7 @@ fn what_is_said_of_many_replicas_is_told_once() {
           help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
         3:21-22 error S3013: components `R01` and `R02` have the same `ID` `R` (index 2, and in 10 more)
           help: every robot needs its own
+          help: both have it from here: let each get its own from outside, by a property or an index
         3:57-70 error S3008: property `number`: `100` is out of range: expected a whole number from 1 to 99 (in `R10`, index 10, and in 2 more)
           help: `number`: The number of the robot
         3:97-101 error S3004: class `example.Robot` has no property `sped` (in `R01`, index 1, and in 11 more)
@@ -413,8 +414,8 @@ fn includes_and_composites_can_be_absent() {
     .assert_eq(&outcome(&[&fleet(inside), &more], &[]));
     expect![[r#"
         more:3:85-86 error S3013: components `N` and `In/N` have the same `ID` `N`
-          more:3:85-86 the first
           help: every robot needs its own
+          help: both have it from here: let each get its own from outside, by a property or an index
     "#]]
     .assert_eq(&outcome(
         &[&fleet(inside), &more.replace("<wire source=\"M/other\" target=\"Nobody\"/>", "")],

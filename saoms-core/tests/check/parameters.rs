@@ -297,8 +297,8 @@ fn values_from_outside_are_of_the_type_of_the_property() {
           inner:2:30-37 the type
           help: change the value, or the type
         inner:3:88-89 error S3013: components `A/R` and `B/R` have the same `ID` `R`
-          inner:3:88-89 the first
           help: every robot needs its own
+          help: both have it from here: let each get its own from outside, by a property or an index
     "#]]
     .assert_eq(&outcome(&[&outer, &part("inner", "", &typed)], &[]));
 }

@@ -72,7 +72,7 @@ fn topic_renames() {
         3:30-37 warning S4003: class `example.Robot001` uses no topic `POSTOPC`: nothing is renamed
           fix: replace `POSTOPC` with `POSTOPIC` [3:30-37 "POSTOPIC"]
         3:47-53 warning S4003: class `example.Robot001` uses no topic `POS002`: nothing is renamed
-          help: its topics are `POSTOPIC` and `ORDERS`
+          help: topics that keep their names are `ORDERS` and `POSTOPIC`
         &#80;OSTOPIC,a::POSTOPIC,b
         3:46-54 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
           3:30-42 first here

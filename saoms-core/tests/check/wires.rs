@@ -151,6 +151,7 @@ fn wires_of_composites() {
         6:15-16 error S2011: there is no component `M`
           help: the components are `N`, `R`, `G`, `T` and `O`
         7:15-16 error S2016: component `T` has no references
+          help: a wire goes from a reference to a service
         8:15-25 error S2010: `N/wheels/x` has the wrong form
           help: write `component` or `component/name`
         9:32-33 error S2015: component `R` offers no service with the interface `example.Positions`
