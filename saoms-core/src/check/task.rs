@@ -33,22 +33,31 @@ const ALONE: &[&str] =
 
 /// The newest task of properties that stand alone: that of the next component mostly differs in its ID, and nothing else.
 #[derive(Default)]
-pub(super) struct Before(Option<(usize, Vec<(usize, PropertyValue)>, TaskSettings)>);
+pub(super) struct Before(Option<Known>);
+
+struct Known {
+    /// The place of its class.
+    index: usize,
+    /// What is given but the ID, with the places of the properties.
+    others: Vec<(usize, PropertyValue)>,
+    /// With an empty ID.
+    settings: TaskSettings,
+}
 
 impl Before {
     /// The settings of the task before with the ID of this component, where all else is the same.
     fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: &Checked) -> Option<TaskSettings> {
-        let (_, values, settings) = self.0.as_ref().filter(|(of, ..)| *of == index)?;
+        let Known { others, settings, .. } = self.0.as_ref().filter(|known| known.index == index)?;
         let mut id = None;
-        let mut values = values.iter();
+        let mut others = others.iter();
         for (place, value) in checked.of_task(&class.slots) {
             if class.slots.all[place].is_task_id() {
                 id = Some(value);
-            } else if !values.next().is_some_and(|(known, same)| *known == place && same == value) {
+            } else if !others.next().is_some_and(|(known, same)| *known == place && same == value) {
                 return None;
             }
         }
-        match (id, values.next()) {
+        match (id, others.next()) {
             (Some(PropertyValue::Text(id)), None) => {
                 Some(TaskSettings { id: id.clone(), ..settings.clone() })
             }
@@ -64,7 +73,8 @@ impl Before {
         }
         let others = values().filter(|(place, _)| !class.slots.all[*place].is_task_id());
         let others = others.map(|(place, value)| (place, value.clone())).collect();
-        self.0 = Some((index, others, TaskSettings { id: String::new(), ..settings.clone() }));
+        let settings = TaskSettings { id: String::new(), ..settings.clone() };
+        self.0 = Some(Known { index, others, settings });
     }
 }
 

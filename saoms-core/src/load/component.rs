@@ -185,6 +185,7 @@ impl Loader<'_> {
 }
 
 /// The parts that were gathered for a component, in a list of their size.
+#[expect(clippy::drain_collect, reason = "the memory of the list is kept for the next component")]
 fn parted<T>(gathered: &mut Vec<T>) -> Vec<T> {
     /// Up to here the memory of the list is kept for the next component; a longer one is not copied.
     const FEW: usize = 64;

@@ -58,6 +58,12 @@ struct Planned<'a> {
     element: Option<&'a Loop>,
 }
 
+/// A place among the classes, and the value that chooses among the lists of loops that the class has.
+type Choice = (usize, Option<SmolStr>);
+
+/// A place among the classes, and the loops as they are where the composite says nothing about them.
+type Usual = (usize, Arc<[LoopSpec]>);
+
 /// Finds the loops of all components; `None` where something about them is wrong. The class of a component with loops becomes one that uses
 /// the topics and references of these as well.
 pub(super) fn resolve<'a>(
@@ -72,7 +78,7 @@ pub(super) fn resolve<'a>(
     // The class of each place together with these loops.
     let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
     // The same with the loops that components of a class have by this choice where the composite says nothing about them.
-    let mut usual: Map<(usize, Option<SmolStr>), (usize, Arc<[LoopSpec]>)> = Map::default();
+    let mut usual: Map<Choice, Usual> = Map::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, checked) in checked.iter().enumerate() {
         let member = &fleet.members[place];
