@@ -26,7 +26,7 @@ pub(super) fn join(diagram: &mut Diagram, is_repeated: bool) {
         |end: &usize| is_repeated || diagram.components[*end].replicas.is_some_and(|(_, most)| most > 1);
     let mut all: Vec<Topic> = Vec::with_capacity(diagram.topics.len());
     // By what they are the same in; `names` has the one before renaming until here.
-    let mut places: HashMap<(Vec<String>, Vec<usize>, Vec<usize>), usize> = HashMap::new();
+    let mut places: HashMap<Sameness, usize> = HashMap::new();
     for mut topic in std::mem::take(&mut diagram.topics) {
         let declared = std::mem::replace(&mut topic.names, vec![topic.name.clone()]);
         if !topic.publishers.iter().chain(&topic.subscribers).all(is_several) {
@@ -45,6 +45,9 @@ pub(super) fn join(diagram: &mut Diagram, is_repeated: bool) {
     }
     diagram.topics = all;
 }
+
+/// The name before renaming, who publishes, and who reads.
+type Sameness = (Vec<String>, Vec<usize>, Vec<usize>);
 
 /// What names start and end with, with `*` between.
 fn common(names: &[String]) -> String {

@@ -72,7 +72,7 @@ pub(super) fn schema(version: Version, assertions: Vec<Node>) -> Node {
     }
     let has_assertions = !assertions.is_empty();
     let others = TYPES.iter().filter(|(_, kind)| {
-        !std::ptr::eq(*kind, &COMPONENT) && !(has_assertions && std::ptr::eq(*kind, &COMPOSITE))
+        !(std::ptr::eq(*kind, &COMPONENT) || has_assertions && std::ptr::eq(*kind, &COMPOSITE))
     });
     let composite = has_assertions.then(|| {
         let whole = complex(&COMPOSITE, version, has_assertions);
