@@ -15,7 +15,6 @@ pub(super) fn out_of_reach(
     piece: &Luggage,
     ways: &mut Ways<'_>,
 ) -> Option<Finding> {
-    let most = ranges.iter().map(Range::most).max().unwrap_or(0);
     for spot in [&piece.from, &piece.to] {
         for block in farthest(area, spot.value) {
             let mut nearest = None;
@@ -34,6 +33,7 @@ pub(super) fn out_of_reach(
             }
             let Some(nearest) = nearest.filter(|_| !is_reached) else { continue };
             let is_one = spot.value.block().is_some();
+            let most = ranges.iter().map(Range::most).max().unwrap_or(0);
             let message = format!(
                 "no robot can bring luggage {} {block}: {nearest} moves from the nearest charger, and a full battery lasts for {most} and back",
                 if spot.bytes == piece.from.bytes { "from" } else { "to" }
