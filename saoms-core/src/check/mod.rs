@@ -7,6 +7,7 @@
 mod absent;
 mod arena;
 mod autowire;
+mod bindings;
 mod census;
 mod circle;
 mod classes;
@@ -157,6 +158,7 @@ fn examine<T>(
     let misread = report.diagnostics().iter().any(|one| one.code.id.starts_with("S10"));
     let known = report.errors();
     contracts::check(&fleet, &classes, report);
+    bindings::check(&fleet, report);
     described::check(&fleet, &classes, report);
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);

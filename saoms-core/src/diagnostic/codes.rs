@@ -119,6 +119,7 @@ codes! {
     UNKNOWN_TYPE = "S2050" Error "unknown-type": "A property has a type that XML Schema does not have.";
     DEPLOYABLE_NOT_FOUND = "S2051" Error "deployable-not-found": "A contribution calls a composite deployable that it does not have.";
     VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not hold them as SCA asks for.";
+    BINDING_MISMATCH = "S2053" Warning "binding-mismatch": "A reference and the service that it is wired to have no kind of binding in common.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";

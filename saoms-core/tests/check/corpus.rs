@@ -194,6 +194,7 @@ pub(crate) const MORE_MESSAGES: &[(&str, &str)] = &[
     ("LocalAttibuteMissmatch", "S2034"),
     ("MissingJMSOperationPropertyName", "S1008"),
     ("MultipleBindingsForReference", "S2040"),
+    ("NoMatchingBinding", "S2053"),
     ("PropertXSDElementsDontMatch", "S3007"),
     ("PropertXSDTypesDontMatch", "S3007"),
     ("PropertyFileValueInvalid", "S0001"),
