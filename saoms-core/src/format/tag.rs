@@ -10,7 +10,8 @@ const HANG: usize = 4;
 pub(super) fn start(element: Element<'_>, is_empty: bool, width: usize, depth: usize, lines: &mut Lines) {
     let close = if is_empty { "/>" } else { ">" };
     let columns = Lines::columns(depth);
-    let length = |text: &str| text.chars().count();
+    // A line end counts once, however it is written: it may become another one.
+    let length = |text: &str| text.chars().count() - text.matches("\r\n").count();
     let attributes: usize = element
         .written_attributes()
         .map(|one| " =\"\"".len() + length(one.name()) + length(one.raw_value()))

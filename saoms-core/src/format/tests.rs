@@ -187,3 +187,11 @@ fn depth_costs_nothing() {
     assert!(once.len() < depth * 2 * 90);
     assert_eq!(formatted(&once, WIDTH), once);
 }
+
+#[test]
+fn line_ends_in_values_fit_in_as_they_are_written() {
+    for width in 1..40 {
+        let once = formatted("<a\nb='x\r\ny' c='z'/>", width);
+        assert_eq!(formatted(&once, width), once, "{width}");
+    }
+}
