@@ -38,6 +38,7 @@ mod renames;
 mod replicas;
 mod replicate;
 mod report;
+mod room;
 mod rules;
 mod setting;
 mod severities;

@@ -1,6 +1,7 @@
 //! How many components a replicated one comes to, and what differs among them.
 
-use std::collections::HashMap;
+use std::cell::OnceCell;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::fleet::is_like;
@@ -120,6 +121,7 @@ impl<'a> Plan<'a> {
     fn rows(&mut self, table: &Table, report: &mut Report<'_>) {
         let last = self.next.saturating_add(self.count as i64 - 1);
         let by_name = (table.key == *"name").then(|| self.by_name());
+        let free = OnceCell::new();
         let mut seen: HashMap<i64, &Text> = HashMap::new();
         for (place, row) in table.rows.iter().enumerate() {
             let found = match &by_name {
@@ -136,10 +138,7 @@ impl<'a> Plan<'a> {
                     Some(_) if is_possible => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
                         .help("there would be one if `saoms:count` were larger"),
                     Some(by_name) => {
-                        let is_free = |name: &&str| table.rows.iter().all(|row| row.key != **name);
-                        let mut names: Vec<&str> =
-                            by_name.keys().map(String::as_str).filter(is_free).collect();
-                        names.sort_unstable();
+                        let names = free.get_or_init(|| without_line(by_name, table));
                         let known = ("the table says nothing of", names.iter().copied());
                         let one =
                             report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known);
@@ -194,6 +193,14 @@ impl<'a> Plan<'a> {
         });
         named.collect()
     }
+}
+
+/// The names of which a table says nothing, in order.
+fn without_line<'n>(names: &'n HashMap<String, i64>, table: &Table) -> Vec<&'n str> {
+    let said: HashSet<&str> = table.rows.iter().map(|row| row.key.as_str()).collect();
+    let mut names: Vec<&str> = names.keys().map(String::as_str).filter(|name| !said.contains(name)).collect();
+    names.sort_unstable();
+    names
 }
 
 /// The index of the first replica as far as it is known, without a word about faults.

@@ -4,6 +4,7 @@ use super::classes::ClassIndex;
 use super::fleet::{Fleet, Kind};
 use super::offer::{Offer, Side};
 use super::report::{Report, escaped, list};
+use super::room::Room;
 use super::target::{Uri, parts, spread, target};
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::hash::Map;
@@ -23,6 +24,7 @@ pub(super) struct Wire<'f> {
 pub(super) fn wires<'f>(
     fleet: &'f Fleet<'_>,
     classes: &'f [ClassIndex<'_>],
+    room: &Room,
     report: &mut Report<'_>,
 ) -> Map<usize, Vec<Wire<'f>>> {
     let mut all: Map<usize, Vec<Wire<'f>>> = Map::default();
@@ -51,7 +53,10 @@ pub(super) fn wires<'f>(
                 all.entry(member).or_default().push(Wire { name, target: source, scope, is_replacing });
                 continue;
             }
-            for (one, _) in spread(source, scope, fleet) {
+            for (one, replica) in spread(source, scope, fleet) {
+                if replica.is_some() && !room.take(source, report) {
+                    break;
+                }
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
                     // Both ends can be wrong.
                     for (to, _) in spread(to, scope, fleet) {

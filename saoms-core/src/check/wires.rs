@@ -14,6 +14,7 @@ use super::given;
 use super::multiplicity::keeps_own;
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
+use super::room::Room;
 use super::target::{Provider, Target, parts, spread, target};
 use super::wire::{Wire, wires};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -62,8 +63,9 @@ pub(super) fn check(
     promoted: &Promoted<'_>,
     report: &mut Report<'_>,
 ) -> Wiring {
-    let wires = wires(fleet, classes, report);
-    let mut all = Wires { fleet, classes, promoted, wires, autowire: Autowire::default() };
+    let room = Room::default();
+    let wires = wires(fleet, classes, &room, report);
+    let mut all = Wires { fleet, classes, promoted, wires, autowire: Autowire::default(), room };
     let sources = given::promoted(fleet);
     let mut circles = Circles::default();
     let mut wiring = Wiring { members: Vec::with_capacity(fleet.members.len()), ..Wiring::default() };
@@ -97,6 +99,7 @@ struct Wires<'f, 'a> {
     promoted: &'f Promoted<'f>,
     wires: Map<usize, Vec<Wire<'f>>>,
     autowire: Autowire<'f>,
+    room: Room,
 }
 
 impl<'f, 'a> Wires<'f, 'a> {
@@ -282,6 +285,10 @@ impl<'f, 'a> Wires<'f, 'a> {
         report: &mut Report<'_>,
     ) {
         for (one, replica) in spread(text, scope, self.fleet) {
+            if replica.is_some() && !self.room.take(text, report) {
+                level.ends.is_unknown = true;
+                break;
+            }
             // A group stands for the others.
             if replica.is_some() && replica == own {
                 continue;

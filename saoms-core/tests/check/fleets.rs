@@ -485,3 +485,12 @@ fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
           help: change the value, or the type
     "#]].assert_eq(&faults_of(&[&crate::support::fleet(inside)], &["robots=many"]));
 }
+
+/// A few lines could ask for more wires than there is memory for.
+#[test]
+fn groups_that_call_groups_have_a_limit() {
+    let group = r#"<component name="Gps${index}" saoms:count="1100"><implementation.java class="example.Gps"/><reference name="other" target="Gps*"/></component>"#;
+    let found = of(group, &[]);
+    let limit = "error S2035: groups of replicas come to more than 1000000 ends of wires";
+    assert_eq!(found.matches(limit).count(), 1, "{found}");
+}
