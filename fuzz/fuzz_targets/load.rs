@@ -4,7 +4,7 @@
 
 use saoms_components as _;
 
-#[path = "../../tests/robustness/targets.rs"]
+#[path = "../../tests/robustness/targets/mod.rs"]
 #[allow(dead_code, reason = "each fuzzer runs one of them")]
 mod targets;
 

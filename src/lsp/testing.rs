@@ -1,12 +1,17 @@
-//! What tests of the language server share: text with a cursor in, answers out.
+//! What tests of the language server and a fuzzer share: text with a cursor in, answers out.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
 use saoms_core::registry::Registry;
 
+use super::complete::complete;
 use super::file::File;
+use super::hover::hover;
+use super::navigate::{definition, references};
+use super::rename::rename;
 use super::scene::Scene;
+use super::symbols::symbols;
 
 static REGISTRY: LazyLock<Arc<Registry>> = LazyLock::new(|| Arc::new(Registry::linked().unwrap()));
 
@@ -41,4 +46,27 @@ pub(super) fn composite(inside: &str) -> String {
     format!(
         "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:s=\"urn:saoms:1\" name=\"fleet\" targetNamespace=\"urn:f\">\n{inside}\n</composite>"
     )
+}
+
+/// Asks everything at a byte of a text beside other files. What is answered is in the texts.
+pub(crate) fn ask_everything(text: &str, at: usize, others: &[(&str, &str)]) {
+    let scene = scene_of(text, others);
+    let file = scene.file();
+    for one in complete(&scene, at) {
+        assert!(one.range.start <= at && at <= one.range.end, "{:?} is not around {at}", one.range);
+        assert!(text.get(one.range.clone()).is_some());
+        let _ = one.into_item(file, true);
+    }
+    if let Some((_, range)) = hover(&scene, at) {
+        assert!(text.get(range).is_some());
+    }
+    definition(&scene, at);
+    references(&scene, at, true);
+    for (place, _) in rename(&scene, at, "new").unwrap_or_default() {
+        assert!(scene.files[place.file].text.get(place.start..place.end).is_some());
+    }
+    scene.fleets();
+    symbols(file);
+    let near = file.lines.offset(text, file.lines.position(text, at));
+    assert_eq!(file.lines.offset(text, file.lines.position(text, near)), near);
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use proptest::prelude::*;
-use proptest::sample::Index;
+use proptest::sample::{Index, select};
 use saoms_components as _;
 
 /// Of the larger collection, where it is there, every file of so many.
@@ -89,23 +89,148 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases() / 3, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_fleet_out_of_the_grammar(bytes in proptest::collection::vec(any::<u8>(), 0..1200)) {
+        targets::fleet(&bytes);
+    }
+
+    #[test]
+    fn values_and_expressions(pieces in proptest::collection::vec(select(PIECES), 0..12), first in 0..6_usize) {
+        let text = pieces.concat();
+        targets::expression(text.as_bytes());
+        targets::value(format!("{}\n{text}", "x".repeat(first)).as_bytes());
+    }
+}
+
+/// What values and expressions are made of.
+const PIECES: &[&str] = &[
+    "at ",
+    "then ",
+    "from ",
+    "every ",
+    "1s",
+    "500ms",
+    " 3 times ",
+    "luggage ",
+    "(1,2)",
+    "..",
+    " to ",
+    "random",
+    "landing ",
+    "breakdown R1",
+    "\n",
+    ";",
+    "#",
+    ".",
+    "@",
+    "type octile\nheight 2\nwidth 2\nmap\n",
+    ",",
+    "::",
+    "COLLISIONTOPIC",
+    "ETOPIC",
+    "localhost",
+    ":",
+    "61616",
+    "[::1]",
+    "://",
+    "${",
+    "}",
+    "$",
+    "$${",
+    "index",
+    "large",
+    "site",
+    "is",
+    " + ",
+    " * ",
+    "-",
+    "%",
+    "/",
+    " and ",
+    " or ",
+    "not ",
+    "==",
+    "<",
+    "'north'",
+    "'",
+    "(",
+    ")",
+    "0",
+    "7",
+    "9223372036854775807",
+    ":03",
+    "é",
+    "🤖",
+    " ",
+];
+
+#[test]
+fn a_journal_with_parts_missing() {
+    let whole = r#"{"components":[{"id":"R","name":"R"}],"journal":1}
+{"id":1,"time_s":0.5,"component":"R","phase":"symptom","text":"t","values":{"battery":[1]}}
+{"id":2,"time_s":1,"component":"R","loop":"l","phase":"decision","text":"u","cause":1}
+{"end":{"time_s":2.0,"lost":0}}
+"#;
+    for (at, _) in whole.char_indices() {
+        targets::journal(whole[..at].as_bytes());
+        targets::journal(format!("{}9{}", &whole[..at], &whole[at..]).as_bytes());
+        targets::journal(format!("{}{}", &whole[..at], &whole[at + 1..]).as_bytes());
+    }
+}
+
 /// What could take the square of its size, or the stack.
 #[test]
 fn large_and_deep_files() {
     let composite = |content: &str| {
         format!(
-            "<composite xmlns='http://www.osoa.org/xmlns/sca/1.0' name='c' targetNamespace='u'>{content}</composite>"
+            "<composite xmlns='http://www.osoa.org/xmlns/sca/1.0' xmlns:s='urn:saoms:1' name='c' targetNamespace='u'>{content}</composite>"
         )
     };
-    let component = "<component name='R'><implementation.java class='robot.Robot001'/><reference name='world' target='R'/></component>";
+    let robot = |inside: &str| {
+        format!("<component name='R'><implementation.java class='robot.Robot001'/>{inside}</component>")
+    };
+    let many = |of: &dyn Fn(usize) -> String| (0..1500).map(of).collect::<String>();
+    let prefixes = many(&|at| format!(" xmlns:p{at}='u{at}'"));
     for text in [
         "<a>".repeat(30_000),
         composite(&"<component>".repeat(5_000)),
-        composite(&component.repeat(800)),
+        composite(&robot("<reference name='world' target='R'/>").repeat(800)),
         composite(&format!("<component name='{}'/>", "x".repeat(100_000))),
         composite(&format!("<property name='p'>{}</property>", "<![CDATA[x]]>&lt;".repeat(5_000))),
         composite(&format!("<service name='s' promote='{}'/>", "a/b ".repeat(5_000))),
         composite(&"<!-- - -->\r\r\n".repeat(20_000)),
+        composite(&many(&|at| {
+            format!("<component name='C{at}'/><wire source='X{at}/world' target='Y{at}'/>")
+        })),
+        composite(&many(&|at| {
+            format!(
+                "<component name='C{at}'><implementation.java class='C{at}'/><property name='p' source='$p{at}'/></component>"
+            )
+        })),
+        composite(&format!(
+            "<component name='C'{prefixes}>{}</component>",
+            "<implementation.composite name='q:c'/>".repeat(1500)
+        )),
+        composite(&robot(&many(&|at| {
+            format!("<s:loop name='l{at}' class='saoms.BatteryMS' after='l{}'/>", at / 2)
+        }))),
+        composite(&robot(&format!(
+            "<property name='topicRename'>{}</property>",
+            many(&|at| format!("A{at},b::"))
+        ))),
+        composite(&robot(&format!("<reference name='world' target='{}'/>", many(&|at| format!("R{at} "))))),
+        composite(&format!(
+            "<component name='R${{index}}' s:count='1'><property name='p'>{}</property></component>",
+            "${x} ".repeat(5_000)
+        )),
+        composite(&many(&|at| {
+            format!(
+                "<component name='C{at}'><s:severity code='S1010' level='note' reason='r{at}'/></component>"
+            )
+        })),
     ] {
         holds(text.as_bytes());
     }

@@ -2,13 +2,7 @@
 
 use proptest::prelude::*;
 
-use crate::lsp::complete::complete;
-use crate::lsp::file::File;
-use crate::lsp::hover::hover;
-use crate::lsp::navigate::{definition, references};
-use crate::lsp::rename::rename;
-use crate::lsp::symbols::symbols;
-use crate::lsp::testing::scene_of;
+use crate::lsp::testing::ask_everything;
 
 const WHOLE: &str = r#"<?xml version="1.0"?>
 <!-- ü -->
@@ -33,30 +27,13 @@ const WHOLE: &str = r#"<?xml version="1.0"?>
 /// Asks everything at a byte.
 fn ask_all(text: &str, at: usize) {
     let table = "name,🤖\nR🤖001,\"";
-    let scene = scene_of(text, &[("inner.composite", WHOLE), ("t.csv", table), ("v.txt", "ä${period}${")]);
-    let file = scene.file();
-    for one in complete(&scene, at) {
-        // The range of what is replaced is in the text, and around the cursor.
-        assert!(one.range.start <= at && at <= one.range.end, "{:?} at {at}", one.range);
-        assert!(text.get(one.range.clone()).is_some());
-        let _ = one.into_item(file, true);
-    }
-    if let Some((_, range)) = hover(&scene, at) {
-        assert!(text.get(range).is_some());
-    }
-    definition(&scene, at);
-    references(&scene, at, true);
-    for (place, _) in rename(&scene, at, "new").unwrap_or_default() {
-        assert!(scene.files[place.file].text.get(place.start..place.end).is_some());
-    }
-    scene.fleets();
+    ask_everything(text, at, &[("inner.composite", WHOLE), ("t.csv", table), ("v.txt", "ä${period}${")]);
 }
 
 #[test]
 fn everything_can_be_asked_at_the_end_of_every_beginning() {
     for (at, _) in WHOLE.char_indices() {
         ask_all(&WHOLE[..at], at);
-        symbols(&File::new("/f".into(), WHOLE[..at].into()));
     }
 }
 
@@ -109,6 +86,5 @@ proptest! {
     fn everything_can_be_asked_in_disturbed_texts(text in disturbed(), at in any::<prop::sample::Index>()) {
         let at = text.floor_char_boundary(at.index(text.len() + 1));
         ask_all(&text, at);
-        symbols(&File::new("/f".into(), text.into()));
     }
 }

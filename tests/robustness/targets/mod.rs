@@ -1,11 +1,19 @@
 //! What has to hold for whatever bytes a file has. The tests beside this file and the fuzzers in `fuzz/` run the same functions.
 
+mod fleet;
+mod grammar;
+
 use std::sync::Arc;
 
+use saoms_api::Time;
 use saoms_core::check::{Census, Options, check as check_fleet};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
+use saoms_core::expression::{
+    Fault, Problem, Value, boolean, has_expression, integer, names, parse, pattern, render,
+};
 use saoms_core::format::format;
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
+use saoms_core::journal::read as read_journal;
 use saoms_core::load::{MAX_SIZE, load_file, read_from};
 use saoms_core::model::{Composite, Contribution};
 use saoms_core::registry::Registry;
@@ -29,15 +37,7 @@ pub(crate) fn check(bytes: &[u8]) {
         REGISTRY.with(|registry| {
             let fleet = Contribution::of(vec![composite]);
             if !assume_classes {
-                let census =
-                    Census::of(&fleet, registry, &Options::default(), &sources, &mut Diagnostics::new());
-                let diagram = Diagram::of(&fleet, registry, &census);
-                let pictures = [svg(&diagram), dot(&diagram), mermaid(&diagram)];
-                assert!(
-                    xml::parse(FileId(0), &Arc::new(pictures[0].clone())).fault.is_none(),
-                    "{}",
-                    pictures[0]
-                );
+                draw(&fleet, registry, &sources);
             }
             let options = Options { assume_classes, ..Options::default() };
             let assembly = check_fleet(&fleet, registry, &options, &sources, &mut diagnostics);
@@ -48,6 +48,81 @@ pub(crate) fn check(bytes: &[u8]) {
             show(&all, &sources);
         });
     }
+}
+
+/// Makes files of a fleet out of bytes, and holds them to what has to be.
+pub(crate) fn fleet(bytes: &[u8]) {
+    REGISTRY.with(|registry| fleet::holds(&grammar::fleet(bytes, registry), registry));
+}
+
+/// Gives a property of a class a value; the first line of the text chooses which.
+pub(crate) fn value(bytes: &[u8]) {
+    const PROPERTIES: &[(&str, &str)] = &[
+        ("saoms.Environment", "scenario"),
+        ("saoms.World", "map"),
+        ("saoms.World", "blocked"),
+        ("saoms.Robot", "topicRename"),
+        ("saoms.Robot", "url"),
+        ("resources.robotEnvironment.Navigator", "path"),
+    ];
+    let text = String::from_utf8_lossy(bytes);
+    let (first, value) = text.split_once('\n').unwrap_or(("", &text));
+    let named = PROPERTIES.iter().find(|(_, property)| first.trim() == *property);
+    let (class, property) = named.unwrap_or(&PROPERTIES[first.len() % PROPERTIES.len()]);
+    let value = value.replace('&', "&amp;").replace('<', "&lt;").replace("]]>", "]]&gt;");
+    let composite = format!(
+        "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='u'>
+           <component name='C'><implementation.java class='{class}'/><property name='ID'>R</property>
+           <property name='period'>1s</property><property name='{property}'>{value}</property></component></composite>"
+    );
+    check(composite.as_bytes());
+}
+
+/// Reads a text as an expression, and as one that holds expressions. What is said of it points into it.
+pub(crate) fn expression(bytes: &[u8]) {
+    let text = &*String::from_utf8_lossy(bytes);
+    let mut lookup = |name: &str| match name {
+        "index" => Ok(Value::Integer(7)),
+        "large" => Ok(Value::Integer(i64::MAX)),
+        "site" => Ok(Value::Text("north".to_owned())),
+        "is" => Ok(Value::Boolean(true)),
+        _ => Err(Problem::new("there is none")),
+    };
+    let is_inside = |fault: Fault| assert!(text.get(fault.at.clone()).is_some(), "{fault:?} in {text:?}");
+    match parse(text) {
+        Ok(one) => {
+            one.names().into_iter().for_each(|(name, at)| assert_eq!(text.get(at), Some(name), "{text:?}"));
+            integer(&one, &mut lookup).err().map(is_inside);
+            boolean(&one, &mut lookup).err().map(is_inside);
+        }
+        Err(fault) => is_inside(fault),
+    }
+    match render(text, &mut lookup) {
+        Ok(value) => assert!(has_expression(text) || value == text, "{text:?} became {value:?}"),
+        Err(faults) => faults.into_iter().for_each(is_inside),
+    }
+    assert!(has_expression(text) || names(text).is_empty() && pattern(text) == text, "{text:?}");
+}
+
+/// Reads a text as a report or a journal, and asks it why.
+pub(crate) fn journal(bytes: &[u8]) {
+    let text = &*String::from_utf8_lossy(bytes);
+    let Ok(document) = read_journal(text) else { return };
+    let ends = [None, document.end, Some(Time::START)];
+    for (component, at) in document.components.iter().flat_map(|one| ends.map(|at| (one, at))) {
+        match document.journal.why(&component.name, at) {
+            Ok(why) => _ = serde_json::json!([why.chains, why.knowledge]),
+            Err(error) => _ = error.to_string(),
+        }
+    }
+}
+
+/// Draws a fleet in every format.
+pub(crate) fn draw(fleet: &Contribution, registry: &Registry, sources: &Sources) {
+    let census = Census::of(fleet, registry, &Options::default(), sources, &mut Diagnostics::new());
+    let diagram = Diagram::of(fleet, registry, &census);
+    let pictures = [svg(&diagram), dot(&diagram), mermaid(&diagram)];
+    assert!(xml::parse(FileId(0), &Arc::new(pictures[0].clone())).fault.is_none(), "{}", pictures[0]);
 }
 
 /// Formats bytes: the result has the same elements, attributes and texts, and is its own format.
@@ -64,7 +139,7 @@ pub(crate) fn fmt(bytes: &[u8]) {
 }
 
 thread_local! {
-    static REGISTRY: Registry = Registry::linked().unwrap();
+    pub(crate) static REGISTRY: Registry = Registry::linked().unwrap();
 }
 
 struct Loaded {
@@ -82,8 +157,9 @@ impl Loaded {
     }
 }
 
-fn parsed(text: &str) -> Option<Document> {
-    let parsed = xml::parse(FileId(0), &Arc::new(text.into()));
+/// A text as XML; `None` where it is ill-formed.
+pub(crate) fn parsed(text: &str) -> Option<Document> {
+    let parsed = xml::parse(FileId(0), &Arc::new(text.to_owned()));
     parsed.document.filter(|_| parsed.fault.is_none())
 }
 
@@ -100,7 +176,7 @@ fn meaning(document: &Document) -> Vec<String> {
 }
 
 /// Shows diagnostics in all formats; the first ones, when there are very many.
-fn show(all: &[Diagnostic], sources: &Sources) {
+pub(crate) fn show(all: &[Diagnostic], sources: &Sources) {
     let is_inside = |at: Location| {
         let text = sources.get(at.file).text();
         text.get(at.span.start as usize..at.span.end as usize).is_some()

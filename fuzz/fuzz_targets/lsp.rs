@@ -1,0 +1,31 @@
+//! Whatever an editor holds, every question about it has an answer.
+
+#![no_main]
+
+use saoms_components as _;
+
+#[path = "../../src/lsp"]
+#[allow(dead_code, unused_imports, reason = "the server itself is left out")]
+mod lsp {
+    mod complete;
+    mod describe;
+    mod file;
+    mod hover;
+    mod navigate;
+    mod outline;
+    mod position;
+    mod rename;
+    mod scene;
+    mod symbol;
+    mod symbols;
+    mod syntax;
+    pub(crate) mod testing;
+}
+
+/// The first two bytes say where the question is asked.
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let Some(([high, low], text)) = bytes.split_first_chunk() else { return };
+    let text = String::from_utf8_lossy(text);
+    let at = usize::from(u16::from_be_bytes([*high, *low])) % (text.len() + 1);
+    lsp::testing::ask_everything(&text, text.floor_char_boundary(at), &[]);
+});
