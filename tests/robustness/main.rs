@@ -175,7 +175,7 @@ fn a_journal_with_parts_missing() {
 {"end":{"time_s":2.0,"lost":0}}
 "#;
     for (at, _) in whole.char_indices() {
-        targets::journal(whole[..at].as_bytes());
+        targets::journal(&whole.as_bytes()[..at]);
         targets::journal(format!("{}9{}", &whole[..at], &whole[at..]).as_bytes());
         targets::journal(format!("{}{}", &whole[..at], &whole[at + 1..]).as_bytes());
     }
