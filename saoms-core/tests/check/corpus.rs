@@ -275,7 +275,7 @@ fn diagnostics_are_at_what_they_name() {
                 count += 1;
                 beside += usize::from(!sources.get(place.file).path().ends_with(&row.path));
             }
-            let said = [&[one.message.clone()], &one.help[..]].concat().join("\n");
+            let said = [std::slice::from_ref(&one.message), &one.help[..]].concat().join("\n");
             let things = things_at(one.location, &sources).unwrap_or_default();
             let is_named = things.is_empty() || things.iter().any(|thing| said.contains(thing.as_str()));
             assert!(is_named, "{}: none of {things:?} is in {}", row.path, shown(one, &sources));
