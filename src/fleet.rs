@@ -25,8 +25,8 @@ pub(crate) const SEVERITY: &str = "--severity";
 /// The name that stands for standard input.
 pub(crate) const INPUT: &str = "-";
 
-/// What the checker is asked for: an assembly ([`check`](saoms_core::check::check)), or the diagnostics alone
-/// ([`count`](saoms_core::check::count)).
+/// What the checker is asked for: an assembly ([`saoms_core::check::check`]), or the diagnostics alone
+/// ([`saoms_core::check::count`]).
 pub(crate) type Checker<T> = fn(&Contribution, &Registry, &Options, &Sources, &mut Diagnostics) -> Option<T>;
 
 /// The outcome of loading and checking.
