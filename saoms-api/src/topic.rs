@@ -45,7 +45,7 @@ impl<M: Message> Topic<M> {
     ///
     /// ```
     /// # use saoms_api::{Message, Topic};
-    /// # #[derive(Clone, Message)] struct Collision { x: u32 }
+    /// # #[derive(Clone, Debug, Message)] struct Collision { x: u32 }
     /// pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC").optional();
     /// assert!(COLLISION.is_optional());
     /// ```
