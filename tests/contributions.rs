@@ -138,3 +138,21 @@ fn standard_input_is_a_composite_in_the_current_folder() {
     let (code, _, stderr) = saoms(folder.path(), &["run", "--reload", "-"], &fleet);
     assert!(code == 2 && stderr.contains("standard input"), "{stderr}");
 }
+
+#[test]
+fn a_composite_beside_one_that_is_named_from_outside_is_one_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    fs::create_dir(folder.path().join("parts")).unwrap();
+    write(
+        "sca-contribution.xml",
+        "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"/>",
+    );
+    let inner = "<component name=\"A\"><implementation.composite name=\"a:body\"/></component>";
+    write("parts/hall.composite", &composite("hall", inner));
+    write("parts/body.composite", &composite("body", &robot(1, "")));
+    for path in ["parts/hall.composite", "./parts/../parts/hall.composite"] {
+        let (code, said, wrong) = saoms(folder.path(), &["check", path], "");
+        assert_eq!((code, wrong.as_str()), (0, ""), "{said}");
+    }
+}

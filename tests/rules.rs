@@ -195,6 +195,21 @@ fn an_id_without_a_number_is_shown_at_the_id_alone() {
 }
 
 #[test]
+fn robots_of_one_number_stay_an_error_where_their_id_may_be_shared() {
+    let numbers: &[(&str, &str)] = &[("number", "1"), ("chargeX", "3")];
+    let other: &[(&str, &str)] = &[("number", "1")];
+    for (one, two, id) in [(&[][..], &[("chargeX", "3")][..], "Robot1"), (other, numbers, "R2")] {
+        let text = fleet(&[("Robot1", "saoms.Robot", one, false), ("R", "saoms.Robot", two, false)]);
+        let text = text.replace("name=\"ID\">R<", &format!("name=\"ID\">{id}<")).replace(
+            "</composite>",
+            "<s:severity xmlns:s='urn:saoms:1' code='S3013' level='allow' reason='one of them is away'/></composite>",
+        );
+        let found = Fleet::of_text(text).diagnostics();
+        assert!(found.contains("error S5004"), "{id}: {found}");
+    }
+}
+
+#[test]
 fn a_charger_outside_the_map_is_shown_where_it_leaves_the_map() {
     for (properties, wrong) in
         [([("chargeX", "33"), ("chargeY", "2")], "33"), ([("chargeX", "2"), ("chargeY", "22")], "22")]

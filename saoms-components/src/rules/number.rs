@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
 use super::robots::{Known, robots};
 
@@ -28,16 +28,17 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             first.insert(robot.number, robot);
             continue;
         };
-        // Two that are given outright, and two of one ID, are found by the property itself.
-        let is_same_id = robot.properties.id.trim() == other.properties.id.trim();
-        if is_same_id || robot.properties.number.is_some() && other.properties.number.is_some() {
-            continue;
-        }
         let name = |robot: &Known| fleet.components()[robot.index].path;
         let message =
             format!("robots `{}` and `{}` both have the number {}", name(other), name(robot), robot.number);
+        // Of two with one ID that is what to change; the checker says so by itself unless it is told not to.
+        let is_same_id = robot.properties.id.trim() == other.properties.id.trim();
+        let place = match is_same_id {
+            true => Place::property("ID").in_component(robot.index),
+            false => robot.number_place(fleet),
+        };
         findings.push(
-            Finding::new(robot.number_place(fleet), message)
+            Finding::new(place, message)
                 .label(other.number_place(fleet), "the first")
                 .help("a robot has the number that its ID ends with, unless its class name or `number` says another: give one of them its own"),
         );

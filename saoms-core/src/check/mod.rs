@@ -63,7 +63,7 @@ use std::collections::HashSet;
 use saoms_api::PropertyValue;
 
 use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
-use crate::diagnostic::{Diagnostics, Severity, codes};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::{Location, Sources};
@@ -156,7 +156,8 @@ fn examine<T>(
     let (checked, loops) = absent::remove(&mut fleet, checked, loops);
     let (resolved, halves) = components(&fleet, &classes, checked, loops, report);
     written::check(&fleet, report);
-    let misread = report.diagnostics().iter().any(|one| one.code.id.starts_with("S10"));
+    let is_misread = |one: &Diagnostic| one.code.id.starts_with("S10") && !severities.mentions(one.code);
+    let misread = report.diagnostics().iter().any(is_misread);
     let known = report.errors();
     contracts::check(&fleet, &classes, report);
     bindings::check(&fleet, report);
@@ -186,7 +187,7 @@ fn examine<T>(
     report.about_all();
     let rules =
         registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
-    rules::check(&fleet, &classes, &resolved, (&wiring, has_open_wires), rules, report);
+    rules::check(&fleet, &classes, &resolved, (&wiring, has_open_wires), (rules, &severities), report);
     if options.assume_classes {
         elsewhere(&fleet, report);
     }

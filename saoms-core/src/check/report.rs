@@ -61,6 +61,12 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// Whether something of this code was told at this place.
+    pub(super) fn has_told(&self, code: &'static Code, at: Location) -> bool {
+        self.known_copies.contains_key(&(code.id, at))
+            || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
+    }
+
     /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
     pub(super) fn about(&mut self, member: &Member<'_>) {
         let index = member.instance.map(|instance| instance.index);

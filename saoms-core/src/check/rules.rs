@@ -10,9 +10,10 @@ use super::classes::ClassIndex;
 use super::findings::{Subject, diagnostic};
 use super::fleet::Fleet;
 use super::report::Report;
+use super::severities::Severities;
 use super::wires::Wiring;
 use crate::assembly::LoopSpec;
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Diagnostic, Severity, codes};
 use crate::registry::{Class, Rule};
 
 /// The declaration of a class and of those that it extends.
@@ -27,7 +28,7 @@ pub(super) fn check<'s>(
     classes: &'s [ClassIndex<'_>],
     resolved: &'s [Option<Box<Resolved<'_>>>],
     (wiring, has_open_wires): (&Wiring, bool),
-    rules: impl Iterator<Item = &'s Rule>,
+    (rules, severities): (impl Iterator<Item = &'s Rule>, &Severities),
     report: &mut Report<'_>,
 ) {
     let mut places = Vec::with_capacity(fleet.members.len());
@@ -105,7 +106,10 @@ pub(super) fn check<'s>(
                 Some((place, ..)) => report.about(&fleet.members[*place]),
                 None => report.about_all(),
             }
-            if let Some(one) = diagnostic(rule.code(), severity, finding, own, &named, report) {
+            let Some(one) = diagnostic(rule.code(), severity, finding, own, &named, report) else { continue };
+            // What comes of a value that two components share is not told beside that, unless somebody lets that pass.
+            let is_echo = report.has_told(&codes::NOT_UNIQUE, one.location);
+            if !is_echo || severities.mentions(&codes::NOT_UNIQUE) {
                 report.push(one);
             }
         }

@@ -31,7 +31,8 @@ impl SeveritySetting {
         let file = sources.add(option, text);
         let split = text.find('=').unwrap_or(text.len());
         let (code, level) = (text[..split].trim(), &text[(split + 1).min(text.len())..]);
-        let (level, reason) = level.split_once(':').unwrap_or((level, ""));
+        let with_reason = level.split_once(':').filter(|(_, reason)| !reason.trim().is_empty());
+        let (level, reason) = with_reason.unwrap_or((level, ""));
         let (level, reason) = (level.trim(), reason.trim());
         let place = |part: &str| {
             let start = part.as_ptr() as usize - text.as_ptr() as usize;
@@ -164,6 +165,11 @@ impl Severities {
             by_code.entry(rule.code.clone()).or_default().push(place);
         }
         Self { rules, by_code, preventing }
+    }
+
+    /// Whether anything is said about a code.
+    pub(super) fn mentions(&self, code: &Code) -> bool {
+        self.by_code.contains_key(code.id)
     }
 
     /// Sets the severities of the diagnostics from this place on.

@@ -55,7 +55,8 @@ impl Loader<'_> {
 
     /// Tells of an attribute of SCA 1.1 in a file of 1.0, once for all of its name.
     fn newer(&mut self, element: Element<'_>, attribute: Attribute<'_>, known: &'static Known) {
-        if self.newer.contains(&known.name) {
+        // Behind a wrong namespace nobody knows which version is meant.
+        if self.newer.contains(&known.name) || Version::from_namespace(&self.namespace).is_none() {
             return;
         }
         self.newer.push(known.name);

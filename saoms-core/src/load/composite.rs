@@ -10,7 +10,7 @@ use super::vocabulary::{
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Composite, Include, Origin, Wire, WireDetails};
 use crate::source::{Located, Text};
-use crate::xml::{Document, Element};
+use crate::xml::{Attribute, Document, Element};
 
 impl Loader<'_> {
     /// Reads the whole composite.
@@ -101,7 +101,11 @@ impl Loader<'_> {
             details: None,
         };
         if !is_plain {
-            let (replace, condition) = (self.boolean(element, "replace"), self.own(element, "if"));
+            // What is wrong was meant to say something: the targets of the reference are not counted then.
+            let meant = |attribute: Attribute<'_>| Located::new(true, attribute.location());
+            let replace =
+                self.boolean(element, "replace").or_else(|| element.attribute("replace").map(meant));
+            let condition = self.own(element, "if");
             let is_given = replace.is_some() || condition.is_some();
             wire.details = is_given.then(|| Box::new(WireDetails { replace, condition }));
         }

@@ -11,7 +11,7 @@ use quick_xml::events::Event;
 
 use super::description;
 use crate::diagnostic::quoted;
-use crate::source::OpenTexts;
+use crate::source::{OpenTexts, identity};
 
 /// Entries of folders that are looked at in all.
 const MOST_ENTRIES: usize = 20_000;
@@ -104,7 +104,7 @@ impl Shelf {
         }
         all.retain(|path| {
             let is_same = |head: &Head| head.namespace == namespace && head.local == local;
-            path != found && self.head(path).as_ref().is_some_and(is_same)
+            identity(path) != identity(found) && self.head(path).as_ref().is_some_and(is_same)
         });
         all
     }
