@@ -9,9 +9,11 @@ use saoms_components as _;
 mod lsp {
     mod complete;
     mod describe;
+    mod expressions;
     mod file;
     mod hover;
     mod navigate;
+    mod occurrences;
     mod outline;
     mod position;
     mod rename;
@@ -22,7 +24,7 @@ mod lsp {
     pub(crate) mod testing;
 }
 
-/// The first two bytes say where the question is asked.
+// The first two bytes say where the question is asked.
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let Some(([high, low], text)) = bytes.split_first_chunk() else { return };
     let text = String::from_utf8_lossy(text);
