@@ -56,6 +56,7 @@ impl Writer {
     /// The length needs more than 32 bits, which the encoding does not have.
     #[inline]
     pub fn length(&mut self, length: usize) {
+        // A documented panic: the text or sequence would have to lie in memory with 2^32 elements, and files and messages are limited below that.
         #[expect(clippy::expect_used, reason = "a value of 4 GiB is a fault of the program that made it")]
         let length =
             u32::try_from(length).expect("CDR has no strings and sequences of 2^32 elements or more");

@@ -217,6 +217,8 @@ pub struct InterfaceDeclaration {
 )]
 static TASK_SERVICE: LazyLock<ServiceDeclaration> = LazyLock::new(|| ServiceDeclaration {
     name: "TaskInterface".to_owned(),
+    // Proof: the macro writes the text while `saoms-api` compiles, and no input reaches it; any test that registers a periodic class
+    // reads it.
     interface: serde_json::from_str(<dyn TaskInterface as Interface>::DECLARATION)
         .expect("the interface declares itself in JSON"),
 });
