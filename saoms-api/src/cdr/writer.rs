@@ -56,7 +56,7 @@ impl Writer {
     /// The length needs more than 32 bits, which the encoding does not have.
     #[inline]
     pub fn length(&mut self, length: usize) {
-        // A documented panic: the text or sequence would have to lie in memory with 2^32 elements, and files and messages are limited below that.
+        // The panic that is documented above: a length beyond this is a text or sequence of 4 GiB in memory, which no message is meant to be.
         #[expect(clippy::expect_used, reason = "a value of 4 GiB is a fault of the program that made it")]
         let length =
             u32::try_from(length).expect("CDR has no strings and sequences of 2^32 elements or more");
