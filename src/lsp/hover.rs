@@ -5,7 +5,7 @@ use std::ops::Range;
 use saoms_core::diagnostic::codes;
 use saoms_core::load::vocabulary::{Holds, other, own_attributes};
 
-use super::complete::names::{declared, loop_class};
+use super::complete::names::declared;
 use super::complete::topics;
 use super::describe;
 use super::outline::{Component, Implementation, Side};
@@ -69,27 +69,14 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             Some(format!("**{name}**, a {what} of the composite `{}`", composite_name(scene, *file)))
         }
         Symbol::Part { file, component, side, name } => {
-            let class = scene.class(scene.component(*file, component)?.1)?.declaration();
-            Some(match side {
-                Side::Service => {
-                    let one = class.offers().find(|one| one.name == *name)?;
+            let of = scene.component(*file, component)?;
+            let one = scene.contract(of, *side, name)?;
+            let (class, interface) = (scene.class(of.1)?.name(), &one.interface?.name);
+            Some(match one.multiplicity {
+                None => format!("**{name}**, a service of `{class}` with the interface `{interface}`"),
+                Some(multiplicity) => {
                     format!(
-                        "**{name}**, a service of `{}` with the interface `{}`",
-                        class.name, one.interface.name
-                    )
-                }
-                Side::Reference => {
-                    let one = class.references.iter().find(|one| one.name == *name)?;
-                    let multiplicity = match (one.optional, one.many) {
-                        (true, true) => "0..n",
-                        (true, false) => "0..1",
-                        (false, true) => "1..n",
-                        (false, false) => "1..1",
-                    };
-                    let interface = &one.interface.name;
-                    format!(
-                        "**{name}**, a reference of `{}`, `{multiplicity}`, for the interface `{interface}`",
-                        class.name
+                        "**{name}**, a reference of `{class}`, `{multiplicity}`, for the interface `{interface}`"
                     )
                 }
             })
@@ -106,7 +93,7 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             let component = scene.component_around(scene.file().tree.innermost(start + 1)?)?;
             let one =
                 component.loops.iter().find(|one| one.name.at.start <= start && start <= one.name.at.end)?;
-            let class = loop_class(scene, component, one)?;
+            let class = scene.class_of_loop((0, component), one)?;
             Some(describe::looping(scene.registry.get_loop(&class)?))
         }
         Symbol::Index { component, .. } => {
@@ -191,7 +178,7 @@ fn value_of_property(
         let before = file.text[value.start..byte].trim_end_matches(is_part).len();
         let behind = &file.text[byte..value.end];
         let at = value.start + before..byte + behind.len() - behind.trim_start_matches(is_part).len();
-        let topics = topics::of_component(scene, component);
+        let topics = topics::of_component(scene, (0, component));
         if let Some(topic) = topics.get(&file.text[at.clone()]) {
             return Some((describe::topic(topic), at));
         }

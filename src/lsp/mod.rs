@@ -6,6 +6,7 @@
 mod capabilities;
 mod check;
 mod complete;
+mod contracts;
 mod describe;
 mod diagnostics;
 mod documents;
@@ -13,6 +14,7 @@ mod expressions;
 mod file;
 mod fixes;
 mod hover;
+mod loops;
 mod navigate;
 mod occurrences;
 mod outline;

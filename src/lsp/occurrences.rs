@@ -49,16 +49,18 @@ impl<'s> Found<'s> {
         }
         outline.components.iter().for_each(|component| all.component(component));
         for end in &outline.ends {
-            let named = || scene.named(file, &end.component.text);
-            all.add(&end.component, false, || {
-                let (file, name) = named();
-                Some(Symbol::Component { file, name })
-            });
-            if let Some(part) = &end.part {
-                all.add(part, false, || {
+            for &scope in scene.scopes(&file, end) {
+                let named = || scene.named(scope, &end.component.text);
+                all.add(&end.component, false, || {
                     let (file, name) = named();
-                    Some(scene.part(file, &name, end.side, &part.text))
+                    Some(Symbol::Component { file, name })
                 });
+                if let Some(part) = &end.part {
+                    all.add(part, false, || {
+                        let (file, name) = named();
+                        Some(scene.part(file, &name, end.side, &part.text))
+                    });
+                }
             }
         }
         all.all

@@ -91,6 +91,8 @@ pub(super) struct Loop {
 #[derive(Clone, Debug)]
 pub(super) struct End {
     pub(super) side: Side,
+    /// Whether the component is one around the composite.
+    pub(super) is_outer: bool,
     pub(super) component: Named,
     pub(super) part: Option<Named>,
 }
@@ -119,6 +121,13 @@ impl Outline {
             outline.deployables.extend(named);
         }
         outline
+    }
+
+    /// The ends that an element has.
+    pub(super) fn ends_of(&self, element: usize) -> impl Iterator<Item = &End> {
+        // They are in the order of the elements.
+        let first = self.ends.partition_point(|end| end.component.element < element);
+        self.ends[first..].iter().take_while(move |end| end.component.element == element)
     }
 
     /// The names in `${...}` of a component that is replicated.
@@ -203,7 +212,8 @@ impl Outline {
             "reference" => {
                 self.references.extend(named);
                 self.ends.extend(of.list("promote").map(|one| end(one, Side::Reference)));
-                self.ends.extend(of.list("target").map(|one| end(one, Side::Service)));
+                let outer = |one| End { is_outer: true, ..end(one, Side::Service) };
+                self.ends.extend(of.list("target").map(outer));
             }
             _ => {}
         }
@@ -318,5 +328,5 @@ fn end(whole: Named, side: Side) -> End {
         Named { element: whole.element, text: part.to_owned(), at }
     });
     let component = parts.next().unwrap_or_else(|| whole.clone());
-    End { side, component, part: parts.next() }
+    End { side, is_outer: false, component, part: parts.next() }
 }

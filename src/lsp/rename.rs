@@ -2,8 +2,9 @@
 
 use saoms_core::expression::is_name;
 
-use super::complete::names::default_loops;
 use super::expressions::INDEX;
+use super::occurrences::Found;
+use super::outline::End;
 use super::scene::Scene;
 use super::symbol::{Occurrence, Place, Symbol, at, group, is_replica, places};
 
@@ -45,6 +46,7 @@ pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Plac
     if old != name {
         taken(scene, &found.symbol, name)?;
         named_among_others(scene, &found.symbol, &old)?;
+        all.iter().try_for_each(|one| shared(scene, one))?;
     }
     all.iter()
         .map(|one| {
@@ -71,11 +73,9 @@ fn refusal(scene: &Scene, symbol: &Symbol) -> Option<String> {
         Symbol::Class { name } => Some(format!("the class `{name}` has its name from its author")),
         Symbol::Part { name, .. } => Some(format!("`{name}` has its name from the class of the component")),
         Symbol::Loop { file, component, name } => {
-            let (_, component) = scene.component(*file, component)?;
-            let is_added = scene.class(component).is_some()
-                && !default_loops(scene, component)
-                    .iter()
-                    .any(|(short, class)| short == name || class == name);
+            let of = scene.component(*file, component)?;
+            let is_meant = |(short, class): &(&str, &str)| short == name || class == name;
+            let is_added = scene.class(of.1).is_some() && !scene.default_loops(of).iter().any(is_meant);
             (!is_added).then(|| format!("the loop `{name}` has its name from the class"))
         }
         Symbol::Index { .. } => Some(format!("`{INDEX}` is what replicas are counted by")),
@@ -121,10 +121,10 @@ fn taken(scene: &Scene, symbol: &Symbol, name: &str) -> Result<(), String> {
             })
         }
         Symbol::Loop { file, component, .. } => {
-            let (_, component) = scene.component(*file, component).ok_or("there is no such component")?;
-            let mut given = component.loops.iter().map(|one| &one.name.text);
-            given.any(|known| known == name)
-                || default_loops(scene, component).iter().any(|(short, class)| short == name || class == name)
+            let of = scene.component(*file, component).ok_or("there is no such component")?;
+            let mut given = of.1.loops.iter().map(|one| &one.name.text);
+            let is_meant = |(short, class): &(&str, &str)| *short == name || *class == name;
+            given.any(|known| known == name) || scene.default_loops(of).iter().any(is_meant)
         }
         _ => false,
     };
@@ -143,6 +143,25 @@ fn named_among_others(scene: &Scene, symbol: &Symbol, old: &str) -> Result<(), S
     match written.map(|one| &one.text).find(|text| group(old).is_none() && is_replica(text, old)) {
         Some(other) => Err(format!("`{other}` names it along with others, and would not any more")),
         None => Ok(()),
+    }
+}
+
+/// Refuses where a place names something else as well: what a composite targets stands around it, and it may be used in several.
+fn shared(scene: &Scene, one: &Occurrence) -> Result<(), String> {
+    let outline = &scene.files[one.at.file].outline;
+    let is_here = |end: &End| {
+        end.is_outer && end.component.at.start <= one.at.start && one.at.end <= end.component.at.end
+    };
+    if !outline.ends.iter().any(is_here) {
+        return Ok(());
+    }
+    let others = Found::of(scene, one.at.file, Some(one.at.start));
+    match others.iter().find(|other| other.at == one.at && other.symbol != one.symbol) {
+        Some(Occurrence { symbol: Symbol::Component { file, name }, .. }) => {
+            let shown = scene.files[*file].path.file_name().unwrap_or_default().to_string_lossy();
+            Err(format!("`{}` is also the component `{name}` in `{shown}`", text(scene, &one.at)))
+        }
+        _ => Ok(()),
     }
 }
 

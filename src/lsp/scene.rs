@@ -9,7 +9,8 @@ use saoms_core::registry::{Class, Registry};
 use saoms_core::source::identity;
 
 use super::file::File;
-use super::outline::{Component, Implementation, Named};
+use super::outline::{Component, End, Implementation, Named};
+use super::symbol::Symbol;
 use super::syntax::local;
 
 /// A file and those around it: composites, then the files beside them that hold values. Files are named by their places; that of the file itself is 0.
@@ -23,6 +24,8 @@ pub(super) struct Scene {
     includes: Vec<Vec<usize>>,
     /// By the places of files, as far as somebody asked.
     units: Vec<OnceLock<Unit>>,
+    /// By the places of files, as far as somebody asked.
+    users: Vec<OnceLock<Vec<usize>>>,
     /// The files that hold values, by the paths that composites write.
     beside: HashMap<PathBuf, usize>,
 }
@@ -55,8 +58,9 @@ impl Scene {
             }
         }
         let units = files.iter().map(|_| OnceLock::new()).collect();
+        let users = files.iter().map(|_| OnceLock::new()).collect();
         let beside = beside(&files);
-        let mut scene = Self { files, registry, by_name, includes: Vec::new(), units, beside };
+        let mut scene = Self { files, registry, by_name, includes: Vec::new(), units, users, beside };
         scene.includes = (0..scene.files.len()).map(|file| scene.included(file)).collect();
         scene
     }
@@ -157,10 +161,26 @@ impl Scene {
         }
     }
 
-    /// The components of the composite that the file is part of, each with its file.
-    pub(super) fn components(&self) -> impl Iterator<Item = (usize, &Component)> {
+    /// The components of the composite that a file is part of, each with its file.
+    pub(super) fn components_of(&self, file: usize) -> impl Iterator<Item = (usize, &Component)> {
         let of = |file: &usize| (*file, &self.files[*file].outline.components);
-        self.unit_of(0).iter().map(of).flat_map(|(file, all)| all.iter().map(move |one| (file, one)))
+        self.unit_of(file).iter().map(of).flat_map(|(file, all)| all.iter().map(move |one| (file, one)))
+    }
+
+    /// The files with components that the composite of a file implements: what its references target is there.
+    pub(super) fn users(&self, file: usize) -> &[usize] {
+        self.users[file].get_or_init(|| {
+            let uses = |other: &usize| {
+                let components = &self.files[*other].outline.components;
+                components.iter().any(|one| self.inside(*other, one).contains(&file))
+            };
+            (0..self.files.len()).filter(uses).collect()
+        })
+    }
+
+    /// The files in whose composites the component of an end is looked for: that of the end, or those around it.
+    pub(super) fn scopes<'s>(&'s self, file: &'s usize, end: &End) -> &'s [usize] {
+        if end.is_outer { self.users(*file) } else { std::slice::from_ref(file) }
     }
 
     /// The component of this name in the composite that a file is part of.
@@ -192,6 +212,18 @@ impl Scene {
             here = file.tree.elements[one].parent;
         }
         None
+    }
+
+    /// The value that a property of a component gives, that of the composite's property where it names one.
+    pub(super) fn given(&self, file: usize, property: usize) -> Option<&str> {
+        let own = self.value_of(file, property);
+        own.or_else(|| {
+            let mut sources = self.files[file].outline.sources.iter();
+            let source = sources.find(|one| one.element == property)?;
+            let Symbol::Parameter { file, name } = self.parameter(file, &source.text) else { return None };
+            let declared = self.files[file].outline.properties.iter().find(|one| one.text == name)?;
+            self.value_of(file, declared.element)
+        })
     }
 
     /// The simple value of a property of a file: its attribute `value`, or the text inside.

@@ -1,11 +1,14 @@
 //! Ends of wires: `component` and `component/part`.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
+use saoms_core::registry::InterfaceDeclaration;
 
 use super::{Proposal, names};
-use crate::lsp::outline::{Component, Implementation};
+use crate::lsp::contracts::Contract;
+use crate::lsp::outline::{Component, Implementation, Side};
 use crate::lsp::scene::Scene;
 use crate::lsp::symbol::group;
 
@@ -20,8 +23,16 @@ pub(super) fn complete(
     let file = scene.file();
     let text = &*file.text;
     let word = word(text, value, at);
+    let promotes = attribute == "promote";
     let in_reference = file.tree.local(text, element) == "reference";
-    let wants_references = attribute == "source" || (attribute == "promote" && in_reference);
+    let side = match attribute == "source" || (promotes && in_reference) {
+        true => Side::Reference,
+        false => Side::Service,
+    };
+    let asked = Asked { side, interface: interface(scene, element, attribute) };
+    // What a reference of the composite targets is around the composite.
+    let is_outer = attribute == "target" && in_reference && scene.component_around(element).is_none();
+    let scopes = if is_outer { scene.users(0).to_vec() } else { vec![0] };
     if let Some(slash) = text[word.start..at].find('/') {
         let (name, start) = (&text[word.start..word.start + slash], word.start + slash + 1);
         // What stands behind a second slash is a binding, which nobody declares.
@@ -29,41 +40,47 @@ pub(super) fn complete(
             return Vec::new();
         }
         let end = text[at..word.end].find('/').map_or(word.end, |found| at + found);
-        // Replicas have the parts of what they are replicas of.
-        let (file, name) = scene.named(0, name);
-        let Some(of) = scene.component(file, &name) else { return Vec::new() };
-        return match wants_references {
-            true => names::references_of(scene, of, &(start..end)),
-            false => names::services_of(scene, of, &(start..end)),
-        };
+        let of = scopes.into_iter().find_map(|scope| {
+            // Replicas have the parts of what they are replicas of.
+            let (file, name) = scene.named(scope, name);
+            scene.component(file, &name)
+        });
+        let known = of.and_then(|of| scene.contracts(of, side)).unwrap_or_default();
+        return names::contracts(known.into_iter().filter(|one| asked.fits(one)), &(start..end));
     }
     let end = text[at..word.end].find('/').map_or(word.end, |found| at + found);
-    let interface = if wants_references { None } else { interface(scene, element, attribute) };
-    let own = scene.component_around(element).map(|component| &component.name);
+    let own = (!is_outer && !promotes).then(|| scene.component_around(element)).flatten();
+    let mut seen = BTreeSet::new();
     let mut all = Vec::new();
-    for of @ (_, component) in scene.components() {
-        if component.name.text.is_empty() {
+    for of @ (_, component) in scopes.into_iter().flat_map(|scope| scene.components_of(scope)) {
+        let name = &component.name.text;
+        let fitting = asked.of(scene, of);
+        if name.is_empty() || fitting == Fitting::None || !seen.insert(name) {
             continue;
         }
-        // A component that calls itself is a mistake.
-        let is_own = own == Some(&component.name) && of.0 == 0;
-        let fits = interface.as_ref().is_none_or(|wanted| offers(scene, component, wanted));
-        let rank = match (is_own, fits) {
-            (true, _) => 9,
-            (_, false) => 8,
-            (_, true) => 4,
-        };
+        let is_own = own.is_some_and(|own| own.name == component.name) && of.0 == 0;
         let shown = match &component.implementation {
             Some(Implementation::Class(name) | Implementation::Composite(name)) => name.text.as_str(),
             None => "",
         };
-        if let Some(all_of_them) = group(&component.name.text) {
-            let one = Proposal::new(all_of_them, CompletionItemKind::VARIABLE, &(word.start..end));
+        let range = word.start..end;
+        let mut add = |label: String, detail: String, rank: u8| {
+            all.push(Proposal::new(label, CompletionItemKind::VARIABLE, &range).detail(detail).rank(rank));
+        };
+        if let Some(all_of_them) = group(name) {
             // A replica that names its own group means the others.
-            all.push(one.detail(format!("all replicas: {shown}")).rank(if fits { 4 } else { 8 }));
+            add(all_of_them, format!("all replicas: {shown}"), 4);
         }
-        let one = Proposal::new(&component.name.text, CompletionItemKind::VARIABLE, &(word.start..end));
-        all.push(one.detail(shown).rank(rank));
+        match fitting {
+            // A component that calls itself is a mistake; a replica may call another one.
+            _ if is_own && group(name).is_none() => {}
+            Fitting::Several(parts) => {
+                for part in parts {
+                    add(format!("{name}/{part}"), shown.to_owned(), 4);
+                }
+            }
+            _ => add(name.clone(), shown.to_owned(), if is_own { 8 } else { 4 }),
+        }
     }
     all
 }
@@ -79,30 +96,66 @@ fn word(text: &str, value: Range<usize>, at: usize) -> Range<usize> {
     start..end
 }
 
-/// The interface that a reference, or the source of a wire, asks for.
-fn interface(scene: &Scene, element: usize, attribute: &str) -> Option<String> {
-    let file = scene.file();
-    let (component, reference) = match (file.tree.local(&file.text, element), attribute) {
-        ("reference", "target") => {
-            let name = &file.text[file.tree.value(&file.text, element, "name")?];
-            (scene.component_around(element)?, name.to_owned())
-        }
-        ("wire", "target") => {
-            let source = &file.text[file.tree.value(&file.text, element, "source")?];
-            let (component, reference) = source.split_once('/')?;
-            let (file, component) = scene.named(0, component);
-            (scene.component(file, &component)?.1, reference.to_owned())
-        }
-        _ => return None,
-    };
-    let declared = &scene.class(component)?.declaration().references;
-    declared.iter().find(|one| one.name == reference).map(|one| one.interface.name.clone())
+/// What an end has to have.
+struct Asked<'s> {
+    side: Side,
+    interface: Option<&'s InterfaceDeclaration>,
 }
 
-/// Whether a component has a service with this interface, as far as can be known.
-fn offers(scene: &Scene, component: &Component, interface: &str) -> bool {
-    match scene.class(component) {
-        Some(class) => class.declaration().offers().any(|one| one.interface.name == interface),
-        None => true,
+/// Which parts of a component are what is asked for.
+#[derive(Debug, PartialEq, Eq)]
+enum Fitting {
+    None,
+    /// One, or it cannot be known.
+    Some,
+    /// These, of which one has to be named.
+    Several(Vec<String>),
+}
+
+impl Asked<'_> {
+    fn fits(&self, one: &Contract<'_>) -> bool {
+        let both = self.interface.zip(one.interface);
+        both.is_none_or(|(wanted, offered)| wanted == offered)
     }
+
+    fn of(&self, scene: &Scene, of: (usize, &Component)) -> Fitting {
+        let Some(known) = scene.contracts(of, self.side) else { return Fitting::Some };
+        let fitting: Vec<&str> = known.iter().filter(|one| self.fits(one)).map(|one| one.name).collect();
+        match (&fitting[..], self.side, self.interface) {
+            ([], ..) => Fitting::None,
+            // A reference is named as a rule.
+            ([_], Side::Service, _) | (_, Side::Service, None) => Fitting::Some,
+            _ => Fitting::Several(fitting.into_iter().map(str::to_owned).collect()),
+        }
+    }
+}
+
+/// The interface that a reference, or the source of a wire, asks for.
+fn interface<'s>(scene: &'s Scene, element: usize, attribute: &str) -> Option<&'s InterfaceDeclaration> {
+    let file = scene.file();
+    let value = |element: usize, name: &str| Some(&file.text[file.tree.value(&file.text, element, name)?]);
+    if attribute != "target" {
+        return None;
+    }
+    let (of, reference) = match file.tree.local(&file.text, element) {
+        "wire" => {
+            let (component, reference) = value(element, "source")?.split_once('/')?;
+            let (file, component) = scene.named(0, component);
+            (scene.component(file, &component)?, reference)
+        }
+        name => {
+            // A binding is in its reference.
+            let element = if name == "reference" { element } else { file.tree.elements[element].parent? };
+            match scene.component_around(element) {
+                Some(component) => ((0, component), value(element, "name")?),
+                None => {
+                    let (component, reference) = value(element, "promote")?.split_once('/')?;
+                    let reference = reference.split(char::is_whitespace).next()?;
+                    let (file, component) = scene.named(0, component);
+                    (scene.component(file, &component)?, reference)
+                }
+            }
+        }
+    };
+    scene.contract(of, Side::Reference, reference)?.interface
 }

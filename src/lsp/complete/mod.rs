@@ -24,6 +24,7 @@ use saoms_core::model::Multiplicity;
 use lsp_types::CompletionItemKind;
 
 use super::expressions::template_before;
+use super::outline::Side;
 use super::scene::Scene;
 use super::syntax::{Cursor, local};
 pub(super) use item::Proposal;
@@ -73,8 +74,8 @@ fn value_of(
         Holds::Code => names::codes(scene, &value),
         Holds::Multiplicity => names::words(&Multiplicity::ALL.map(Multiplicity::name), &value),
         Holds::PropertyName => names::properties(scene, element, &value),
-        Holds::ServiceName => names::services(scene, element, &value),
-        Holds::ReferenceName => names::references(scene, element, &value),
+        Holds::ServiceName => names::parts(scene, element, Side::Service, &value),
+        Holds::ReferenceName => names::parts(scene, element, Side::Reference, &value),
         Holds::Class => names::classes(scene, &value),
         Holds::Interface => names::interfaces(scene, element, &value),
         Holds::LoopName => names::loops(scene, element, name, &value),

@@ -6,12 +6,13 @@ use std::ops::Range;
 use lsp_types::CompletionItemKind;
 use saoms_core::diagnostic::codes;
 use saoms_core::expression::is_name;
-use saoms_core::registry::{ClassDeclaration, InterfaceDeclaration, PropertyDeclaration};
+use saoms_core::registry::{ClassDeclaration, PropertyDeclaration};
 
 use super::Proposal;
+use crate::lsp::contracts::Contract;
 use crate::lsp::describe;
 use crate::lsp::expressions::INDEX;
-use crate::lsp::outline::{Component, Loop, Named};
+use crate::lsp::outline::{Component, Loop, Named, Side};
 use crate::lsp::scene::Scene;
 
 /// Fixed values.
@@ -108,7 +109,7 @@ pub(super) fn declared_in(
 ) -> Vec<(&PropertyDeclaration, Option<&str>)> {
     let Some(component) = scene.component_in(file, element) else { return Vec::new() };
     if let Some(one) = component.loops.iter().find(|one| one.name.element == element) {
-        let class = loop_class(scene, component, one);
+        let class = scene.class_of_loop((file, component), one);
         let class = class.and_then(|class| scene.registry.get_loop(&class));
         return class
             .into_iter()
@@ -121,52 +122,23 @@ pub(super) fn declared_in(
     all.map(|one| (one, describe::preset(class, &one.name))).collect()
 }
 
-/// The class of a loop: what the element says, or what the component's class has under this name.
-pub(in crate::lsp) fn loop_class(scene: &Scene, component: &Component, one: &Loop) -> Option<String> {
-    if let Some(class) = &one.class {
-        return Some(class.text.clone());
-    }
-    default_loops(scene, component)
-        .into_iter()
-        .find(|(short, _)| *short == one.name.text)
-        .map(|(_, class)| class)
-}
-
-/// The loops that the class of a component has, in every list of it: their short names and their classes.
-pub(in crate::lsp) fn default_loops(scene: &Scene, component: &Component) -> Vec<(String, String)> {
-    let Some(class) = scene.class(component) else { return Vec::new() };
-    let mut all: Vec<(String, String)> = Vec::new();
-    for name in class.declaration().loops.all().flat_map(|(_, names)| names) {
-        let short = name.rsplit('.').next().unwrap_or(name).to_owned();
-        if !all.iter().any(|(_, known)| known == name) {
-            all.push((short, name.clone()));
-        }
-    }
-    all
-}
-
-/// The names of loops: for `name` those that can be changed, for `before` and `after` all others.
+/// The names of loops: for `name` those that can be changed and are not yet, for `before` and `after` all others.
 pub(super) fn loops(scene: &Scene, element: usize, attribute: &str, range: &Range<usize>) -> Vec<Proposal> {
     let Some(component) = scene.component_around(element) else { return Vec::new() };
-    let mut all: Vec<Proposal> = default_loops(scene, component)
-        .into_iter()
-        .map(|(short, class)| {
-            let doc = scene.registry.get_loop(&class).map(|one| describe::looping(one));
-            Proposal::new(short, CompletionItemKind::FUNCTION, range)
-                .detail(class)
-                .doc(doc.unwrap_or_default())
-        })
-        .collect();
-    if attribute != "name" {
-        let added =
-            component.loops.iter().filter(|one| one.name.element != element && !one.name.text.is_empty());
-        for one in added {
-            if !all.iter().any(|known| known.label == one.name.text) {
-                all.push(Proposal::new(&one.name.text, CompletionItemKind::FUNCTION, range));
-            }
-        }
-    }
-    all
+    let is_own = |one: &&Loop| one.name.element == element;
+    let others: Vec<&str> =
+        component.loops.iter().filter(|one| !is_own(one)).map(|one| one.name.text.as_str()).collect();
+    let own = component.loops.iter().find(is_own).map_or("", |one| &one.name.text);
+    let names_itself = attribute == "name";
+    let defaults = scene.default_loops((0, component));
+    let is_open = |short: &str| if names_itself { !others.contains(&short) } else { short != own };
+    let of_class = defaults.iter().filter(|(short, _)| is_open(short)).map(|(short, class)| {
+        let doc = scene.registry.get_loop(class).map(|one| describe::looping(one));
+        Proposal::new(*short, CompletionItemKind::FUNCTION, range).detail(*class).doc(doc.unwrap_or_default())
+    });
+    let is_new = |name: &&str| !name.is_empty() && defaults.iter().all(|(short, _)| short != name);
+    let added = others.iter().filter(|name| !names_itself && is_new(name));
+    of_class.chain(added.map(|name| Proposal::new(*name, CompletionItemKind::FUNCTION, range))).collect()
 }
 
 /// The loops of the registry; those that work on the component's knowledge, or on any, first.
@@ -185,58 +157,25 @@ pub(super) fn loop_classes(scene: &Scene, element: usize, range: &Range<usize>) 
     .collect()
 }
 
-/// The services of the class, or of the composite inside, of the component that an element is in.
-pub(super) fn services(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
-    let component = scene.component_around(element);
-    component.map_or_else(Vec::new, |component| services_of(scene, (0, component), range))
+/// The services or references of the component that an element is in which nothing is said about yet.
+pub(super) fn parts(scene: &Scene, element: usize, side: Side, range: &Range<usize>) -> Vec<Proposal> {
+    let Some(component) = scene.component_around(element) else { return Vec::new() };
+    let named = if side == Side::Service { &component.services } else { &component.references };
+    let is_said = |name: &str| named.iter().any(|one| one.text == name && one.element != element);
+    let all = scene.contracts((0, component), side).unwrap_or_default();
+    contracts(all.into_iter().filter(|one| !is_said(one.name)), range)
 }
 
-/// Its references.
-pub(super) fn references(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
-    let component = scene.component_around(element);
-    component.map_or_else(Vec::new, |component| references_of(scene, (0, component), range))
-}
-
-/// The services of a component of a file.
-pub(super) fn services_of(scene: &Scene, of: (usize, &Component), range: &Range<usize>) -> Vec<Proposal> {
-    let declared = scene.class(of.1).map(|class| class.declaration().offers());
-    let declared = declared.into_iter().flatten().map(|one| (one.name.clone(), &one.interface, ""));
-    contracts(declared, inner(scene, of, |file| &scene.files[file].outline.services), range)
-}
-
-/// The references of a component of a file.
-pub(super) fn references_of(scene: &Scene, of: (usize, &Component), range: &Range<usize>) -> Vec<Proposal> {
-    let declared = scene.class(of.1).into_iter().flat_map(|class| &class.declaration().references);
-    let declared = declared.map(|one| {
-        let more = match (one.optional, one.many) {
-            (true, true) => ", optional, many",
-            (true, false) => ", optional",
-            (false, true) => ", many",
-            (false, false) => "",
-        };
-        (one.name.clone(), &one.interface, more)
-    });
-    contracts(declared, inner(scene, of, |file| &scene.files[file].outline.references), range)
-}
-
-fn inner<'s>(
-    scene: &'s Scene,
-    (file, component): (usize, &Component),
-    parts: impl Fn(usize) -> &'s Vec<Named>,
-) -> Vec<&'s Named> {
-    scene.inside(file, component).into_iter().flat_map(parts).collect()
-}
-
-fn contracts<'d>(
-    declared: impl Iterator<Item = (String, &'d InterfaceDeclaration, &'d str)>,
-    inner: Vec<&Named>,
-    range: &Range<usize>,
-) -> Vec<Proposal> {
-    let declared = declared.map(|(name, interface, more)| {
-        Proposal::new(name, CompletionItemKind::INTERFACE, range).detail(format!("{}{more}", interface.name))
-    });
-    let inner = inner.into_iter().map(|one| Proposal::new(&one.text, CompletionItemKind::INTERFACE, range));
-    declared.chain(inner).collect()
+/// Services or references, each with its interface and how many targets it takes.
+pub(super) fn contracts<'s>(all: impl Iterator<Item = Contract<'s>>, range: &Range<usize>) -> Vec<Proposal> {
+    all.map(|one| {
+        let interface = one.interface.map(|interface| interface.name.as_str());
+        let facts: Vec<&str> = interface.into_iter().chain(one.multiplicity).collect();
+        Proposal::new(one.name, CompletionItemKind::INTERFACE, range)
+            .detail(facts.join(", "))
+            .rank(if one.is_of_host { 6 } else { 5 })
+    })
+    .collect()
 }
 
 /// The interfaces that classes declare; the one that the service or the reference has by its class comes first.
@@ -244,13 +183,14 @@ pub(super) fn interfaces(scene: &Scene, element: usize, range: &Range<usize>) ->
     let file = scene.file();
     let own = file.tree.elements[element].parent.and_then(|contract| {
         let name = &file.text[file.tree.value(&file.text, contract, "name")?];
-        let class = scene.class(scene.component_around(contract)?)?.declaration();
-        let service = class.offers().find(|one| one.name == name).map(|one| &one.interface.name);
-        service.or_else(|| Some(&class.references.iter().find(|one| one.name == name)?.interface.name))
+        let of = (0, scene.component_around(contract)?);
+        let found =
+            [Side::Service, Side::Reference].into_iter().find_map(|side| scene.contract(of, side, name));
+        Some(&found?.interface?.name)
     });
     let all: BTreeSet<&str> =
         scene.registry.iter().flat_map(|class| interfaces_of(class.declaration())).collect();
-    let rank = |name: &str| if own.is_some_and(|own| own == name) { 0 } else { 5 };
+    let rank = |name: &str| if own.is_some_and(|own: &String| own == name) { 0 } else { 5 };
     all.iter()
         .map(|name| Proposal::new(*name, CompletionItemKind::INTERFACE, range).rank(rank(name)))
         .collect()

@@ -7,7 +7,6 @@ use lsp_types::CompletionItemKind;
 use saoms_core::registry::TopicDeclaration;
 
 use super::Proposal;
-use super::names::{default_loops, loop_class};
 use crate::lsp::describe;
 use crate::lsp::outline::Component;
 use crate::lsp::scene::Scene;
@@ -24,7 +23,7 @@ pub(super) fn complete(scene: &Scene, property: usize, value: Range<usize>, at: 
     let end = behind.find(',').into_iter().chain(behind.find("::")).min().unwrap_or(behind.len());
     let range = start..at + behind[..end].trim_end().len();
     let Some(component) = scene.component_around(property) else { return Vec::new() };
-    let own = of_component(scene, component);
+    let own = of_component(scene, (0, component));
     let own = own.iter().map(|(name, topic)| item(name, Some(*topic), &range));
     // The old name is one of the class; the new one can be any, as a rule one that others have.
     match comma {
@@ -43,16 +42,14 @@ fn item(name: &str, topic: Option<&TopicDeclaration>, range: &Range<usize>) -> P
     }
 }
 
-/// The topics of a component, those of its loops included, by their own names.
+/// The topics of a component of a file, those of its loops included, by their own names.
 pub(in crate::lsp) fn of_component<'s>(
     scene: &'s Scene,
-    component: &Component,
+    of: (usize, &Component),
 ) -> BTreeMap<&'s str, &'s TopicDeclaration> {
-    let class = scene.class(component).map(|class| class.declaration());
+    let class = scene.class(of.1).map(|class| class.declaration());
     let own = class.into_iter().flat_map(|class| class.publishes.iter().chain(&class.subscribes));
-    let added = component.loops.iter().filter_map(|one| loop_class(scene, component, one));
-    let loops = default_loops(scene, component).into_iter().map(|(_, class)| class).chain(added);
-    let of_loops = loops.filter_map(|name| scene.registry.get_loop(&name)).flat_map(|one| {
+    let of_loops = scene.loops(of).flat_map(|one| {
         let declaration = one.declaration();
         declaration.publishes.iter().chain(&declaration.subscribes)
     });
@@ -62,8 +59,8 @@ pub(in crate::lsp) fn of_component<'s>(
 /// The topics of all components of the composite, and the names that they are given anew.
 fn all(scene: &Scene) -> BTreeMap<String, Option<&TopicDeclaration>> {
     let mut all = BTreeMap::new();
-    for (file, component) in scene.components() {
-        let own = of_component(scene, component);
+    for (file, component) in scene.components_of(0) {
+        let own = of_component(scene, (file, component));
         let renamed = component.properties.iter().find(|one| one.text == "topicRename");
         let value = renamed.and_then(|one| scene.value_of(file, one.element)).unwrap_or_default();
         for pair in value.split("::") {

@@ -139,6 +139,33 @@ fn what_names_all_replicas_leads_to_them_and_is_renamed() {
 }
 
 #[test]
+fn what_a_reference_of_a_composite_targets_is_around_it() {
+    let inner = |target: &str| {
+        composite(&format!(
+            r#"<component name="W"/><component name="R"/><reference name="r" promote="R/w" target="{target}"/>"#
+        ))
+    };
+    let outer = |name: &str, world: &str| {
+        format!(
+            r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="{name}" targetNamespace="urn:f"><component name="{world}"/><component name="F"><implementation.composite name="fleet"/></component></composite>"#
+        )
+    };
+    let one = outer("one", "W");
+    let marked = inner("W|/s");
+    assert_eq!(defined(&marked, &[("one.composite", &one)]), ["one.composite:1:121 W"]);
+    assert_eq!(defined(&marked, &[]), [""; 0]);
+    let all = renamed(&marked, &[("one.composite", &one)], "Site").unwrap();
+    assert_eq!(all, [inner("Site/s"), outer("one", "Site")]);
+    // The one inside is another one.
+    let all = renamed(&inner("W").replacen("\"W\"", "\"W|\"", 1), &[("one.composite", &one)], "In").unwrap();
+    assert_eq!(all, [inner("W").replacen("\"W\"", "\"In\"", 1), one.clone()]);
+    // With another name it would lead nowhere in the other composite.
+    let others = [("one.composite", one.as_str()), ("two.composite", &outer("two", "W"))];
+    let refused = renamed(&marked, &others, "Site").unwrap_err();
+    assert!(refused.contains("in `two.composite`"), "{refused}");
+}
+
+#[test]
 fn what_cannot_be_renamed_says_why() {
     let text = composite(r#"<component name="A|"/><component name="B"/>"#);
     let refused = |marked: &str, name: &str| renamed(marked, &[], name).unwrap_err();

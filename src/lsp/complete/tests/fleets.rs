@@ -102,5 +102,5 @@ fn names_that_can_be_known_are_proposed() {
     assert_eq!(proposed(&composite("<property name=\"max-speed\" s:env=\"|\"/>"))[0], "FLEET_MAX_SPEED");
     let bound =
         format!("{WORLD}{ROBOT}<reference name=\"world\"><binding.sca uri=\"|\"/></reference></component>");
-    assert_eq!(proposed(&composite(&bound)), ["World", "R"]);
+    assert_eq!(proposed(&composite(&bound)), ["World"]);
 }

@@ -1,3 +1,4 @@
+mod ends;
 mod fleets;
 
 use super::*;
@@ -27,6 +28,7 @@ fn taken(marked: &str, label: &str, knows_snippets: bool) -> String {
 }
 
 const ROBOT: &str = "<component name=\"R\"><implementation.rust class=\"saoms.Robot\"/>";
+const WORLD: &str = "<component name=\"World\"><implementation.rust class=\"saoms.World\"/></component>";
 
 #[test]
 fn elements_are_those_that_can_stand_there() {
@@ -143,37 +145,6 @@ fn sources_are_properties_of_the_composite() {
     assert_eq!(proposed(&composite(&count)), ["period", "robots"]);
 }
 
-const WORLD: &str = "<component name=\"World\"><implementation.rust class=\"saoms.World\"/></component>";
-
-#[test]
-fn ends_are_components_and_their_parts() {
-    let ends = |inside: &str| proposed(&composite(&format!("{WORLD}{inside}")));
-    // What offers the interface comes first; the component itself last.
-    assert_eq!(
-        ends(&format!("<component name=\"A\"/>{ROBOT}<reference name=\"world\" target=\"|\"/>")),
-        ["A", "World", "R"]
-    );
-    assert_eq!(ends(&format!("{ROBOT}<reference name=\"world\" target=\"|\"/></component>")), ["World", "R"]);
-    let worlds = "<component name=\"W${index}\" s:count=\"2\"><implementation.rust class=\"saoms.World\"/></component>";
-    let all = ends(&format!("{worlds}{ROBOT}<reference name=\"world\" target=\"|\"/></component>"));
-    assert!(["W*", "W${index}"].iter().all(|one| all.contains(&(*one).to_owned())), "{all:?}");
-    for name in ["W*", "W2", "W${index}"] {
-        let of = ends(&format!("{worlds}{ROBOT}<reference name=\"world\" target=\"{name}/|\"/></component>"));
-        assert_eq!(of.len(), 2, "{name}");
-    }
-    let services = ends(&format!("{ROBOT}<reference name=\"world\" target=\"World/|\"/></component>"));
-    assert!(services.contains(&"TaskInterface".to_owned()) && services.len() == 2, "{services:?}");
-    assert_eq!(ends(&format!("{ROBOT}<reference name=\"world\" target=\"World/|")).len(), 2, "unclosed");
-    assert_eq!(ends(&format!("{ROBOT}</component><wire source=\"R/|\" target=\"\"/>")), ["world"]);
-    assert_eq!(ends(&format!("{ROBOT}</component><wire source=\"R/world\" target=\"|\"/>"))[0], "World");
-    assert_eq!(ends(&format!("{ROBOT}</component><reference name=\"r\" promote=\"R/|\"/>")), ["world"]);
-    assert_eq!(ends(&format!("{ROBOT}</component><service name=\"s\" promote=\"R/|\"/>")), ["TaskInterface"]);
-    // The word of a list at the cursor is replaced, not the others.
-    let list = format!("{WORLD}{ROBOT}<reference name=\"world\" target=\"World W|orl R\"/></component>");
-    let expected = list.replace("W|orl", "World");
-    assert_eq!(taken(&composite(&list), "World", false), composite(&expected));
-}
-
 #[test]
 fn topics_are_those_of_the_class_and_of_the_fleet() {
     let other = "<component name=\"O\"><implementation.rust class=\"saoms.Robot\"/><property name=\"topicRename\">COLLISIONTOPIC,quietü</property></component>";
@@ -194,11 +165,20 @@ fn topics_are_those_of_the_class_and_of_the_fleet() {
 #[test]
 fn loops_are_those_of_the_class_and_those_that_fit_it() {
     let loops = |rest: &str| proposed(&composite(&format!("{ROBOT}{rest}</component>")));
-    assert!(loops("<s:loop name=\"|\"/>").contains(&"BatteryMS".to_owned()));
-    assert!(
-        loops("<s:loop name=\"new\" class=\"x.Y\"/><s:loop name=\"BatteryMS\" after=\"|\"/>")
-            .contains(&"new".to_owned())
-    );
+    let own = loops("<s:loop name=\"|\"/>");
+    assert!(own.contains(&"BatteryMS".to_owned()), "{own:?}");
+    let names: std::collections::BTreeSet<&String> = own.iter().collect();
+    assert_eq!(names.len(), own.len(), "each once: {own:?}");
+    // Those of the list that the component has, and those that nothing is said about yet.
+    let classic = loops("<property name=\"policy\">classic</property><s:loop name=\"|\"/>");
+    assert!(classic != own && !classic.is_empty(), "{classic:?}");
+    let set = "<property name=\"p\" value=\"classic\"/>";
+    let sourced =
+        format!("{set}{ROBOT}<property name=\"policy\" source=\"$p\"/><s:loop name=\"|\"/></component>");
+    assert_eq!(proposed(&composite(&sourced)), classic);
+    assert!(!loops("<s:loop name=\"BatteryMS\"/><s:loop name=\"|\"/>").contains(&"BatteryMS".to_owned()));
+    let after = loops("<s:loop name=\"new\" class=\"x.Y\"/><s:loop name=\"BatteryMS\" after=\"|\"/>");
+    assert!(after.contains(&"new".to_owned()) && !after.contains(&"BatteryMS".to_owned()), "{after:?}");
     assert!(loops("<s:loop name=\"x\" class=\"|\"/>")[0].starts_with("saoms."));
     assert!(loops("<s:loop name=\"BatteryMS\"><property name=\"|\"/></s:loop>").len() < 10);
 }
