@@ -16,7 +16,11 @@ async function start() {
   const folder = workspace.workspaceFolders?.[0]?.uri.fsPath;
   const server = { ...commandLine(workspace.getConfiguration("saoms")), options: { cwd: folder } };
   client = new LanguageClient("saoms", "SAOMS", server, {
-    documentSelector: ["file", "untitled"].map((scheme) => ({ scheme, language: "saoms" })),
+    documentSelector: [
+      ...["file", "untitled"].map((scheme) => ({ scheme, language: "saoms" })),
+      // Tables and scenarios beside composites; the server has nothing to say about others.
+      { scheme: "file", pattern: "**/*.{csv,txt}" },
+    ],
   });
   try {
     await client.start();

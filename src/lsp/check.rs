@@ -8,8 +8,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 use saoms_core::check::{Options, count};
-use saoms_core::diagnostic::Diagnostics;
-use saoms_core::load::MAX_SIZE;
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, codes};
+use saoms_core::load::{MAX_SIZE, load_folder};
 use saoms_core::registry::Registry;
 use saoms_core::source::{OpenTexts, Sources, identity};
 
@@ -43,6 +43,16 @@ pub(super) struct Job {
 pub(super) struct Outcome {
     pub(super) generation: u64,
     pub(super) files: BTreeMap<PathBuf, Vec<Reported>>,
+}
+
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sort {
+    Composite,
+    /// Of a contribution.
+    Description,
+    /// It holds values for composites.
+    Values,
 }
 
 /// Checks what is asked for.
@@ -84,14 +94,18 @@ impl Checker {
         let mut files: BTreeMap<PathBuf, Vec<Reported>> = BTreeMap::new();
         let (mut checked, mut seen) = (HashSet::new(), HashSet::new());
         for path in &job.paths {
-            for (fleet, may_be_part) in self.fleets(path) {
+            let (fleets, sort) = self.fleets(path);
+            if sort == Sort::Description {
+                contribution(path, &job, &mut files);
+            }
+            for (fleet, may_be_part) in fleets {
                 if checked.insert(fleet.clone()) {
                     self.one(&fleet, may_be_part, &job, &mut files, &mut seen)?;
                 }
             }
             // A fleet that is broken does not lead here.
             let alone = vec![path.clone()];
-            if !seen.contains(path) && checked.insert(alone.clone()) {
+            if sort == Sort::Composite && !seen.contains(path) && checked.insert(alone.clone()) {
                 self.one(&alone, false, &job, &mut files, &mut seen)?;
             }
         }
@@ -99,15 +113,21 @@ impl Checker {
             .then_some(Outcome { generation: job.generation, files })
     }
 
-    /// The fleets that one composite is part of, and of each whether others elsewhere may use it.
-    fn fleets(&mut self, path: &Path) -> Vec<(Vec<PathBuf>, bool)> {
+    /// The fleets that one file is part of, and of each whether others elsewhere may use it; then what it is itself.
+    fn fleets(&mut self, path: &Path) -> (Vec<(Vec<PathBuf>, bool)>, Sort) {
         let files = self.workspace.around(path);
         if files.first().is_none_or(|first| first.path != path) {
-            return vec![(vec![path.to_owned()], false)];
+            return (Vec::new(), Sort::Composite);
         }
         let scene = Scene::new(files, self.registries.of(path, &[]));
         let paths = |fleet: &Fleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
-        scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect()
+        let fleets = scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect();
+        let sort = match scene.file() {
+            one if one.is_beside => Sort::Values,
+            one if one.is_description() => Sort::Description,
+            _ => Sort::Composite,
+        };
+        (fleets, sort)
     }
 
     /// Checks composites as one fleet, with all that they name. `None` where something changed in the meantime.
@@ -135,13 +155,28 @@ impl Checker {
             seen.insert(identity(Path::new(file.path())));
         }
         let told: Vec<_> = found.told().filter(|one| !(may_be_part && is_of_user(one))).cloned().collect();
-        for (path, one) in reported(&told, &found.sources) {
-            let known = files.entry(path).or_default();
-            // Composites that several others name have their faults once.
-            if !known.contains(&one) {
-                known.push(one);
-            }
-        }
+        add(&told, &found.sources, files);
         Some(())
+    }
+}
+
+/// What is wrong with the description of a contribution, and with the names of the composites there.
+fn contribution(description: &Path, job: &Job, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
+    let folder = description.parent().unwrap_or(Path::new(""));
+    let inner = folder.ends_with("META-INF").then(|| folder.parent()).flatten();
+    let (mut sources, mut found) = (Sources::with_open(job.open.clone()), Diagnostics::new());
+    load_folder(inner.unwrap_or(folder), MAX_SIZE, &mut sources, &mut found);
+    let told: Vec<_> =
+        found.into_all().into_iter().filter(|one| one.code != &codes::FILE_IS_DIRECTORY).collect();
+    add(&told, &sources, files);
+}
+
+fn add(told: &[Diagnostic], sources: &Sources, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
+    for (path, one) in reported(told, sources) {
+        let known = files.entry(path).or_default();
+        // Composites that several others name have their faults once.
+        if !known.contains(&one) {
+            known.push(one);
+        }
     }
 }

@@ -6,7 +6,7 @@ use saoms_core::diagnostic::codes;
 use saoms_core::load::vocabulary::{Holds, other, own_attributes};
 
 use super::complete::names::declared;
-use super::complete::topics;
+use super::complete::{table, topics};
 use super::describe;
 use super::outline::{Component, Implementation, Side};
 use super::scene::Scene;
@@ -20,6 +20,9 @@ pub(super) fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)
         && let Some(text) = named(scene, &found.symbol, found.at.start)
     {
         return Some((text, found.at.start..found.at.end));
+    }
+    if file.is_beside {
+        return table::hover(scene, byte);
     }
     match file.tree.cursor(&file.text, byte) {
         Cursor::ElementName { element, name, .. } | Cursor::EndTag { element: Some(element), name } => {

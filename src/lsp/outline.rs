@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use saoms_core::expression::inside;
-use saoms_core::load::vocabulary::{COMPONENT, COMPOSITE, Holds, INCLUDE, Kind, LOOP, WIRE, own_attributes};
+use saoms_core::load::vocabulary::{
+    COMPONENT, COMPOSITE, CONTRIBUTION, Holds, INCLUDE, Kind, LOOP, WIRE, own_attributes,
+};
 use saoms_core::model::SAOMS_NAMESPACE;
 
 use super::expressions::{INDEX, names, names_in_template, texts};
@@ -115,11 +117,6 @@ impl Outline {
         for place in 0..outline.components.len() {
             outline.templates(text, tree, place);
         }
-        if !tree.elements.is_empty() && tree.local(text, 0) == "contribution" {
-            let inside = tree.children(0).filter(|child| tree.local(text, *child) == "deployable");
-            let named = inside.filter_map(|element| Reader { text, tree, element }.named("composite"));
-            outline.deployables.extend(named);
-        }
         outline
     }
 
@@ -172,7 +169,9 @@ impl Outline {
 
     fn add(&mut self, of: Reader<'_>, kind: &'static Kind, parent: Option<&'static Kind>) {
         let is = |known: &Kind| std::ptr::eq(kind, known);
-        if is(&COMPOSITE) {
+        if parent.is_some_and(|parent| std::ptr::eq(parent, &CONTRIBUTION)) {
+            self.deployables.extend(of.named("composite"));
+        } else if is(&COMPOSITE) {
             self.name = of.named("name");
             self.namespace = of.named("targetNamespace").map(|one| one.text).unwrap_or_default();
         } else if is(&COMPONENT) {
@@ -204,7 +203,10 @@ impl Outline {
     fn part(&mut self, of: &Reader<'_>, kind: &'static Kind) {
         let named = of.named("name");
         match kind.name {
-            "property" => self.properties.extend(named),
+            "property" => {
+                self.properties.extend(named);
+                self.beside.extend(of.named("file"));
+            }
             "service" => {
                 self.services.extend(named);
                 self.ends.extend(of.named("promote").map(|one| end(one, Side::Service)));

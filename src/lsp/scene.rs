@@ -104,7 +104,7 @@ impl Scene {
     }
 
     /// The fleets that the first file is part of, as a check of the whole folder has them: what the description of the contribution calls deployable is one, and
-    /// every other composite that no composite names is one of its own.
+    /// every other composite that no composite names is one of its own. A file of values is part of those that take values from it.
     pub(super) fn fleets(&self) -> Vec<Fleet> {
         let (mut names, mut users) = (Vec::new(), vec![Vec::new(); self.files.len()]);
         for place in 0..self.files.len() {
@@ -126,14 +126,39 @@ impl Scene {
         let composites = (0..self.files.len()).filter(|one| self.files[*one].outline.name.is_some());
         let others = composites.filter(is_alone).count();
         let may_be_part = others + usize::from(!deployed.is_empty()) > 1;
-        let alone = reached(vec![0], |place| users[place].clone()).into_iter().filter(is_alone);
+        let start: Vec<usize> = match self.file() {
+            one if one.is_beside => self.owners(),
+            // A description is wrong or right whatever runs.
+            one if one.is_description() => match deployed.first() {
+                Some(first) => vec![*first],
+                None => (0..self.files.len()).find(|one| is_alone(one) && *one > 0).into_iter().collect(),
+            },
+            _ => vec![0],
+        };
+        if start.is_empty() {
+            return Vec::new();
+        }
+        let alone = reached(start.clone(), |place| users[place].clone()).into_iter().filter(is_alone);
         let mut fleets: Vec<Fleet> = alone.map(|root| Fleet { files: vec![root], may_be_part }).collect();
         let deployed: Vec<usize> = deployed.into_iter().collect();
-        if reached(deployed.clone(), |place| names[place].iter().copied().collect()).contains(&0) {
+        let mut named = reached(deployed.clone(), |place| names[place].iter().copied().collect()).into_iter();
+        if named.any(|one| start.contains(&one)) {
             fleets.insert(0, Fleet { files: deployed, may_be_part: false });
         }
         // Composites that go around in circles have nothing around them.
-        if fleets.is_empty() { vec![Fleet { files: vec![0], may_be_part: false }] } else { fleets }
+        if fleets.is_empty() { vec![Fleet { files: vec![start[0]], may_be_part: false }] } else { fleets }
+    }
+
+    /// The composites that take values from the first file.
+    pub(super) fn owners(&self) -> Vec<usize> {
+        let owns =
+            |file: &usize| self.files[*file].outline.beside.iter().any(|name| self.is_first(*file, name));
+        (0..self.files.len()).filter(owns).collect()
+    }
+
+    /// Whether a composite calls the first file so.
+    pub(super) fn is_first(&self, file: usize, name: &Named) -> bool {
+        self.beside(file, name) == Some(0)
     }
 
     fn included(&self, file: usize) -> Vec<usize> {
@@ -220,10 +245,15 @@ impl Scene {
         own.or_else(|| {
             let mut sources = self.files[file].outline.sources.iter();
             let source = sources.find(|one| one.element == property)?;
-            let Symbol::Parameter { file, name } = self.parameter(file, &source.text) else { return None };
-            let declared = self.files[file].outline.properties.iter().find(|one| one.text == name)?;
-            self.value_of(file, declared.element)
+            self.parameter_value(file, &source.text)
         })
+    }
+
+    /// The simple value of a property of the composite that a file is part of.
+    pub(super) fn parameter_value(&self, file: usize, name: &str) -> Option<&str> {
+        let Symbol::Parameter { file, name } = self.parameter(file, name) else { return None };
+        let declared = self.files[file].outline.properties.iter().find(|one| one.text == name)?;
+        self.value_of(file, declared.element)
     }
 
     /// The simple value of a property of a file: its attribute `value`, or the text inside.

@@ -53,6 +53,11 @@ pub(super) struct Occurrence {
 
 /// The symbol whose name a byte of the first file touches, and where the name is.
 pub(super) fn at(scene: &Scene, at: usize) -> Option<Occurrence> {
+    if scene.file().is_beside {
+        // What its names mean, composites say.
+        let all = scene.owners().into_iter().flat_map(|file| Found::of(scene, file, None));
+        return all.into_iter().find(|one| one.at.file == 0 && one.at.start <= at && at <= one.at.end);
+    }
     Found::of(scene, 0, Some(at)).into_iter().next()
 }
 

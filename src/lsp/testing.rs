@@ -17,20 +17,25 @@ static REGISTRY: LazyLock<Arc<Registry>> = LazyLock::new(|| Arc::new(Registry::l
 
 /// The scene of a text with the cursor `|` in it and of other files, each a name and a text; and the byte of the cursor.
 pub(super) fn scene(marked: &str, others: &[(&str, &str)]) -> (Scene, usize) {
+    scene_in("fleet.composite", marked, others)
+}
+
+/// The same of a file of another name.
+pub(super) fn scene_in(name: &str, marked: &str, others: &[(&str, &str)]) -> (Scene, usize) {
     let at = marked.find('|').unwrap();
-    let text = marked.replacen('|', "", 1);
-    (scene_of(&text, others), at)
+    (scene_named(name, &marked.replacen('|', "", 1), others), at)
 }
 
 /// The scene of a text without a cursor. Other files that are no composites hold values.
 pub(super) fn scene_of(text: &str, others: &[(&str, &str)]) -> Scene {
-    let all = [("fleet.composite", text)].into_iter().chain(others.iter().copied());
+    scene_named("fleet.composite", text, others)
+}
+
+fn scene_named(name: &str, text: &str, others: &[(&str, &str)]) -> Scene {
+    let all = [(name, text)].into_iter().chain(others.iter().copied());
     let files = all.map(|(name, text)| {
-        let make = if [".composite", ".xml"].iter().any(|ending| name.ends_with(ending)) {
-            File::new
-        } else {
-            File::beside
-        };
+        let is_xml = [".composite", ".xml"].iter().any(|ending| name.ends_with(ending));
+        let make = if is_xml { File::new } else { File::beside };
         Arc::new(make(PathBuf::from("/fleet").join(name), text.into()))
     });
     Scene::new(files.collect(), Arc::clone(&REGISTRY))
@@ -50,7 +55,12 @@ pub(super) fn composite(inside: &str) -> String {
 
 /// Asks everything at a byte of a text beside other files. What is answered is in the texts.
 pub(crate) fn ask_everything(text: &str, at: usize, others: &[(&str, &str)]) {
-    let scene = scene_of(text, others);
+    ask_everything_in("fleet.composite", text, at, others);
+}
+
+/// The same of a file of another name.
+pub(super) fn ask_everything_in(name: &str, text: &str, at: usize, others: &[(&str, &str)]) {
+    let scene = scene_named(name, text, others);
     let file = scene.file();
     for one in complete(&scene, at) {
         assert!(one.range.start <= at && at <= one.range.end, "{:?} is not around {at}", one.range);

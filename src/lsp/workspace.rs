@@ -14,6 +14,9 @@ use super::file::File;
 /// How long the names in a folder are believed where the editor does not say that files came or went.
 const FRESH: Duration = Duration::from_secs(5);
 
+/// How files that hold values and nothing else end.
+const VALUES: [&str; 2] = ["csv", "txt"];
+
 /// All files that were looked at.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
@@ -44,7 +47,7 @@ impl Workspace {
     }
 
     /// A file; `None` where it cannot be read.
-    fn file(&mut self, path: &Path, make: fn(PathBuf, Arc<str>) -> File) -> Option<Arc<File>> {
+    fn file(&mut self, path: &Path, is_beside: bool) -> Option<Arc<File>> {
         let open = self.open.get(path).cloned();
         let stamp = match open {
             Some(_) => None,
@@ -58,7 +61,7 @@ impl Workspace {
                 Some(text) => Arc::ptr_eq(text, &file.text),
                 None => *known == stamp,
             };
-            if is_same {
+            if is_same && file.is_beside == is_beside {
                 return Some(Arc::clone(file));
             }
         }
@@ -67,38 +70,60 @@ impl Workspace {
             None if stamp.is_some_and(|(_, size)| size > MAX_SIZE) => return None,
             None => fs::read_to_string(path).ok()?.into(),
         };
+        let make = if is_beside { File::beside } else { File::new };
         let file = Arc::new(make(path.to_owned(), text));
         self.files.insert(path.to_owned(), (stamp, Arc::clone(&file)));
         Some(file)
     }
 
     /// The composites that one in this file can name, and it itself, first; then what describes their contribution, and the files that they take
-    /// values from.
+    /// values from. Around such a file are the composites around one that takes values from it.
     pub(super) fn around(&mut self, path: &Path) -> Vec<Arc<File>> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let is_fresh = |(then, _): &(Instant, Listing)| then.elapsed() < FRESH;
-        if !self.listings.get(&folder).is_some_and(is_fresh) {
-            let composites = composites_near(&folder, &self.open);
-            let description = description_near(&folder).map(|path| identity(&path));
-            let found = Listing { composites, description };
-            self.listings.insert(folder.clone(), (Instant::now(), found));
+        let mut others = self.composites_in(&folder, path);
+        let holds_values = |others: &[Arc<File>]| written(others).iter().any(|one| identity(one) == path);
+        let is_table = path.extension().is_some_and(|ending| VALUES.iter().any(|known| ending == *known));
+        let mut is_beside = holds_values(&others);
+        if !is_beside && is_table {
+            is_beside = true;
+            // The composite may be in another folder: one that was looked at before is found.
+            let known = self.files.values().map(|(_, file)| file);
+            let owner =
+                known.filter(|file| holds_values(std::slice::from_ref(file))).map(|file| &file.path).min();
+            if let Some(owner) = owner.and_then(|owner| owner.parent()).map(Path::to_owned) {
+                others = self.composites_in(&owner, path);
+            }
         }
-        let listed = self.listings.get(&folder).map(|(_, found)| found.clone()).unwrap_or_default();
-        let others = listed.composites.iter().chain(&listed.description);
-        let others = others.filter(|other| *other != path).map(PathBuf::as_path);
-        let mut all: Vec<Arc<File>> =
-            [path].into_iter().chain(others).filter_map(|one| self.file(one, File::new)).collect();
+        let mut all: Vec<Arc<File>> = self.file(path, is_beside).into_iter().chain(others).collect();
         let mut known: HashSet<PathBuf> = all.iter().map(|file| file.path.clone()).collect();
-        let written = all.iter().flat_map(|file| {
-            let folder = file.path.parent().unwrap_or(Path::new(""));
-            file.outline.beside.iter().map(move |name| folder.join(&name.text))
-        });
-        let written: BTreeSet<PathBuf> = written.collect();
-        for path in written.iter().map(|path| identity(path)) {
+        for path in written(&all).iter().map(|path| identity(path)) {
             if known.insert(path.clone()) {
-                all.extend(self.file(&path, File::beside));
+                all.extend(self.file(&path, true));
             }
         }
         all
     }
+
+    /// The composites that one in a folder can name, and what describes its contribution, but for one file.
+    fn composites_in(&mut self, folder: &Path, but: &Path) -> Vec<Arc<File>> {
+        let is_fresh = |(then, _): &(Instant, Listing)| then.elapsed() < FRESH;
+        if !self.listings.get(folder).is_some_and(is_fresh) {
+            let composites = composites_near(folder, &self.open);
+            let description = description_near(folder).map(|path| identity(&path));
+            let found = Listing { composites, description };
+            self.listings.insert(folder.to_owned(), (Instant::now(), found));
+        }
+        let listed = self.listings.get(folder).map(|(_, found)| found.clone()).unwrap_or_default();
+        let others = listed.composites.iter().chain(&listed.description).filter(|other| *other != but);
+        others.filter_map(|one| self.file(one, false)).collect()
+    }
+}
+
+/// The files that composites take values from, by the paths that they write.
+fn written(composites: &[Arc<File>]) -> BTreeSet<PathBuf> {
+    let all = composites.iter().flat_map(|file| {
+        let folder = file.path.parent().unwrap_or(Path::new(""));
+        file.outline.beside.iter().map(move |name| folder.join(&name.text))
+    });
+    all.collect()
 }

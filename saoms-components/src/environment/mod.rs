@@ -24,7 +24,7 @@ use player::Player;
 
 pub use player::Event;
 pub(crate) use scenario::blocks;
-pub use scenario::{Drawn, Happening, Line, Scenario, Spot, Written};
+pub use scenario::{Drawn, Happening, Line, Next, Scenario, Spot, Written, next};
 
 /// What a composite says about the environment.
 #[derive(Clone, Debug, Properties)]

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use saoms_api::Chance;
 
 use super::player::{Event, Player};
-use super::scenario::Scenario;
+use super::scenario::{Next, Scenario, next};
 use crate::grid::{Block, Map};
 use crate::messages::{ExceptionalEvent, ExceptionalKind};
 
@@ -246,5 +246,66 @@ fn the_examples_of_the_documentation_are_scenarios() {
     for example in examples {
         let (scenario, findings) = Scenario::read_partly(&[example]);
         assert!(findings.is_empty() && !scenario.lines().is_empty(), "{example}: {findings:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whoever takes what is offered until nothing is writes a line that can be read.
+    #[test]
+    fn what_can_follow_leads_to_lines_that_can_be_read(
+        choices in prop::collection::vec(any::<prop::sample::Index>(), 16),
+        ranges in prop::collection::vec(any::<bool>(), 16),
+    ) {
+        let mut line = String::new();
+        for (choice, ranges) in choices.iter().zip(ranges) {
+            let all = next(&line);
+            if all.is_empty() {
+                break;
+            }
+            let one = all[choice.index(all.len())];
+            let until = line.ends_with("until ");
+            let value = match one {
+                Next::Word(word) => word,
+                Next::Time if until => "60s",
+                Next::Time => if ranges { "2s..8 s" } else { "500" },
+                Next::Times => "3 times",
+                Next::Pieces => if ranges { "2..8" } else { "4" },
+                Next::Place if line.ends_with("to ") => "random",
+                Next::Place => if ranges { "(1,0)..(10,10)" } else { "(3, 1)" },
+                Next::Robot => if ranges { "1..3" } else { "Robot002" },
+            };
+            line.push_str(value);
+            line.push(' ');
+        }
+        let read = Scenario::read(&[&line]).map(|scenario| scenario.lines().len());
+        prop_assert_eq!(read.map_err(|findings| format!("{line}: {findings:?}")), Ok(1));
+    }
+}
+
+#[test]
+fn what_can_follow_is_what_the_grammar_says() {
+    let words = |line: &str| -> Vec<Next> { next(line) };
+    assert_eq!(words(""), ["at", "from", "then"].map(Next::Word));
+    for (line, expected) in [
+        ("at ", Next::Time),
+        ("at 2s..", Next::Time),
+        ("from 1s every ", Next::Time),
+        ("from 1 s ", Next::Word("every")),
+        ("at 1s 3 ", Next::Word("times")),
+        ("at 1s luggage ", Next::Place),
+        ("at 1s luggage (1, 2) ", Next::Word("to")),
+        ("at 1s luggage (1,2)..(3,4) to random..", Next::Place),
+        ("at 1s breakdown ", Next::Robot),
+        ("then 1s every 2s 3 times takeoff 2..", Next::Pieces),
+    ] {
+        assert_eq!(words(line), [expected], "{line}");
+    }
+    assert!(words("from 1s every 2s ").contains(&Next::Word("until")));
+    assert!(!words("at 1s ").contains(&Next::Word("until")) && words("at 1s ").contains(&Next::Times));
+    assert!(!words("at 1s 3 times ").contains(&Next::Times));
+    for line in ["at 1s end ", "nonsense ", "at 1s landing 4 ", "at 1s nonsense "] {
+        assert_eq!(words(line), [], "{line}");
     }
 }

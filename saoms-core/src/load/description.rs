@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::children::Family;
 use super::root::of_another_kind;
 use super::shelf::DESCRIPTIONS;
-use super::vocabulary::{CONTRIBUTION, PARTS};
+use super::vocabulary::CONTRIBUTION;
 use super::{Gathered, Loader, read};
 use crate::diagnostic::Diagnostics;
 use crate::model::Version;
@@ -108,7 +108,7 @@ impl Description {
         if family != Family::Sca {
             return;
         }
-        let Some(part) = PARTS.iter().find(|part| part.name == name) else {
+        let Some(part) = CONTRIBUTION.child(name) else {
             // Imports of other kinds are extensions, whichever namespace they are in.
             let is_extension = name.starts_with("import.") || name.starts_with("export.");
             if !is_extension && !CONTRIBUTION.children.contains(&name) {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
 use saoms_core::load::vocabulary::{
-    COMPONENT, COMPOSITE, Kind, LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, children, other,
+    COMPONENT, COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, children, other,
 };
 use saoms_core::model::{SAOMS_NAMESPACE, Version};
 
@@ -16,6 +16,7 @@ use crate::lsp::syntax::prefix;
 
 /// Those that most files have come first.
 const USUAL: &[&str] = &[
+    "deployable",
     "implementation.rust",
     "implementation.java",
     "implementation.composite",
@@ -67,7 +68,7 @@ fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<
     let (text, tree) = (&*file.text, &file.tree);
     let Some(parent) = parent else {
         let has_root = tree.elements.iter().any(|one| one.parent.is_none() && one.tag.start != range.start);
-        return if has_root { Vec::new() } else { vec![root(range)] };
+        return if has_root { Vec::new() } else { vec![root(scene, range)] };
     };
     let Some(kind) = file.kinds[parent] else { return Vec::new() };
     let sca = prefix(&text[tree.elements[0].name.clone()]);
@@ -117,7 +118,10 @@ fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Ran
         None => other(name).unwrap_or_default().to_owned(),
     };
     let in_composite = std::ptr::eq(parent, &COMPOSITE);
+    let in_description = std::ptr::eq(parent, &CONTRIBUTION);
+    let first_attribute = kind.and_then(|kind| kind.attributes.first()).filter(|_| in_description);
     let snippet = match name {
+        _ if let Some(known) = first_attribute => format!("<{written} {}=\"$1\"/>", known.name),
         "component" => format!("<{written} name=\"$1\">\n  $0\n</{written}>"),
         "implementation.java" | "implementation.rust" => format!("<{written} class=\"$1\"/>"),
         "implementation.composite" | "include" => format!("<{written} name=\"$1\"/>"),
@@ -142,8 +146,16 @@ fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Ran
 }
 
 /// The root of a new file.
-fn root(range: &Range<usize>) -> Proposal {
+fn root(scene: &Scene, range: &Range<usize>) -> Proposal {
     let namespace = Version::Oasis200912.namespace();
+    let name = scene.file().path.file_name().unwrap_or_default();
+    if name == "sca-contribution.xml" {
+        let text = format!(
+            "<contribution xmlns=\"{namespace}\">\n  <deployable composite=\"$1\"/>\n</contribution>"
+        );
+        let one = Proposal::new(CONTRIBUTION.name, CompletionItemKind::CLASS, range);
+        return one.doc(describe::element(&CONTRIBUTION)).snippet(text);
+    }
     Proposal::new(COMPOSITE.name, CompletionItemKind::CLASS, range).doc(describe::element(&COMPOSITE)).snippet(format!(
         "<composite xmlns=\"{namespace}\" name=\"$1\" targetNamespace=\"urn:${{2:fleet}}\">\n  $0\n</composite>"
     ))

@@ -6,6 +6,8 @@ mod ends;
 mod item;
 pub(super) mod names;
 mod paths;
+mod scenario;
+pub(super) mod table;
 #[cfg(test)]
 mod tests;
 pub(super) mod topics;
@@ -24,7 +26,7 @@ use saoms_core::model::Multiplicity;
 use lsp_types::CompletionItemKind;
 
 use super::expressions::template_before;
-use super::outline::Side;
+use super::outline::{Component, Side};
 use super::scene::Scene;
 use super::syntax::{Cursor, local};
 pub(super) use item::Proposal;
@@ -32,6 +34,9 @@ pub(super) use item::Proposal;
 /// What can be written at a byte of the file.
 pub(super) fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
     let file = scene.file();
+    if file.is_beside {
+        return beside(scene, at);
+    }
     match file.tree.cursor(&file.text, at) {
         Cursor::ElementName { parent, element, name } => elements::in_tag(scene, parent, element, &name),
         Cursor::EndTag { element, name } => elements::end(scene, element, &name, at),
@@ -45,6 +50,28 @@ pub(super) fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
         Cursor::Text { parent } => in_text(scene, parent, at),
         Cursor::Opaque => Vec::new(),
     }
+}
+
+/// What can be written in a file that holds values.
+fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
+    if let Some(of) = table::owner(scene) {
+        return table::complete(scene, of, at);
+    }
+    let mut owners = scene.owners().into_iter();
+    let found = owners.find_map(|file| {
+        let components = &scene.files[file].outline.components;
+        components.iter().find_map(|one| {
+            let property = one.files.iter().find(|name| scene.is_first(file, name))?;
+            let whole = 0..scene.file().text.len();
+            if let Some(inside) = one.is_replicated.then(|| template(scene, file, one, &whole, at)).flatten()
+            {
+                return Some(inside);
+            }
+            scenario::is_one(scene, file, property.element)
+                .then(|| scenario::complete(scene, file, whole, at))
+        })
+    });
+    found.unwrap_or_default()
 }
 
 /// The values of an attribute.
@@ -112,11 +139,23 @@ fn value_of(
 
 /// The names in the `${...}` that a byte is in; `None` where it is in none.
 fn in_template(scene: &Scene, element: usize, range: &Range<usize>, at: usize) -> Option<Vec<Proposal>> {
-    let text = &scene.file().text;
     let component = scene.component_around(element).filter(|one| one.is_replicated)?;
+    template(scene, 0, component, range, at)
+}
+
+/// The same in a text of a replicated component of a file.
+fn template(
+    scene: &Scene,
+    file: usize,
+    component: &Component,
+    range: &Range<usize>,
+    at: usize,
+) -> Option<Vec<Proposal>> {
+    let text = &scene.file().text;
     let expression = template_before(text, range.clone(), at)?;
-    let end = text[at..range.end].find('}').map_or(range.end, |found| at + found);
-    Some(names::parameters(scene, Some(component), &names::word_at(text, expression.start..end, at)))
+    let end = text[at..range.end].find(['}', '\n']).map_or(range.end, |found| at + found);
+    let word = names::word_at(text, expression.start..end, at);
+    Some(names::parameters_of(scene, file, Some(component), &word))
 }
 
 fn in_reference(scene: &Scene, element: usize) -> bool {

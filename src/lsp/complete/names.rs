@@ -201,29 +201,53 @@ fn interfaces_of(class: &ClassDeclaration) -> impl Iterator<Item = &str> {
     class.offers().map(|one| &one.interface).chain(references).map(|one| one.name.as_str())
 }
 
-/// The composites that a file can name, with the prefix of their namespace.
+/// The composites that a file can name, with the prefix of their namespace. Where the file has none for it, one is declared at its root.
 pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
+    let deployed = file.outline.deployables.iter().filter(|one| one.element != element);
+    let deployed: Vec<usize> = deployed.filter_map(|one| scene.composite(0, one)).collect();
+    let root = file.tree.elements.first().map(|root| root.name.end);
     let others = scene.files.iter().enumerate().skip(1);
     others
         .filter_map(|(place, other)| {
-            let name = other.outline.name.as_ref()?;
+            let name = &other.outline.name.as_ref()?.text;
             let namespace = &other.outline.namespace;
-            let prefix =
+            let bound =
                 file.tree.prefix_of(&file.text, element, namespace).filter(|prefix| !prefix.is_empty());
-            let written =
-                prefix.map_or_else(|| name.text.clone(), |prefix| format!("{prefix}:{}", name.text));
+            let written = bound.map_or_else(|| name.clone(), |prefix| format!("{prefix}:{name}"));
             // A name that would lead elsewhere, or nowhere, is of no use.
             let meant = Named { element, text: written.clone(), at: range.clone() };
             let leads = scene.composite(0, &meant) == Some(place);
-            let shown = other.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            leads.then(|| {
+            let shown = other.path.file_name().unwrap_or_default().to_string_lossy();
+            let one = |written: String| {
                 Proposal::new(written, CompletionItemKind::MODULE, range)
                     .detail(shown)
                     .doc(format!("`{namespace}`"))
-            })
+            };
+            match root {
+                _ if deployed.contains(&place) => None,
+                _ if leads => Some(one(written)),
+                Some(root) if bound.is_none() && !namespace.is_empty() => {
+                    let prefix = free_prefix(scene, element, namespace);
+                    let declaration = format!(" xmlns:{prefix}=\"{namespace}\"");
+                    Some(one(format!("{prefix}:{name}")).also(root, declaration).rank(6))
+                }
+                _ => None,
+            }
         })
         .collect()
+}
+
+/// A prefix for a namespace that a file has not bound: the last word of it, as `fleet` of `urn:example:fleet`.
+fn free_prefix(scene: &Scene, element: usize, namespace: &str) -> String {
+    let file = scene.file();
+    let is_part = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+    let mut words = namespace.rsplit(|c: char| !is_part(c));
+    let fits = |word: &&str| word.starts_with(|c: char| c.is_ascii_alphabetic());
+    let word = words.find(fits).unwrap_or("c");
+    let is_free = |prefix: &String| file.tree.resolve(&file.text, element, prefix).is_none();
+    let numbered = (2..).map(|number| format!("{word}{number}"));
+    std::iter::once(word.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
 }
 
 /// The namespaces of the composites around a file.
@@ -250,7 +274,7 @@ pub(super) fn promoted(scene: &Scene, element: usize, range: &Range<usize>) -> V
 
 /// `$name` of each property of the composite.
 pub(super) fn sources(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
-    of_parameters(scene, "$", range)
+    of_composite(scene, 0, "$", range)
 }
 
 /// The names of expressions: the properties of the composite, each with its value, and the index of a component that is replicated.
@@ -259,7 +283,17 @@ pub(super) fn parameters(
     replicated: Option<&Component>,
     range: &Range<usize>,
 ) -> Vec<Proposal> {
-    let mut all = of_parameters(scene, "", range);
+    parameters_of(scene, 0, replicated, range)
+}
+
+/// The same for a composite in another file.
+pub(super) fn parameters_of(
+    scene: &Scene,
+    file: usize,
+    replicated: Option<&Component>,
+    range: &Range<usize>,
+) -> Vec<Proposal> {
+    let mut all = of_composite(scene, file, "", range);
     all.retain(|one| is_name(&one.label));
     all.extend(replicated.map(|_| {
         Proposal::new(INDEX, CompletionItemKind::VARIABLE, range)
@@ -269,9 +303,9 @@ pub(super) fn parameters(
     all
 }
 
-fn of_parameters(scene: &Scene, sign: &str, range: &Range<usize>) -> Vec<Proposal> {
+fn of_composite(scene: &Scene, file: usize, sign: &str, range: &Range<usize>) -> Vec<Proposal> {
     let of_file = |file: usize| scene.files[file].outline.properties.iter().map(move |one| (file, one));
-    let all = scene.unit_of(0).iter().flat_map(|file| of_file(*file));
+    let all = scene.unit_of(file).iter().flat_map(|file| of_file(*file));
     all.map(|(file, one)| {
         let given = scene.value_of(file, one.element).unwrap_or_default();
         Proposal::new(format!("{sign}{}", one.text), CompletionItemKind::CONSTANT, range).detail(given)

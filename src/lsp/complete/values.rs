@@ -5,14 +5,14 @@ use std::ops::Range;
 use saoms_api::declaration::PropertyKind;
 use saoms_core::registry::PropertyDeclaration;
 
-use super::{Proposal, names, topics, value};
+use super::{Proposal, names, scenario, topics, value};
 use crate::lsp::describe;
 use crate::lsp::scene::Scene;
 use crate::lsp::symbol::Symbol;
 use crate::lsp::syntax::local;
 
 /// The units of durations, as often as they are meant.
-const UNITS: &[(&str, &str)] = &[
+pub(super) const UNITS: &[(&str, &str)] = &[
     ("ms", "milliseconds"),
     ("s", "seconds"),
     ("us", "microseconds"),
@@ -30,23 +30,34 @@ pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: 
     if name == "topicRename" {
         return topics::complete(scene, property, range, at);
     }
+    if scenario::is_one(scene, 0, property) {
+        return scenario::complete(scene, 0, range, at);
+    }
     let declared = names::declared(scene, parent);
     let Some((one, preset)) = declared.into_iter().find(|(one, _)| one.name == name) else {
         let component = scene.component_around(parent);
         let inner = component.and_then(|one| scene.inside(0, one).first().copied());
         return inner.map_or_else(Vec::new, |inner| as_used(scene, inner, name, &range, at));
     };
-    let doc = describe::property(one, preset);
-    let mut all = of_declared(one, &file.text[range.start..at], &range);
+    let mut all = explained(one, preset, &file.text[range.start..at], &range);
     if name == "ID"
         && let Some(component) = scene.component_around(property)
     {
         all.push(value(&component.name.text, &range).detail("the name of the component"));
     }
-    let expected = one.expected();
-    all.into_iter()
-        .map(|item| if item.detail.is_empty() { item.detail(&expected) } else { item }.doc(&doc))
-        .collect()
+    all
+}
+
+/// The values of a declared property, behind what is typed, each with what there is to say about it.
+pub(super) fn explained(
+    one: &PropertyDeclaration,
+    preset: Option<&str>,
+    typed: &str,
+    range: &Range<usize>,
+) -> Vec<Proposal> {
+    let (doc, expected) = (describe::property(one, preset), one.expected());
+    let all = of_declared(one, typed, range).into_iter();
+    all.map(|item| if item.detail.is_empty() { item.detail(&expected) } else { item }.doc(&doc)).collect()
 }
 
 /// The values that a property of the composite can have.
@@ -59,7 +70,13 @@ pub(super) fn of_parameter(scene: &Scene, property: usize, range: Range<usize>, 
 }
 
 /// The values of a property of a composite: those of its type, or else those of the first property that takes its value from it.
-fn as_used(scene: &Scene, file: usize, name: &str, range: &Range<usize>, at: usize) -> Vec<Proposal> {
+pub(super) fn as_used(
+    scene: &Scene,
+    file: usize,
+    name: &str,
+    range: &Range<usize>,
+    at: usize,
+) -> Vec<Proposal> {
     let Symbol::Parameter { file, name } = scene.parameter(file, name) else { return Vec::new() };
     let of = &scene.files[file];
     let declared = of.outline.properties.iter().find(|one| one.text == name);
@@ -72,9 +89,7 @@ fn as_used(scene: &Scene, file: usize, name: &str, range: &Range<usize>, at: usi
         sources.filter_map(move |source| taker(scene, place, source.element))
     });
     let Some(one) = takers.next() else { return Vec::new() };
-    let (doc, expected) = (describe::property(one, None), one.expected());
-    let all = of_declared(one, &scene.file().text[range.start..at], range).into_iter();
-    all.map(|item| if item.detail.is_empty() { item.detail(&expected) } else { item }.doc(&doc)).collect()
+    explained(one, None, &scene.file().text[range.start..at], range)
 }
 
 /// What the class declares of a property of a component of a file.

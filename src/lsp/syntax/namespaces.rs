@@ -1,6 +1,6 @@
 //! Which elements are of SCA, which of SAOMS, and which of others.
 
-use saoms_core::load::vocabulary::{COMPOSITE, Kind, LOOP, OWN_ELEMENTS, SEVERITY};
+use saoms_core::load::vocabulary::{COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY};
 use saoms_core::model::{SAOMS_NAMESPACE, Version};
 
 use super::{Tree, local};
@@ -89,7 +89,9 @@ impl Tree {
         for (place, element) in self.elements.iter().enumerate() {
             kinds.push(match element.parent {
                 Some(parent) => kinds[parent].and_then(|parent| self.kind_in(text, parent, place)),
-                None => (self.local(text, place) == COMPOSITE.name).then_some(&COMPOSITE),
+                None => {
+                    [&COMPOSITE, &CONTRIBUTION].into_iter().find(|kind| self.local(text, place) == kind.name)
+                }
             });
         }
         kinds

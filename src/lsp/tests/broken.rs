@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use crate::lsp::testing::ask_everything;
+use crate::lsp::testing::{ask_everything, ask_everything_in};
 
 const WHOLE: &str = r#"<?xml version="1.0"?>
 <!-- ü -->
@@ -41,6 +41,19 @@ fn everything_can_be_asked_at_the_end_of_every_beginning() {
 fn everything_can_be_asked_at_every_place() {
     for (at, _) in WHOLE.char_indices() {
         ask_all(WHOLE, at);
+    }
+}
+
+#[test]
+fn everything_can_be_asked_in_files_beside_composites() {
+    let table = "\u{feff}name , \"battery\",period,ü\r\n\"R🤖001\", 5 ,\"1\n0\"s,\n\n,,,,\"";
+    let text = "at 1s luggage (1, 2) to r🤖;from 2..3 s 3 # ${period\nthen ${n} breakdown 1..";
+    let description = "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"><deployable composite=\"f:fleet\"/><import namespace=\"\"/><";
+    for (name, text) in [("t.csv", table), ("v.txt", text), ("sca-contribution.xml", description)] {
+        for (at, _) in text.char_indices().chain([(text.len(), ' ')]) {
+            ask_everything_in(name, text, at, &[("fleet.composite", WHOLE)]);
+            ask_everything_in(name, &text[..at], at, &[("fleet.composite", WHOLE)]);
+        }
     }
 }
 

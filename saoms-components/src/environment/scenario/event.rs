@@ -5,7 +5,7 @@ use super::{Happening, Written};
 use crate::grid::Block;
 use crate::text::TextFault;
 
-const KINDS: [&str; 5] = ["luggage", "landing", "takeoff", "breakdown", "end"];
+pub(super) const KINDS: [&str; 5] = ["luggage", "landing", "takeoff", "breakdown", "end"];
 const BLOCK: &str = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
 const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
 

@@ -7,8 +7,8 @@ use super::words::Words;
 use super::{Line, event};
 use crate::text::TextFault;
 
-const STARTS: [&str; 3] = ["at", "from", "then"];
-const UNITS: [&str; 6] = ["ns", "us", "ms", "s", "min", "h"];
+pub(super) const STARTS: [&str; 3] = ["at", "from", "then"];
+pub(super) const UNITS: [&str; 6] = ["ns", "us", "ms", "s", "min", "h"];
 const TIME: &str = "a time such as `6s` or `500ms`";
 /// The most events of a line that says how many.
 const MOST: u64 = 1_000_000;

@@ -3,6 +3,7 @@
 mod draw;
 mod event;
 mod line;
+mod next;
 mod words;
 
 use std::ops::Range;
@@ -12,6 +13,7 @@ use saoms_api::Finding;
 
 pub(crate) use draw::blocks;
 pub use draw::{Drawn, Spot};
+pub use next::{Next, next};
 
 /// What happens, and when.
 ///

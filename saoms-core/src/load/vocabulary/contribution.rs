@@ -5,11 +5,11 @@ use super::{Holds, Kind, Known};
 
 const LOCATION: Known = known("location", Holds::Uri, "The folder of the contribution that it comes from.");
 const PACKAGE: Known = required("package", Holds::Text, "A package of classes.");
-const NAMESPACE: Known = required("namespace", Holds::Uri, "The target namespace of composites.");
+const NAMESPACE: Known = required("namespace", Holds::Namespace, "The target namespace of composites.");
 const URI: Known = required("uri", Holds::Uri, "A file of the contribution.");
 
 /// The root of the file.
-pub(in crate::load) static CONTRIBUTION: Kind = Kind {
+pub static CONTRIBUTION: Kind = Kind {
     name: "contribution",
     doc: "What a folder of composites runs, gives to others and takes from them.",
     attributes: &[known("targetNamespace", Holds::Uri, "Often written, as in composites. It means nothing.")],
@@ -27,7 +27,7 @@ pub(in crate::load) static CONTRIBUTION: Kind = Kind {
 };
 
 /// The elements in it that have attributes.
-pub(in crate::load) static PARTS: [Kind; 7] = [
+pub(super) static PARTS: [Kind; 7] = [
     Kind {
         name: "deployable",
         doc: "A composite that runs by itself.",

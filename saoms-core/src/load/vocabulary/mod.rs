@@ -8,7 +8,7 @@ mod elements;
 mod own;
 mod types;
 
-pub(super) use contribution::{CONTRIBUTION, PARTS};
+pub use contribution::CONTRIBUTION;
 pub use elements::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
@@ -136,6 +136,9 @@ impl Kind {
 
     /// What an element of this name is inside this one; `None` where it cannot stand, or where its parts are not known.
     pub fn child(&self, name: &str) -> Option<&'static Kind> {
+        if std::ptr::eq(self, &CONTRIBUTION) {
+            return contribution::PARTS.iter().find(|part| part.name == name);
+        }
         let is_top = std::ptr::eq(self, &COMPOSITE);
         let found = match (name, is_top) {
             ("component", _) => &COMPONENT,
