@@ -1,14 +1,17 @@
 //! Hash tables for names out of files.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasher, Hasher, RandomState};
 
 /// A table that is fast for short names and small numbers. Where a name falls is another place in each table, so that nobody can write a
 /// file whose names all fall on one.
 pub(crate) type Map<K, V> = HashMap<K, V, Seeded>;
 
+/// The same, for names alone.
+pub(crate) type Set<K> = HashSet<K, Seeded>;
+
 /// Makes hashers that start from a random number.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Seeded(u64);
 
 impl Default for Seeded {

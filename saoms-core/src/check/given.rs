@@ -179,6 +179,10 @@ pub(super) fn properties<'a>(
     let component = member.component;
     let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
     for property in component.properties.iter().filter(|property| !property.name.is_empty()) {
+        if known.is_none() && member.instance.is_none() && property.only_text().is_some() {
+            // A text of whatever type.
+            continue;
+        }
         let found = parameters.taken(place, property, report);
         let source = property.source().filter(|_| property.r#type().is_none());
         let source = source.and_then(|source| Some((source, parameters.declaration(member.unit, source)?)));

@@ -380,10 +380,22 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
     }
 }
 
+/// Up to here each property is compared with those before it.
+const FEW: usize = 16;
+
 /// Reports properties that one component gives twice.
 pub(super) fn repeated(component: &Component, report: &mut Report<'_>) {
+    let all = &component.properties;
+    if all.len() <= FEW {
+        for (place, property) in all.iter().enumerate().filter(|(_, property)| !property.name.is_empty()) {
+            if let Some(first) = all[..place].iter().find(|first| first.name == *property.name.value) {
+                report.push(given_twice(property, first));
+            }
+        }
+        return;
+    }
     let mut first: HashMap<&str, &Property> = HashMap::new();
-    for property in component.properties.iter().filter(|property| !property.name.is_empty()) {
+    for property in all.iter().filter(|property| !property.name.is_empty()) {
         match first.get(property.name.as_str()) {
             None => _ = first.insert(&property.name, property),
             Some(first) => report.push(given_twice(property, first)),

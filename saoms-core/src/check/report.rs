@@ -68,9 +68,16 @@ impl<'a> Report<'a> {
     }
 
     /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
+    #[inline]
     pub(super) fn about(&mut self, member: &Member<'_>) {
+        if !member.is_copy {
+            if self.copy.is_some() {
+                self.copy = None;
+            }
+            return;
+        }
         let index = member.instance.map(|instance| instance.index);
-        self.copy = member.is_copy.then(|| Copied { path: member.path().into(), index });
+        self.copy = Some(Copied { path: member.path().into(), index });
     }
 
     /// Lets what follows be about the replica of this name and index.

@@ -137,6 +137,9 @@ impl<'f, 'a> Wires<'f, 'a> {
 
     /// The wires from the references of a component.
     fn wires_of(&self, member: usize) -> &[Wire<'f>] {
+        if self.wires.is_empty() {
+            return &[];
+        }
         self.wires.get(&member).map_or(&[], Vec::as_slice)
     }
 
@@ -284,6 +287,14 @@ impl<'f, 'a> Wires<'f, 'a> {
         level: &mut Level,
         report: &mut Report<'_>,
     ) {
+        if interface.is_none() && self.is_component(text, scope) {
+            // What it leads to there cannot be looked at.
+            level.ends.is_unknown |= counts;
+            if counts {
+                level.written.add(text.location);
+            }
+            return;
+        }
         for (one, replica) in spread(text, scope, self.fleet) {
             if replica.is_some() && !self.room.take(text, report) {
                 level.ends.is_unknown = true;
@@ -304,6 +315,12 @@ impl<'f, 'a> Wires<'f, 'a> {
                 level.written.add(text.location);
             }
         }
+    }
+
+    /// Whether a text is nothing but the name of a component: what most targets are.
+    fn is_component(&self, text: &str, scope: usize) -> bool {
+        let is_odd = |byte: u8| matches!(byte, b'/' | b':' | b'*' | b'$');
+        !text.bytes().fold(false, |odd, byte| odd | is_odd(byte)) && self.fleet.find(scope, text).is_some()
     }
 
     /// Whether targets are to be found by interface: said by the reference, its component, or the composite.

@@ -78,6 +78,9 @@ fn at(text: &Text, otherwise: Location) -> Location {
 }
 
 fn bindings(what: &str, name: &Text, bindings: &[Binding], report: &mut Report<'_>) {
+    if bindings.len() < 2 {
+        return;
+    }
     let mut first: HashMap<&str, Location> = HashMap::new();
     for given in bindings.iter().filter_map(|binding| binding.name.as_deref()) {
         let Some(earlier) = first.insert(given, given.location) else { continue };

@@ -13,7 +13,7 @@ impl Loader<'_> {
     /// Whether an element of this kind has no attribute but these usual ones, which it can have: there is nothing else to read. The others
     /// of one that has more are checked.
     pub(super) fn is_plain(&mut self, element: Element<'_>, kind: &'static Kind, usual: &[&str]) -> bool {
-        let is_plain = element.has_only(usual);
+        let is_plain = self.has_only(element, usual);
         if !is_plain {
             self.check_attributes(element, kind);
         }
@@ -148,8 +148,8 @@ impl Loader<'_> {
     }
 
     /// The value of an attribute, white space at its ends left out.
-    pub(super) fn optional(&self, element: Element<'_>, name: &str) -> Option<Text> {
-        element.attribute(name).map(Attribute::trimmed)
+    pub(super) fn optional(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
+        self.attribute(element, name).map(Attribute::trimmed)
     }
 
     /// The value of an attribute of SAOMS on an element of SCA.
@@ -165,7 +165,7 @@ impl Loader<'_> {
 
     /// The value of an attribute that has to be there, and not be empty.
     pub(super) fn required(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
-        let Some(attribute) = element.attribute(name) else {
+        let Some(attribute) = self.attribute(element, name) else {
             self.missing(element, name);
             return None;
         };
@@ -193,16 +193,17 @@ impl Loader<'_> {
 
     /// The name of a part; empty, at the tag, when there is none.
     pub(super) fn name(&mut self, element: Element<'_>) -> Text {
+        if let Some(attribute) = self.attribute(element, "name")
+            && let Some(name) = attribute.plain_name()
+        {
+            return name;
+        }
         let Some(name) = self.required(element, "name") else {
             return Located::new("".into(), element.name_location());
         };
-        // The usual name is plain: a look at its bytes is enough.
-        let is_odd = |byte: u8| byte <= b' ' || byte == b'/' || byte >= 0x80;
         let plain =
             if self.is_replicated { without_expressions(&name) } else { Cow::Borrowed(name.as_str()) };
-        if plain.bytes().any(is_odd)
-            && let Some(bad) = plain.chars().find(|c| c.is_whitespace() || *c == '/')
-        {
+        if let Some(bad) = plain.chars().find(|c| c.is_whitespace() || *c == '/') {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
             let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));
             let help = "names are used in targets as `component/service`, and in lists between blanks";
@@ -213,7 +214,7 @@ impl Loader<'_> {
 
     /// The value of a boolean attribute.
     pub(super) fn boolean(&mut self, element: Element<'_>, name: &str) -> Option<Located<bool>> {
-        let attribute = element.attribute(name)?;
+        let attribute = self.attribute(element, name)?;
         let text = attribute.trimmed();
         let value = match text.as_str() {
             "true" | "1" => true,
@@ -235,7 +236,7 @@ impl Loader<'_> {
 
     /// The value of `multiplicity`.
     pub(super) fn multiplicity(&mut self, element: Element<'_>) -> Option<Located<Multiplicity>> {
-        let attribute = element.attribute("multiplicity")?;
+        let attribute = self.attribute(element, "multiplicity")?;
         let text = attribute.trimmed();
         if let Some(value) = Multiplicity::from_name(&text) {
             return Some(Located::new(value, text.location));
@@ -254,8 +255,12 @@ impl Loader<'_> {
     }
 
     /// The words of an attribute that is a list.
-    pub(super) fn list(&self, element: Element<'_>, name: &str) -> Vec<Text> {
-        let Some(attribute) = element.attribute(name) else { return Vec::new() };
+    pub(super) fn list(&mut self, element: Element<'_>, name: &str) -> Vec<Text> {
+        let Some(attribute) = self.attribute(element, name) else { return Vec::new() };
+        if attribute.is_plain() && !attribute.raw_value().is_empty() {
+            // One word, as most lists are.
+            return vec![attribute.trimmed()];
+        }
         if self.is_replicated {
             attribute.words_with_expressions().collect()
         } else {
@@ -264,7 +269,7 @@ impl Loader<'_> {
     }
 
     /// `requires` and `policySets`.
-    pub(super) fn policy(&self, element: Element<'_>) -> Policy {
+    pub(super) fn policy(&mut self, element: Element<'_>) -> Policy {
         Policy::new(self.list(element, "requires"), self.list(element, "policySets"))
     }
 

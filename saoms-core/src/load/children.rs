@@ -25,40 +25,42 @@ pub(super) enum Family {
 impl Loader<'_> {
     /// Whose an element is. One of no namespace, or of another version of SCA than the root, is reported.
     pub(super) fn family(&mut self, element: Element<'_>) -> Family {
+        if let Some(family) = self.tag(element).family {
+            return family;
+        }
         let root = element.document().root();
-        // The root is of SCA, or counts as that.
-        if element.shares_namespace(root) {
+        let Some(version) = Version::from_namespace(element.namespace()) else {
+            self.without_namespace(element, root);
+            return Family::Nobody;
+        };
+        let location = element.name_location();
+        if self.diagnostics.skip(&codes::OTHER_VERSION, Severity::Error, location) {
             return Family::Sca;
         }
+        let message = format!(
+            "{} is of {}, and the {} is of {}",
+            quoted(element.name()),
+            version.label(),
+            root.local_name(),
+            self.version.label()
+        );
+        let one = Diagnostic::new(&codes::OTHER_VERSION, location, message);
+        let help = "a composite and all of SCA inside it are of one namespace";
+        self.report(one.label(root.name_location(), format!("the {}", root.local_name())).help(help));
+        Family::Sca
+    }
+
+    /// The same, where there is nothing to report.
+    pub(super) fn sure_family(&self, element: Element<'_>) -> Option<Family> {
+        // The root is of SCA, or counts as that.
+        if element.shares_namespace(element.document().root()) {
+            return Some(Family::Sca);
+        }
         match element.namespace() {
-            namespace if namespace == self.namespace => Family::Sca,
-            SAOMS_NAMESPACE => Family::Own,
-            "" => {
-                self.without_namespace(element, root);
-                Family::Nobody
-            }
-            namespace => match Version::from_namespace(namespace) {
-                None => Family::Foreign,
-                Some(version) => {
-                    let location = element.name_location();
-                    if self.diagnostics.skip(&codes::OTHER_VERSION, Severity::Error, location) {
-                        return Family::Sca;
-                    }
-                    let message = format!(
-                        "{} is of {}, and the {} is of {}",
-                        quoted(element.name()),
-                        version.label(),
-                        root.local_name(),
-                        self.version.label()
-                    );
-                    let one = Diagnostic::new(&codes::OTHER_VERSION, location, message);
-                    let help = "a composite and all of SCA inside it are of one namespace";
-                    self.report(
-                        one.label(root.name_location(), format!("the {}", root.local_name())).help(help),
-                    );
-                    Family::Sca
-                }
-            },
+            namespace if namespace == self.namespace => Some(Family::Sca),
+            SAOMS_NAMESPACE => Some(Family::Own),
+            "" => None,
+            namespace => Version::from_namespace(namespace).is_none().then_some(Family::Foreign),
         }
     }
 

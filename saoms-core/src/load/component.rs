@@ -19,6 +19,7 @@ impl Loader<'_> {
         self.no_text(element);
         let replicas = if is_plain { None } else { self.replicas(element) };
         self.is_replicated = replicas.is_some();
+        let [properties, services, references, ..] = self.counted(element);
         let mut component = Component {
             origin: Origin::of(element),
             name: self.name(element),
@@ -28,9 +29,9 @@ impl Loader<'_> {
             autowire: None,
             constraining_type: None,
             implementation: None,
-            properties: Vec::new(),
-            services: Vec::new(),
-            references: Vec::new(),
+            properties: Vec::with_capacity(properties),
+            services: Vec::with_capacity(services),
+            references: Vec::with_capacity(references),
             loops: Vec::new(),
             policy: Policy::default(),
         };
@@ -43,19 +44,16 @@ impl Loader<'_> {
         }
         let mut has_faulty = false;
         for child in element.children() {
-            let family = self.family(child);
-            match (family, meant_name(child)) {
+            let (family, name) = self.meaning(child);
+            match (family, name) {
                 (Family::Sca, "property") => {
-                    let property = self.property(child, &COMPONENT_PROPERTY);
-                    self.gathered.properties.push(property);
+                    component.properties.push(self.property(child, &COMPONENT_PROPERTY));
                 }
                 (Family::Sca, "service") => {
-                    let service = self.service(child, &COMPONENT_SERVICE);
-                    self.gathered.services.push(service);
+                    component.services.push(self.service(child, &COMPONENT_SERVICE));
                 }
                 (Family::Sca, "reference") => {
-                    let reference = self.reference(child, &COMPONENT_REFERENCE);
-                    self.gathered.references.push(reference);
+                    component.references.push(self.reference(child, &COMPONENT_REFERENCE));
                 }
                 (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
                 (Family::Sca | Family::Own | Family::Foreign, name)
@@ -85,9 +83,6 @@ impl Loader<'_> {
                 }
             }
         }
-        component.properties = parted(&mut self.gathered.properties);
-        component.services = parted(&mut self.gathered.services);
-        component.references = parted(&mut self.gathered.references);
         self.is_replicated = false;
         // An element that was not read to its end may have had one.
         if component.implementation.is_none() && !has_faulty && element.is_closed() {
@@ -154,13 +149,14 @@ impl Loader<'_> {
                 }
             }
         };
-        let policy = if element.has_only(&["class"]) { Policy::default() } else { self.policy(element) };
+        let policy =
+            if self.has_only(element, &["class"]) { Policy::default() } else { self.policy(element) };
         Some(Implementation { origin: Origin::of(element), kind, policy })
     }
 
     /// Checks attributes, text and children of an element that the model keeps without its children.
     pub(super) fn parts_of(&mut self, element: Element<'_>, kind: &'static Kind) {
-        if !element.has_only(&[]) {
+        if !self.has_only(element, &[]) {
             self.check_attributes(element, kind);
         }
         self.no_text(element);
@@ -182,17 +178,4 @@ impl Loader<'_> {
         let one = Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message);
         self.report(one.severity(severity).help(help));
     }
-}
-
-/// The parts that were gathered for a component, in a list of their size.
-#[expect(clippy::drain_collect, reason = "the memory of the list is kept for the next component")]
-fn parted<T>(gathered: &mut Vec<T>) -> Vec<T> {
-    /// Up to here the memory of the list is kept for the next component; a longer one is not copied.
-    const FEW: usize = 64;
-    if gathered.len() > FEW {
-        let mut all = std::mem::take(gathered);
-        all.shrink_to_fit();
-        return all;
-    }
-    gathered.drain(..).collect()
 }

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::Loader;
 use super::children::Family;
 use super::root::of_another_kind;
 use super::vocabulary::{COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE_PROPERTY};
-use super::{Gathered, Loader};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Component, ComponentType, Composite, ImplementationKind, Origin, Version};
 use crate::source::{FileId, Sources};
@@ -14,6 +14,22 @@ use crate::xml;
 
 /// The ending of their names.
 const ENDING: &str = "componentType";
+
+/// Entries of a folder beyond which it is not looked through.
+const MOST_ENTRIES: usize = 10_000;
+
+/// Whether a folder may hold component types. Most hold none, or are not there: then nobody has to ask for one by each name.
+pub(super) fn any_in(folder: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let Ok(entries) = folder.read_dir() else { return folder.is_dir() };
+    let has_ending = |name: &Path| name.extension().is_some_and(|ending| ending == ENDING);
+    let mut seen = 0;
+    let found = entries.take(MOST_ENTRIES).any(|entry| {
+        seen += 1;
+        entry.is_ok_and(|entry| has_ending(Path::new(&entry.file_name())))
+    });
+    found || seen == MOST_ENTRIES
+}
 
 /// Makes the model of a component type that was read before. `None` when the text is no well-formed XML with a `componentType` of SCA as its
 /// root.
@@ -35,16 +51,7 @@ pub fn load_component_type(
         diagnostics.push(of_another_kind(root, ENDING, help));
         return None;
     };
-    let namespace = root.namespace().to_owned();
-    let mut loader = Loader {
-        version,
-        namespace,
-        diagnostics,
-        gathered: Gathered::default(),
-        is_replicated: false,
-        severities: Vec::new(),
-        newer: Vec::new(),
-    };
+    let mut loader = Loader::new(version, root.namespace(), diagnostics);
     let mut made = ComponentType {
         origin: Origin::of(root),
         document: Arc::clone(&document),

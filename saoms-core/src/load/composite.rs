@@ -19,7 +19,7 @@ impl Loader<'_> {
         self.check_attributes(root, &COMPOSITE);
         self.no_text(root);
         let name = self.name(root);
-        let components = root.children().filter(|child| child.local_name() == "component").count();
+        let [properties, services, references, components, wires] = self.counted(root);
         let mut composite = Composite {
             origin: Origin::of(root),
             document: Arc::clone(document),
@@ -29,18 +29,18 @@ impl Loader<'_> {
             autowire: self.boolean(root, "autowire"),
             constraining_type: self.optional(root, "constrainingType"),
             includes: Vec::new(),
-            properties: Vec::new(),
-            services: Vec::new(),
-            references: Vec::new(),
+            properties: Vec::with_capacity(properties),
+            services: Vec::with_capacity(services),
+            references: Vec::with_capacity(references),
             components: Vec::with_capacity(components),
-            wires: Vec::new(),
+            wires: Vec::with_capacity(wires),
             severities: Vec::new(),
             policy: self.policy(root),
             name,
         };
         for child in root.children() {
-            let family = self.family(child);
-            match (family, child.local_name()) {
+            let (family, name) = self.meaning(child);
+            match (family, name) {
                 (Family::Foreign | Family::Nobody, _) => {}
                 (Family::Sca, "component") => composite.components.push(self.component(child)),
                 (Family::Sca, "include") => composite.includes.push(self.include(child)),

@@ -93,8 +93,8 @@ impl Loader<'_> {
         self.no_text(element);
         let mut contract = Contract::default();
         for child in element.children() {
-            let family = self.family(child);
-            match (family, meant_name(child)) {
+            let (family, name) = self.meaning(child);
+            match (family, name) {
                 (Family::Nobody, _) => {}
                 (Family::Sca, "callback") => match &contract.callback {
                     Some(first) => self.repeated(child, first.origin.tag, kind, "callback"),
@@ -199,8 +199,8 @@ impl Loader<'_> {
         self.no_text(element);
         let mut bindings = Vec::new();
         for child in element.children() {
-            let family = self.family(child);
-            match (family, meant_name(child)) {
+            let (family, name) = self.meaning(child);
+            match (family, name) {
                 (Family::Nobody, _) => {}
                 (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
                     bindings.push(self.binding(child, family));

@@ -7,7 +7,7 @@ use super::children::Family;
 use super::root::of_another_kind;
 use super::shelf::DESCRIPTIONS;
 use super::vocabulary::CONTRIBUTION;
-use super::{Gathered, Loader, read};
+use super::{Loader, read};
 use crate::diagnostic::Diagnostics;
 use crate::model::Version;
 use crate::source::{Sources, Text};
@@ -87,15 +87,7 @@ impl Description {
             diagnostics.push(of_another_kind(root, CONTRIBUTION.name, help));
             return made;
         };
-        let mut loader = Loader {
-            version,
-            namespace: root.namespace().to_owned(),
-            diagnostics,
-            gathered: Gathered::default(),
-            is_replicated: false,
-            severities: Vec::new(),
-            newer: Vec::new(),
-        };
+        let mut loader = Loader::new(version, root.namespace(), diagnostics);
         loader.check_attributes(root, &CONTRIBUTION);
         loader.no_text(root);
         root.children().for_each(|child| made.add(child, &mut loader));

@@ -25,6 +25,7 @@ mod root;
 mod severity;
 mod shelf;
 mod table;
+mod tags;
 #[cfg(test)]
 mod tests;
 mod value_file;
@@ -40,10 +41,11 @@ pub use named::load_named;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 pub use shelf::{composites_near, description_near};
 pub use table::table;
+use tags::Tag;
 pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::model::{Composite, Property, Reference, Service, SeverityRule, Version};
+use crate::model::{Composite, SeverityRule, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
 
@@ -80,15 +82,7 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
     let xml::Parsed { document, fault } = xml::parse(file, text);
     let mut composite = None;
     if let Some(document) = document {
-        let mut loader = Loader {
-            version: Version::Osoa10,
-            namespace: String::new(),
-            diagnostics,
-            gathered: Gathered::default(),
-            is_replicated: false,
-            severities: Vec::new(),
-            newer: Vec::new(),
-        };
+        let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
         if loader.root(document.root()) {
             loader.near_namespaces(&document);
             composite = Some(loader.composite(&Arc::new(document)));
@@ -125,24 +119,30 @@ struct Loader<'d> {
     /// The namespace that counts as that of SCA: that of the version, but for a root in an unknown one.
     namespace: String,
     diagnostics: &'d mut Diagnostics,
-    /// Where parts of the component at hand are gathered, so that each list is allocated once and in its size.
-    gathered: Gathered,
     /// Whether the component at hand is replicated, so that its texts can hold expressions.
     is_replicated: bool,
     /// The attributes of SCA 1.1 in a file of 1.0 that were told.
     newer: Vec<&'static str>,
     /// What is said about severities.
     severities: Vec<SeverityRule>,
+    /// What is known of each shape of start tags of the document.
+    tags: Vec<Tag>,
 }
 
-#[derive(Default)]
-struct Gathered {
-    properties: Vec<Property>,
-    services: Vec<Service>,
-    references: Vec<Reference>,
-}
+impl<'d> Loader<'d> {
+    /// For one document.
+    fn new(version: Version, namespace: &str, diagnostics: &'d mut Diagnostics) -> Self {
+        Self {
+            version,
+            namespace: namespace.to_owned(),
+            diagnostics,
+            is_replicated: false,
+            newer: Vec::new(),
+            severities: Vec::new(),
+            tags: Vec::new(),
+        }
+    }
 
-impl Loader<'_> {
     fn report(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
     }

@@ -9,8 +9,8 @@ use super::read::STANDARD_INPUT;
 use super::shelf::Shelf;
 use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
-use crate::hash::Map;
-use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
+use crate::hash::Set;
+use crate::model::{Component, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
 
 /// Names that are offered in place of one that is not found.
@@ -43,10 +43,12 @@ pub fn load_named(
     let given = given.filter_map(|one| Path::new(sources.get(one.file()).path()).parent());
     let given: Vec<PathBuf> = given.map(|folder| shelf.root(folder)).collect();
     let mut imports = Imports::new(given, max_size);
-    let (mut side_files, mut types) = (HashMap::new(), HashMap::new());
+    let (mut folders, mut side_files, mut types) =
+        (HashMap::<PathBuf, bool>::new(), HashMap::new(), HashMap::new());
     let mut warned = HashSet::new();
     let mut place = 0;
     while let Some(composite) = contribution.composites().get(place) {
+        let at = place;
         place += 1;
         let path = PathBuf::from(sources.get(composite.file()).path());
         let is_open =
@@ -73,11 +75,20 @@ pub fn load_named(
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let root = shelf.root(folder);
-        for Described { origins, paths, package, is_needed } in described {
+        let mut files = HashMap::new();
+        for Described { written, paths, package, is_needed } in described {
             // By its path in the contribution, or beside the composite under its last name.
             let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
-            let mut is_there =
-                |path: &PathBuf| *side_files.entry(path.clone()).or_insert_with(|| path.is_file());
+            let mut is_there = |path: &PathBuf| {
+                let folder = path.parent().unwrap_or(Path::new(""));
+                let known = match folders.get(folder) {
+                    Some(known) => *known,
+                    None => {
+                        *folders.entry(folder.to_owned()).or_insert_with(|| component_type::any_in(folder))
+                    }
+                };
+                known && *side_files.entry(path.clone()).or_insert_with(|| path.is_file())
+            };
             let mut found = paths.iter().map(|path| root.join(path)).chain(beside).find(&mut is_there);
             if let (None, Some(package)) = (&found, &package) {
                 let from = imports.exporters(&root, Kind::Java, package, sources, diagnostics);
@@ -91,14 +102,20 @@ pub fn load_named(
                 })
             });
             // Of a file that could not be read nothing more is said.
-            let described = match place {
-                Some(Some(place)) => Some(Some(place)),
-                None if is_needed => Some(None),
-                _ => None,
-            };
-            if let Some(place) = described {
-                origins.into_iter().for_each(|origin| contribution.describe(origin, place));
+            match place {
+                Some(Some(place)) => _ = files.insert(written, Some(place)),
+                None if is_needed => _ = files.insert(written, None),
+                _ => {}
             }
+        }
+        if !files.is_empty() {
+            let composite = &contribution.composites()[at];
+            let all = composite.components.iter().filter_map(|component| {
+                let (origin, written) = implementation(component, composite)?;
+                Some((origin, *files.get(written)?))
+            });
+            let all: Vec<(Origin, Option<usize>)> = all.collect();
+            all.into_iter().for_each(|(origin, place)| contribution.describe(origin, place));
         }
         for wanted in wanted {
             let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
@@ -142,7 +159,8 @@ pub fn load_named(
 
 /// Implementations that one file beside them may describe.
 struct Described {
-    origins: Vec<Origin>,
+    /// What they have in common, as [`implementation`] gives it.
+    written: String,
     /// The files that it may be, the likeliest first.
     paths: Vec<PathBuf>,
     /// The package of their class.
@@ -154,32 +172,37 @@ struct Described {
 /// The implementations of a composite that files beside them may describe; all that are written alike together.
 fn described(composite: &Composite) -> Vec<Described> {
     let mut all: Vec<Described> = Vec::new();
-    let mut places: Map<&str, Option<usize>> = Map::default();
+    let mut seen: Set<&str> = Set::default();
     for component in &composite.components {
-        let Some(implementation) = &component.implementation else { continue };
-        let tag = implementation.origin.element(&composite.document).start_tag_span();
-        let written = &composite.document.text()[tag.start as usize..tag.end as usize];
-        match places.get(written) {
-            Some(Some(place)) => {
-                let one: &mut Described = &mut all[*place];
-                one.origins.push(implementation.origin);
-                continue;
-            }
-            Some(None) => continue,
-            None => {}
+        let Some((origin, written)) = implementation(component, composite) else { continue };
+        if !seen.insert(written) {
+            continue;
         }
         let paths = component_type::paths(component, composite);
-        places.insert(written, (!paths.is_empty()).then_some(all.len()));
         if paths.is_empty() {
             continue;
         }
         // A bundle of OSGi says nothing about services by itself. Its description is called as its file is, which only `bundle` tells.
-        let is_needed = matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi")
-            && implementation.origin.element(&composite.document).attribute("bundle").is_some();
+        let kind = component.implementation.as_ref().map(|implementation| &implementation.kind);
+        let is_needed = matches!(kind, Some(ImplementationKind::Other { kind, .. }) if kind == "osgi")
+            && origin.element(&composite.document).attribute("bundle").is_some();
         let package = component.class().and_then(|class| Some(class.rsplit_once('.')?.0.to_owned()));
-        all.push(Described { origins: vec![implementation.origin], paths, package, is_needed });
+        all.push(Described { written: written.to_owned(), paths, package, is_needed });
     }
     all
+}
+
+/// Where a component's implementation comes from, and what of it says which file describes it: the class, or else the whole tag.
+fn implementation<'a>(component: &'a Component, composite: &'a Composite) -> Option<(Origin, &'a str)> {
+    let implementation = component.implementation.as_ref()?;
+    let written = match component.class() {
+        Some(class) => class.as_str(),
+        None => {
+            let tag = implementation.origin.element(&composite.document).start_tag_span();
+            &composite.document.text()[tag.start as usize..tag.end as usize]
+        }
+    };
+    Some((implementation.origin, written))
 }
 
 struct Wanted {

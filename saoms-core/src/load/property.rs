@@ -31,7 +31,7 @@ impl Loader<'_> {
         Property {
             origin: Origin::of(element),
             name,
-            value: element.attribute("value").map(crate::xml::Attribute::trimmed),
+            value: self.attribute(element, "value").map(crate::xml::Attribute::trimmed),
             text: element.trimmed_text(),
             details: self.details(element, kind, is_plain, values, content),
         }

@@ -33,8 +33,8 @@ impl LineIndex {
     pub(super) fn new(text: &str) -> Self {
         let bytes = text.as_bytes();
         let mut starts = vec![0];
-        for (at, &byte) in bytes.iter().enumerate() {
-            if byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n')) {
+        for at in memchr::memchr2_iter(b'\n', b'\r', bytes) {
+            if bytes[at] == b'\n' || bytes.get(at + 1) != Some(&b'\n') {
                 starts.push(at as u32 + 1);
             }
         }
@@ -96,7 +96,9 @@ fn mark(line: &str) -> usize {
 }
 
 fn counted(bytes: &[u8]) -> u32 {
-    bytes.iter().filter(|byte| is_first(**byte)).count() as u32
+    // Added up in bytes first, so that the compiler makes vector instructions of it.
+    let piece = |bytes: &[u8]| bytes.iter().fold(0_u8, |count, byte| count + u8::from(is_first(*byte)));
+    bytes.chunks(128).map(|bytes| u32::from(piece(bytes))).sum()
 }
 
 /// Whether a scalar begins with this byte of UTF-8.

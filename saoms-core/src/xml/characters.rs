@@ -4,15 +4,15 @@ use super::fault::Input;
 use crate::diagnostic::{Diagnostic, codes};
 
 /// Bytes that are looked at together.
-const CHUNK: usize = 64;
+const CHUNK: usize = 128;
 
 /// Where the first character is that XML 1.0 does not allow: controls but tab, line feed and carriage return, and
 /// U+FFFE and U+FFFF. Surrogates cannot be in a Rust text.
 pub(super) fn first_forbidden(text: &[u8]) -> Option<usize> {
     for (index, chunk) in text.chunks(CHUNK).enumerate() {
         // The whole chunk without a branch first: the compiler makes vector instructions of it. 0xEF starts U+FFFE.
-        let suspect = chunk.iter().fold(false, |any, &byte| any | is_control(byte) | (byte == 0xef));
-        if suspect {
+        let suspect = |byte: u8| u8::from(is_control(byte)) | u8::from(byte == 0xef);
+        if chunk.iter().fold(0, |any, &byte| any | suspect(byte)) != 0 {
             let start = index * CHUNK;
             let found = (start..start + chunk.len())
                 .find(|&at| is_control(text[at]) || matches!(text[at..], [0xef, 0xbf, 0xbe | 0xbf, ..]));
@@ -43,4 +43,20 @@ pub(super) fn is_blank(bytes: &[u8]) -> bool {
     let (chunks, rest) = bytes.as_chunks::<8>();
     let is_space = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\r' | b'\n');
     chunks.iter().all(|chunk| chunk == b"        " || chunk.iter().all(is_space)) && rest.iter().all(is_space)
+}
+
+/// How many bytes of white space are at the start.
+pub(super) fn blank_length(bytes: &[u8]) -> usize {
+    // Mostly it is a line end and the blanks of an indentation.
+    let mut at = 0;
+    while let Some(&byte) = bytes.get(at) {
+        if byte == b' ' && bytes[at..].starts_with(b"        ") {
+            at += 8;
+        } else if matches!(byte, b' ' | b'\t' | b'\r' | b'\n') {
+            at += 1;
+        } else {
+            break;
+        }
+    }
+    at
 }

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::tree::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, Node, RawAttribute, XMLNS};
+use super::shape::{Part, Shape};
+use super::tree::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, Node, XMLNS};
 use super::value;
 use crate::source::{Located, Location, Span, Text};
 
@@ -21,6 +22,10 @@ impl<'a> Element<'a> {
 
     fn node(self) -> &'a Node {
         &self.document.nodes[self.id.0 as usize]
+    }
+
+    fn tag(self) -> &'a Shape {
+        self.document.shapes.get(self.node().shape)
     }
 
     fn at(self, id: u32) -> Option<Self> {
@@ -44,7 +49,7 @@ impl<'a> Element<'a> {
 
     /// The name without its prefix.
     pub fn local_name(self) -> &'a str {
-        if self.node().has_prefix { split(self.name()).1 } else { self.name() }
+        if self.tag().has_prefix { split(self.name()).1 } else { self.name() }
     }
 
     /// The prefix as written.
@@ -54,12 +59,12 @@ impl<'a> Element<'a> {
 
     /// The namespace; empty for none.
     pub fn namespace(self) -> &'a str {
-        &self.document.namespaces[self.node().namespace as usize]
+        &self.document.namespaces[self.tag().namespace as usize]
     }
 
     /// Whether two elements of one document are in the same namespace.
     pub(crate) fn shares_namespace(self, other: Self) -> bool {
-        self.node().namespace == other.node().namespace
+        self.tag().namespace == other.tag().namespace
     }
 
     /// From the `<` of the start tag to behind the `>` of the end tag.
@@ -75,7 +80,7 @@ impl<'a> Element<'a> {
     /// The name in the start tag.
     pub fn name_span(self) -> Span {
         let start = self.node().start + 1;
-        Span::new(start, start + self.node().name_len)
+        Span::new(start, start + self.tag().name_len)
     }
 
     /// Where the name in the start tag is.
@@ -85,12 +90,12 @@ impl<'a> Element<'a> {
 
     /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
     pub fn content_span(self) -> Span {
-        let Node { tag_end, end, is_closed, name_len, .. } = *self.node();
+        let Node { tag_end, end, is_closed, .. } = *self.node();
         if tag_end == end || !is_closed {
             return Span::new(tag_end, end);
         }
         // Most end tags have no white space before their `>`.
-        let usual = end - name_len - 3;
+        let usual = end - self.tag().name_len - 3;
         if usual >= tag_end && self.document.text.as_bytes()[usual as usize] == b'<' {
             return Span::new(tag_end, usual);
         }
@@ -127,43 +132,46 @@ impl<'a> Element<'a> {
             .map_while(move |id| self.at(id).filter(|inner| inner.node().start < end))
     }
 
-    pub(super) fn raw_attributes(self) -> &'a [RawAttribute] {
-        let next = self.document.nodes.get(self.id.0 as usize + 1);
-        let end = next.map_or(self.document.attributes.len(), |next| next.attributes as usize);
-        &self.document.attributes[self.node().attributes as usize..end]
+    /// A number that elements have in common whose start tags are the same but for the values, white space and the namespaces included.
+    pub(crate) fn shape(self) -> usize {
+        self.node().shape as usize
     }
 
-    /// Its attributes in order, without declarations of namespaces.
-    pub fn attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
-        let document = self.document;
-        let all = self.raw_attributes().iter();
-        all.filter(|one| one.namespace != XMLNS).map(move |raw| Attribute { document, raw })
+    pub(super) fn count_of_attributes(self) -> usize {
+        self.document.shapes.parts(self.node().shape).len()
     }
 
-    /// Its declarations of namespaces (`xmlns`, `xmlns:a`) in order.
-    pub fn namespace_declarations(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+    /// The attribute at a place among all that are written.
+    ///
+    /// # Panics
+    /// When there are not as many.
+    pub(crate) fn nth_attribute(self, at: usize) -> Attribute<'a> {
         let document = self.document;
-        let all = self.raw_attributes().iter();
-        all.filter(|one| one.namespace == XMLNS).map(move |raw| Attribute { document, raw })
+        let part = &document.shapes.parts(self.node().shape)[at];
+        Attribute { document, part, value: document.values[self.node().values as usize + at] }
     }
 
     /// Its attributes and its declarations of namespaces, in the order in which they are written.
     pub fn written_attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
         let document = self.document;
-        self.raw_attributes().iter().map(move |raw| Attribute { document, raw })
+        let values = document.values[self.node().values as usize..].iter();
+        let parts = document.shapes.parts(self.node().shape).iter();
+        parts.zip(values).map(move |(part, value)| Attribute { document, part, value: *value })
+    }
+
+    /// Its attributes in order, without declarations of namespaces.
+    pub fn attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        self.written_attributes().filter(|one| one.part.namespace != XMLNS)
+    }
+
+    /// Its declarations of namespaces (`xmlns`, `xmlns:a`) in order.
+    pub fn namespace_declarations(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        self.written_attributes().filter(|one| one.part.namespace == XMLNS)
     }
 
     /// The attribute of this name in no namespace.
     pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
-        self.attributes().find(|one| one.raw.namespace == NO_NAMESPACE && one.name() == name)
-    }
-
-    /// Whether it has no attribute but some of these, in no namespace, and declares none: what most elements of a large file are like.
-    pub(crate) fn has_only(self, names: &[&str]) -> bool {
-        let document = self.document;
-        self.raw_attributes()
-            .iter()
-            .all(|raw| raw.namespace == NO_NAMESPACE && names.contains(&Attribute { document, raw }.name()))
+        self.attributes().find(|one| one.part.namespace == NO_NAMESPACE && one.name() == name)
     }
 
     /// The attribute of this name in this namespace.
@@ -178,14 +186,12 @@ impl<'a> Element<'a> {
         }
         let mut here = Some(self);
         while let Some(element) = here {
-            let all = element.raw_attributes();
-            let found = match all.len() > MANY_ATTRIBUTES {
+            let found = match element.count_of_attributes() > MANY_ATTRIBUTES {
                 true => self.document.declaration(element.id, prefix),
                 false => element.declared_prefixes().find(|(known, _)| **known == *prefix).map(|(_, at)| at),
             };
             if let Some(at) = found {
-                let declaration = Attribute { document: self.document, raw: &all[at] };
-                return Some(declaration.value()).filter(|uri| !uri.is_empty());
+                return Some(element.nth_attribute(at).value()).filter(|uri| !uri.is_empty());
             }
             here = element.parent();
         }
@@ -194,19 +200,18 @@ impl<'a> Element<'a> {
 
     /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the attributes.
     pub(super) fn declared_prefixes(self) -> impl Iterator<Item = (&'a str, usize)> {
-        let document = self.document;
-        let all = self.raw_attributes().iter().enumerate().filter(|(_, raw)| raw.namespace == XMLNS);
-        all.map(move |(at, raw)| {
-            let (before, local) = split(Attribute { document, raw }.name());
+        let all = self.written_attributes().enumerate().filter(|(_, one)| one.part.namespace == XMLNS);
+        all.map(move |(at, one)| {
+            let (before, local) = split(one.name());
             (before.map_or("", |_| local), at)
         })
     }
 
     /// The name in the end tag; `None` for `<a/>` and where the end tag was not read.
     pub fn end_name_span(self) -> Option<Span> {
-        let Node { tag_end, end, is_closed, name_len, .. } = *self.node();
+        let Node { tag_end, end, is_closed, .. } = *self.node();
         let start = self.content_span().end + 2;
-        (is_closed && tag_end < end).then(|| Span::new(start, start + name_len))
+        (is_closed && tag_end < end).then(|| Span::new(start, start + self.tag().name_len))
     }
 
     /// Whether text other than white space is directly inside.
@@ -279,7 +284,9 @@ impl<'a> Element<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Attribute<'a> {
     document: &'a Document,
-    raw: &'a RawAttribute,
+    part: &'a Part,
+    /// Without the quotes.
+    value: Span,
 }
 
 impl<'a> Attribute<'a> {
@@ -300,7 +307,7 @@ impl<'a> Attribute<'a> {
 
     /// The namespace; empty for none, as for every attribute without a prefix.
     pub fn namespace(self) -> &'a str {
-        &self.document.namespaces[self.raw.namespace as usize]
+        &self.document.namespaces[self.part.namespace as usize]
     }
 
     /// The value: references resolved, each white space character a blank.
@@ -310,22 +317,23 @@ impl<'a> Attribute<'a> {
 
     /// The value as written.
     pub fn raw_value(self) -> &'a str {
-        slice(self.document, self.raw.value)
+        slice(self.document, self.value)
     }
 
     /// From the name to behind the closing quote.
     pub fn span(self) -> Span {
-        Span::new(self.raw.start, self.raw.value.end + 1)
+        Span::new(self.name_span().start, self.value.end + 1)
     }
 
     /// The name.
     pub fn name_span(self) -> Span {
-        Span::new(self.raw.start, self.raw.start + self.raw.name_len)
+        let start = self.value.start - self.part.name_back;
+        Span::new(start, start + self.part.name_len)
     }
 
     /// The value, without its quotes.
     pub fn value_span(self) -> Span {
-        self.raw.value
+        self.value
     }
 
     /// Where the whole attribute is.
@@ -333,14 +341,25 @@ impl<'a> Attribute<'a> {
         self.span().in_file(self.document.file)
     }
 
+    /// Whether the value means itself, and has no white space in it.
+    pub(crate) fn is_plain(self) -> bool {
+        value::is_plain(self.raw_value().as_bytes())
+    }
+
+    /// The value and where it is, when it is a name as most are: not empty, and of ASCII without white space and `/`.
+    pub(crate) fn plain_name(self) -> Option<Text> {
+        let name = self.raw_value();
+        let is_plain = !name.is_empty() && value::is_plain_name(name.as_bytes());
+        is_plain.then(|| Located::new(name.into(), self.value.in_file(self.document.file)))
+    }
+
     /// The value and where it is, white space at its ends left out.
     pub fn trimmed(self) -> Text {
-        let whole = self.raw_value();
         // Most values are names: one look at their bytes tells that they mean themselves.
-        if value::is_plain(whole.as_bytes()) {
-            return Located::new(whole.into(), self.raw.value.in_file(self.document.file));
+        if self.is_plain() {
+            return Located::new(self.raw_value().into(), self.value.in_file(self.document.file));
         }
-        self.located(value::trim(whole))
+        self.located(value::trim(self.raw_value()))
     }
 
     /// The words of a value that is a list, each with its own place.
@@ -371,7 +390,7 @@ impl<'a> Attribute<'a> {
     /// A part of the value as written, resolved.
     fn located(self, part: &str) -> Text {
         let whole = self.raw_value();
-        let start = self.raw.value.start + offset(whole, part);
+        let start = self.value.start + offset(whole, part);
         let span = Span::new(start, start + part.len() as u32);
         Located::new(value::attribute_value(part).into(), span.in_file(self.document.file))
     }

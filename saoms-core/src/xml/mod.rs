@@ -4,6 +4,7 @@
 //! values stay in the text: only spans are stored. Comments and processing instructions are checked and not kept.
 
 mod characters;
+mod eight;
 mod element;
 mod fault;
 mod names;
@@ -11,6 +12,7 @@ mod namespaces;
 mod parse;
 mod prolog;
 mod reference;
+mod shape;
 mod tag;
 #[cfg(test)]
 mod tests;

@@ -15,7 +15,18 @@ pub(super) struct Namespaces<'a> {
     default: u32,
     bound: HashMap<&'a str, u32>,
     /// What each declaration in scope replaced, to be put back.
-    replaced: Vec<(&'a str, Option<u32>)>,
+    replaced: Vec<Replaced<'a>>,
+    /// How many declarations there were.
+    count: u32,
+}
+
+/// What a declaration replaced.
+#[derive(Debug)]
+struct Replaced<'a> {
+    prefix: &'a str,
+    before: Option<u32>,
+    /// The number of the declaration.
+    number: u32,
 }
 
 impl<'a> Namespaces<'a> {
@@ -28,6 +39,7 @@ impl<'a> Namespaces<'a> {
             default: NO_NAMESPACE,
             bound: HashMap::from([("xml", 1)]),
             replaced: Vec::new(),
+            count: 0,
         }
     }
 
@@ -44,12 +56,21 @@ impl<'a> Namespaces<'a> {
         } else {
             self.bound.insert(prefix, number)
         };
-        self.replaced.push((prefix, before));
+        self.count += 1;
+        self.replaced.push(Replaced { prefix, before, number: self.count });
+    }
+
+    /// A number for what is bound here: where it is the same, all prefixes mean the same.
+    pub(super) fn scope(&self) -> u32 {
+        self.replaced.last().map_or(0, |last| last.number)
     }
 
     /// Undoes the declarations beyond the first `depth`.
     pub(super) fn leave(&mut self, depth: u32) {
-        for (prefix, before) in self.replaced.drain(depth as usize..).rev() {
+        if self.depth() == depth {
+            return;
+        }
+        for Replaced { prefix, before, .. } in self.replaced.drain(depth as usize..).rev() {
             match before {
                 Some(number) if prefix.is_empty() => self.default = number,
                 Some(number) => _ = self.bound.insert(prefix, number),

@@ -5,12 +5,22 @@ use std::collections::HashMap;
 use super::fault::{Checked, Input};
 use super::names::{is_qualified_name, name_length, scan};
 use super::reference;
-use super::tree::{NO_NAMESPACE, RawAttribute, XMLNS};
+use super::tree::{NO_NAMESPACE, XMLNS};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Span;
 
 /// An element with more attributes than this has them compared through a map.
 const FEW: usize = 16;
+
+/// An attribute as written, declarations of namespaces included.
+#[derive(Debug)]
+pub(super) struct RawAttribute {
+    pub(super) start: u32,
+    pub(super) name_len: u32,
+    /// Without the quotes.
+    pub(super) value: Span,
+    pub(super) namespace: u32,
+}
 
 /// What a start tag is.
 #[derive(Debug)]

@@ -275,6 +275,18 @@ proptest! {
     }
 
     #[test]
+    fn a_name_is_plain_without_blanks_slashes_references_and_what_is_beyond_ascii(bytes in prop::collection::vec(prop_oneof![1 => any::<u8>(), 1 => 0x1e..0x31_u8, 9 => Just(b'a')], 0..40)) {
+        let expected = bytes.iter().all(|byte| *byte > b' ' && !b"/&".contains(byte) && byte.is_ascii());
+        prop_assert_eq!(super::value::is_plain_name(&bytes), expected);
+    }
+
+    #[test]
+    fn the_first_of_some_bytes_is_found(bytes in prop::collection::vec(prop_oneof![1 => any::<u8>(), 1 => Just(b'<'), 9 => Just(b'a')], 0..40)) {
+        let expected = bytes.iter().position(|byte| b"\"<&".contains(byte));
+        prop_assert_eq!(super::eight::first_of(&bytes, *b"\"<&"), expected);
+    }
+
+    #[test]
     fn a_text_is_blank_with_white_space_alone(bytes in prop::collection::vec(prop_oneof![9 => Just(b' '), 1 => Just(b'\n'), 1 => 8..34_u8], 0..40)) {
         let expected = bytes.iter().all(|byte| b" \t\r\n".contains(byte));
         prop_assert_eq!(super::characters::is_blank(&bytes), expected);

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use super::Element;
+use super::shape::Shapes;
 use crate::source::{FileId, Span};
 
 /// An element of a [`Document`]; the numbers rise in document order, the root is 0.
@@ -22,7 +23,7 @@ pub(super) const NO_NAMESPACE: u32 = 0;
 /// The number of the namespace of declarations.
 pub(super) const XMLNS: u32 = 2;
 
-/// 36 bytes: a file of nothing but `<a/>` costs nine times its size.
+/// 32 bytes: a file of nothing but `<a/>` costs eight times its size.
 #[derive(Debug)]
 pub(super) struct Node {
     /// At the `<` of the start tag.
@@ -31,29 +32,16 @@ pub(super) struct Node {
     pub(super) end: u32,
     /// Behind the `>` of the start tag.
     pub(super) tag_end: u32,
-    /// Bytes of the name in the start tag, its prefix included.
-    pub(super) name_len: u32,
-    pub(super) namespace: u32,
+    /// How the start tag is written.
+    pub(super) shape: u32,
     pub(super) parent: u32,
     pub(super) next: u32,
-    /// The first of its attributes; they end where those of the next element begin.
-    pub(super) attributes: u32,
+    /// The first of its attributes' values; there are as many as its shape has attributes.
+    pub(super) values: u32,
     /// Whether text other than white space is directly inside.
     pub(super) has_text: bool,
-    /// Whether its name has a prefix.
-    pub(super) has_prefix: bool,
     /// Whether its end tag was read; only those around a fault are not.
     pub(super) is_closed: bool,
-}
-
-/// An attribute as written, declarations of namespaces included.
-#[derive(Debug)]
-pub(super) struct RawAttribute {
-    pub(super) start: u32,
-    pub(super) name_len: u32,
-    /// Without the quotes.
-    pub(super) value: Span,
-    pub(super) namespace: u32,
 }
 
 /// A well-formed XML text with its elements.
@@ -62,7 +50,9 @@ pub struct Document {
     pub(super) file: FileId,
     pub(super) text: Arc<String>,
     pub(super) nodes: Vec<Node>,
-    pub(super) attributes: Vec<RawAttribute>,
+    /// The values of all attributes, declarations of namespaces included, without their quotes.
+    pub(super) values: Vec<Span>,
+    pub(super) shapes: Shapes,
     pub(super) namespaces: Vec<Box<str>>,
     pub(super) declared: Declared,
 }
@@ -91,6 +81,11 @@ impl Document {
         self.namespaces.iter().map(AsRef::as_ref)
     }
 
+    /// How many shapes of start tags there are.
+    pub(crate) fn shapes(&self) -> usize {
+        self.shapes.len()
+    }
+
     /// The one element that holds all others.
     pub fn root(&self) -> Element<'_> {
         self.element(ElementId::ROOT)
@@ -112,7 +107,7 @@ impl Document {
     /// The place of the declaration of a prefix among the attributes of an element with many of them.
     pub(super) fn declaration(&self, element: ElementId, prefix: &str) -> Option<usize> {
         let all = self.declared.0.get_or_init(|| {
-            let many = self.elements().filter(|element| element.raw_attributes().len() > MANY_ATTRIBUTES);
+            let many = self.elements().filter(|element| element.count_of_attributes() > MANY_ATTRIBUTES);
             let declared = |element: Element<'_>| {
                 element.declared_prefixes().map(|(prefix, at)| (prefix.into(), at)).collect()
             };

@@ -5,19 +5,20 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use super::eight;
+
 /// Whether the bytes are no white space and no `&`: such a value means itself.
+#[inline]
 pub(super) fn is_plain(bytes: &[u8]) -> bool {
-    // Eight at a time: a byte up to `most` leaves its highest bit in `word - ONES * (most + 1)`, unless it had that bit itself.
-    const ONES: u64 = 0x0101_0101_0101_0101;
-    const HIGH: u64 = ONES << 7;
-    let (chunks, rest) = bytes.as_chunks::<8>();
-    let odd = chunks.iter().fold(0, |odd, chunk| {
-        let word = u64::from_le_bytes(*chunk);
-        let and = word ^ (ONES * b'&' as u64);
-        let space = word.wrapping_sub(ONES * (b' ' as u64 + 1)) & !word;
-        odd | space | and.wrapping_sub(ONES) & !and
-    });
-    odd & HIGH == 0 && rest.iter().all(|byte| *byte > b' ' && *byte != b'&')
+    !eight::any(bytes, |word| eight::up_to_blank(word) | eight::equal(word, b'&'))
+}
+
+/// Whether the bytes are neither white space, `&` nor `/`, and all ASCII.
+#[inline]
+pub(super) fn is_plain_name(name: &[u8]) -> bool {
+    !eight::any(name, |word| {
+        eight::up_to_blank(word) | eight::equal(word, b'/') | eight::equal(word, b'&') | word & eight::HIGH
+    })
 }
 
 /// The value of an attribute (XML 1.0, 3.3.3): each white space character a blank, references resolved.

@@ -1,0 +1,134 @@
+//! What the loader knows of an element by the shape of its start tag: found once for all tags that are written alike.
+
+use super::Loader;
+use super::children::{Family, meant_name};
+use crate::xml::{Attribute, Element};
+
+/// How many attributes are usual.
+const USUAL: usize = 12;
+
+/// The place of a usual attribute in what is known of a shape.
+#[inline]
+fn usual(name: &str) -> Option<usize> {
+    match name {
+        "name" => Some(0),
+        "value" => Some(1),
+        "target" => Some(2),
+        "class" => Some(3),
+        "source" => Some(4),
+        "promote" => Some(5),
+        "requires" => Some(6),
+        "policySets" => Some(7),
+        "uri" => Some(8),
+        "multiplicity" => Some(9),
+        "interface" => Some(10),
+        "type" => Some(11),
+        _ => None,
+    }
+}
+
+/// No place.
+const NONE: u8 = u8::MAX;
+
+/// What is known of a shape.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tag {
+    is_known: bool,
+    /// Whose the element is; `None` where that is to be looked at, and told, of each.
+    pub(super) family: Option<Family>,
+    /// The place of its local name among the frequent ones, when it is one of these of SCA.
+    frequent: u8,
+    /// Where each of the usual attributes is among all.
+    places: [u8; USUAL],
+    /// A bit for each of the usual attributes that it has, and [`OTHERS`] for all others, declarations of namespaces included.
+    has: u16,
+}
+
+/// The bit of attributes that are not usual.
+const OTHERS: u16 = 1 << USUAL;
+
+/// The elements of SCA that most elements are.
+const FREQUENT: [&str; 5] = ["property", "service", "reference", "component", "wire"];
+
+impl Tag {
+    const UNKNOWN: Self =
+        Self { is_known: false, family: None, frequent: NONE, places: [NONE; USUAL], has: 0 };
+
+    fn of(element: Element<'_>, family: Option<Family>) -> Self {
+        let mut tag = Self { is_known: true, family, ..Self::UNKNOWN };
+        if family == Some(Family::Sca) {
+            let name = element.local_name();
+            tag.frequent = FREQUENT.iter().position(|one| *one == name).map_or(NONE, |place| place as u8);
+        }
+        for (place, attribute) in element.written_attributes().enumerate() {
+            match usual(attribute.name()) {
+                Some(usual) if place < usize::from(NONE) => {
+                    tag.places[usual] = place as u8;
+                    tag.has |= 1 << usual;
+                }
+                _ => tag.has |= OTHERS,
+            }
+        }
+        tag
+    }
+}
+
+impl Loader<'_> {
+    /// What is known of an element's tag.
+    #[inline]
+    pub(super) fn tag(&mut self, element: Element<'_>) -> Tag {
+        match self.tags.get(element.shape()) {
+            Some(tag) if tag.is_known => *tag,
+            _ => self.new_tag(element),
+        }
+    }
+
+    #[cold]
+    fn new_tag(&mut self, element: Element<'_>) -> Tag {
+        let shape = element.shape();
+        if self.tags.len() <= shape {
+            self.tags.resize(element.document().shapes().max(shape + 1), Tag::UNKNOWN);
+        }
+        let tag = Tag::of(element, self.sure_family(element));
+        self.tags[shape] = tag;
+        tag
+    }
+
+    /// Whose an element is, as [`Loader::family`] has it, and what it is called there: the local name, or what is meant by it.
+    #[inline]
+    pub(super) fn meaning<'a>(&mut self, element: Element<'a>) -> (Family, &'a str) {
+        match FREQUENT.get(usize::from(self.tag(element).frequent)) {
+            Some(name) => (Family::Sca, name),
+            None => (self.family(element), meant_name(element)),
+        }
+    }
+
+    /// How many children have each of the [`FREQUENT`] names.
+    pub(super) fn counted(&mut self, element: Element<'_>) -> [usize; FREQUENT.len()] {
+        let mut counted = [0; FREQUENT.len()];
+        for child in element.children() {
+            if let Some(count) = counted.get_mut(usize::from(self.tag(child).frequent)) {
+                *count += 1;
+            }
+        }
+        counted
+    }
+
+    /// The attribute of this name in no namespace.
+    #[inline]
+    pub(super) fn attribute<'a>(&mut self, element: Element<'a>, name: &str) -> Option<Attribute<'a>> {
+        let tag = self.tag(element);
+        match usual(name) {
+            Some(usual) if tag.has & 1 << usual != 0 => Some(element.nth_attribute(tag.places[usual].into())),
+            _ if tag.has & OTHERS == 0 => None,
+            _ => element.attribute(name),
+        }
+    }
+
+    /// Whether the element has no attribute but some of these, which are usual ones, and declares no namespace.
+    #[inline]
+    pub(super) fn has_only(&mut self, element: Element<'_>, names: &[&str]) -> bool {
+        let allowed = names.iter().filter_map(|name| usual(name)).fold(0, |all, usual| all | 1 << usual);
+        self.tag(element).has & !allowed == 0
+    }
+}
