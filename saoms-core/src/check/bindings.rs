@@ -10,7 +10,7 @@ use crate::model::{Binding, Part, Service};
 pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for member in &fleet.members {
         report.about(member);
-        for reference in member.component.references.iter().filter(|one| !one.bindings.is_empty()) {
+        for reference in member.component.references.iter().filter(|one| !one.bindings().is_empty()) {
             for target in &reference.targets {
                 let (component, name) = parts(target);
                 // Of a class that runs here it is told that a binding is not served.
@@ -19,7 +19,9 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
                     found.map(|found| &fleet.members[found]).filter(|found| found.kind == Kind::Given);
                 let services = found.map_or(&[][..], |found| &found.component.services);
                 let Some(service) = meant(services, name) else { continue };
-                if service.bindings.is_empty() || have_one_in_common(&reference.bindings, &service.bindings) {
+                if service.bindings().is_empty()
+                    || have_one_in_common(reference.bindings(), service.bindings())
+                {
                     continue;
                 }
                 let message = format!(
@@ -36,11 +38,11 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
                 };
                 report.push(
                     Diagnostic::new(&codes::BINDING_MISMATCH, target.location, message)
-                        .label(service.bindings[0].tag(), "the service is bound so")
+                        .label(service.bindings()[0].tag(), "the service is bound so")
                         .help(format!(
                             "the reference has {}, the service {}: give both the same, or leave them out",
-                            kinds(&reference.bindings),
-                            kinds(&service.bindings)
+                            kinds(reference.bindings()),
+                            kinds(service.bindings())
                         )),
                 );
             }

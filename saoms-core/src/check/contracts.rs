@@ -58,7 +58,7 @@ fn services(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report
         match fleet.offer(member, name, classes) {
             Offer::Service(provider) => {
                 if let Some(declared) = fleet.interface_of(provider, classes) {
-                    interface(service.interface.as_deref(), declared, name, "ASM50004", report);
+                    interface(service.interface(), declared, name, "ASM50004", report);
                 }
             }
             Offer::Open => {}
@@ -68,7 +68,7 @@ fn services(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report
             }
         }
         if fleet.class_of(member, classes).is_some() {
-            bindings(&service.bindings, "the service can be called within the program alone", report);
+            bindings(service.bindings(), "the service can be called within the program alone", report);
         }
     }
 }
@@ -83,11 +83,11 @@ fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], repo
         let inner =
             fleet.inner(member).and_then(|inner| inner.references().find(|known| known.name == *name.value));
         if let Some(declared) = declared {
-            interface(reference.interface.as_deref(), &declared.interface, name, "ASM50011", report);
+            interface(reference.interface(), &declared.interface, name, "ASM50011", report);
             narrows(reference, of_class(declared), &whose, report);
-            bindings(&reference.bindings, "calls through it fail", report);
+            bindings(reference.bindings(), "calls through it fail", report);
         } else if let Some(inner) = inner {
-            let own = inner.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value);
+            let own = inner.multiplicity().map_or(Multiplicity::One, |own| own.value);
             narrows(reference, own, &whose, report);
         } else {
             let names = fleet.reference_names(member, classes).unwrap_or_default();
@@ -187,7 +187,7 @@ pub(super) fn narrows(
     whose: &dyn fmt::Display,
     report: &mut Report<'_>,
 ) {
-    let Some(given) = &reference.multiplicity else { return };
+    let Some(given) = reference.multiplicity() else { return };
     if given.value.narrows(own) {
         return;
     }

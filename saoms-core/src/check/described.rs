@@ -188,7 +188,7 @@ pub(super) fn supplied(component: &Component, described: &ComponentType, report:
 /// Checks that the multiplicity that a component gives its reference narrows that of the file.
 pub(super) fn multiplicity(reference: &Reference, described: &ComponentType, report: &mut Report<'_>) {
     if let Some(own) = described.references.iter().find(|own| own.name == *reference.name.value) {
-        let own = own.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value);
+        let own = own.multiplicity().map_or(Multiplicity::One, |own| own.value);
         narrows(reference, own, &"the component type", report);
     }
 }

@@ -141,7 +141,7 @@ pub(super) fn unwired<'f>(
     if promoted.contains(&(member.scope, component.name.as_str())) || is_wired("") {
         return;
     }
-    let default = component.autowire.map_or(member.autowire, |said| said.value);
+    let default = component.autowire().map_or(member.autowire, |said| said.value);
     for declared in
         known.described.references.iter().filter(|one| !one.name.is_empty() && !is_wired(&one.name))
     {
@@ -150,12 +150,12 @@ pub(super) fn unwired<'f>(
         let mut both = both.into_iter().flatten();
         let has_end = both.clone().any(|one| {
             !one.targets.is_empty()
-                || !one.bindings.is_empty()
+                || !one.bindings().is_empty()
                 || one.wired_by_impl().is_some_and(|wired| wired.value)
         });
         let autowire = both.clone().find_map(Reference::autowire).map_or(default, |said| said.value);
         let multiplicity =
-            both.find_map(|one| one.multiplicity).map_or(Multiplicity::One, |given| given.value);
+            both.find_map(|one| one.multiplicity()).map_or(Multiplicity::One, |given| given.value);
         if has_end || autowire || !multiplicity.is_required() {
             continue;
         }

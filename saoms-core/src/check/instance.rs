@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::names::Names;
 use crate::diagnostic::nearest;
 use crate::expression::{Fault, Problem, Value, has_expression, render};
-use crate::model::{Component, Property, Table};
+use crate::model::{Component, Loop, Property, Table};
 use crate::source::Text;
 use crate::xml::Document;
 
@@ -72,8 +72,9 @@ impl Instance {
         table: Option<(&Table, usize)>,
     ) -> (Component, Vec<(Text, Fault)>) {
         let mut component = template.clone();
-        component.replicas = None;
-        component.condition = None;
+        if let Some(details) = &mut component.details {
+            (details.replicas, details.condition) = (None, None);
+        }
         let mut faults = Vec::new();
         each_text(&mut component, &mut |text| {
             if !has_expression(text) {
@@ -88,11 +89,12 @@ impl Instance {
             // What is called something unknown cannot be looked at.
             component.services.retain(|service| !has_expression(&service.name));
             component.references.retain(|reference| !has_expression(&reference.name));
-            component.loops.retain(|one| {
+            let is_known = |one: &Loop| {
                 let texts =
                     [Some(&one.name), one.class.as_deref(), one.before.as_deref(), one.after.as_deref()];
                 !texts.into_iter().flatten().any(|text| has_expression(text))
-            });
+            };
+            component.details.iter_mut().for_each(|details| details.loops.retain(is_known));
         }
         if let Some((table, row)) = table {
             replace(&mut component, table, row);
@@ -109,8 +111,8 @@ fn replace(component: &mut Component, table: &Table, row: usize) {
         component.properties.push(Property {
             origin: component.origin,
             name: name.clone(),
-            value: Some(value.clone()),
-            text: None,
+            simple: Some(value.clone()),
+            is_attribute: true,
             details: None,
         });
     }
@@ -119,7 +121,7 @@ fn replace(component: &mut Component, table: &Table, row: usize) {
 /// Every text of a component but those that lead to other files.
 fn each_text(component: &mut Component, each: &mut dyn FnMut(&mut Text)) {
     each(&mut component.name);
-    component.path.iter_mut().for_each(|path| each(path));
+    component.details.iter_mut().filter_map(|details| details.path.as_mut()).for_each(&mut *each);
     if let Some(implementation) = &mut component.implementation {
         use crate::model::ImplementationKind::{Java, Rust};
         if let Java { class } | Rust { class, .. } = &mut implementation.kind {
@@ -133,9 +135,10 @@ fn each_text(component: &mut Component, each: &mut dyn FnMut(&mut Text)) {
     for reference in &mut component.references {
         each(&mut reference.name);
         reference.targets.iter_mut().for_each(&mut *each);
-        reference.bindings.iter_mut().filter_map(|binding| binding.uri.as_mut()).for_each(&mut *each);
+        let bindings = reference.contract.iter_mut().flat_map(|contract| &mut contract.bindings);
+        bindings.filter_map(|binding| binding.uri.as_mut()).for_each(&mut *each);
     }
-    for one in &mut component.loops {
+    for one in component.details.iter_mut().flat_map(|details| &mut details.loops) {
         each(&mut one.name);
         [&mut one.class, &mut one.before, &mut one.after].into_iter().flatten().for_each(|text| each(text));
         one.properties.iter_mut().for_each(|property| of_property(property, each));
@@ -144,16 +147,19 @@ fn each_text(component: &mut Component, each: &mut dyn FnMut(&mut Text)) {
 
 fn of_property(property: &mut Property, each: &mut dyn FnMut(&mut Text)) {
     each(&mut property.name);
-    [&mut property.value, &mut property.text].into_iter().flatten().for_each(&mut *each);
+    property.simple.iter_mut().for_each(&mut *each);
     if let Some(details) = &mut property.details {
-        [&mut details.source, &mut details.from_file].into_iter().flatten().for_each(&mut *each);
+        [&mut details.inside, &mut details.source, &mut details.from_file]
+            .into_iter()
+            .flatten()
+            .for_each(&mut *each);
         details.values.iter_mut().for_each(|value| each(&mut value.text));
     }
 }
 
 /// The texts of a property that are not inside complex values.
 fn texts(property: &Property) -> impl Iterator<Item = &Text> {
-    let own = [Some(&property.name), property.value.as_ref(), property.text.as_ref()];
+    let own = [Some(&property.name), property.value(), property.text()];
     let others = [property.source(), property.from_file()];
     let listed = property.values().iter().map(|value| &value.text);
     own.into_iter().chain(others).flatten().chain(listed)
@@ -168,7 +174,7 @@ fn complex_texts<'d>(property: &'d Property, document: &'d Document) -> impl Ite
 
 /// Those of a component and its loops.
 pub(super) fn all_complex_texts(component: &Component, document: &Document) -> Vec<Text> {
-    let of_loops = component.loops.iter().flat_map(|one| &one.properties);
+    let of_loops = component.loops().iter().flat_map(|one| &one.properties);
     let properties = component.properties.iter().chain(of_loops);
     properties.flat_map(|property| complex_texts(property, document)).collect()
 }

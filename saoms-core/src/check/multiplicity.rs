@@ -12,7 +12,7 @@ pub(super) fn keeps_own(fleet: &Fleet<'_>, (member, _): Place<'_>, reference: Op
     if reference.non_overridable().is_some_and(|fixed| fixed.value) {
         return true;
     }
-    let is_many = reference.multiplicity.as_ref().is_some_and(|given| given.value.is_many());
+    let is_many = reference.multiplicity().is_some_and(|given| given.value.is_many());
     !fleet.members[member].composite.version.is_1_1() && is_many
 }
 
@@ -26,6 +26,6 @@ impl Fleet<'_> {
     pub(super) fn given_multiplicity(&self, (member, name): Place<'_>) -> Option<&Located<Multiplicity>> {
         let own = self.members[member].component.reference(name);
         let inner = self.inner(member).and_then(|inner| inner.references().find(|one| one.name == name));
-        [own, inner].into_iter().flatten().find_map(|one| one.multiplicity.as_ref())
+        [own, inner].into_iter().flatten().find_map(|one| one.multiplicity())
     }
 }

@@ -10,12 +10,12 @@ use crate::source::Location;
 
 /// Checks that no two components have one path. Where nobody gives one, names alone see to that.
 pub(super) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    if fleet.members.iter().all(|member| member.component.path.is_none()) {
+    if fleet.members.iter().all(|member| member.component.path().is_none()) {
         return;
     }
     let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());
     for member in fleet.members.iter().filter(|one| !one.is_partial && !one.component.name.is_empty()) {
-        let given = member.component.path.as_deref();
+        let given = member.component.path();
         let place = given.unwrap_or(&member.component.name).location;
         let earlier = first.entry(member.path()).or_insert(place);
         if *earlier != place && given.is_some() {

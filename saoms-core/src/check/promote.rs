@@ -87,7 +87,7 @@ fn may_be_promoted(
     let own = fleet.members[member].component.reference(name);
     let class = fleet.class_of(member, classes);
     let declared = class.and_then(|class| class.references.iter().find(|declared| declared.name == name));
-    let given = own.and_then(|own| own.multiplicity.as_ref()).map(|given| given.value);
+    let given = own.and_then(|own| own.multiplicity()).map(|given| given.value);
     let inner = match declared {
         Some(declared) => given.unwrap_or(of_class(declared)),
         None => fleet.multiplicity_of((member, name)),
@@ -104,7 +104,7 @@ fn may_be_promoted(
                 .help("do not promote it, or leave `nonOverridable` out"),
         );
     }
-    let Some(outer) = &by.multiplicity else { return };
+    let Some(outer) = by.multiplicity() else { return };
     // One that has a target already needs none from outside.
     let has_target = own.is_some_and(|own| !own.targets.is_empty());
     if outer.value.narrows(inner) || has_target && outer.value.is_many() <= inner.is_many() {

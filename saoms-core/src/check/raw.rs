@@ -73,10 +73,10 @@ pub(super) fn raw<'a>(
     report: &mut Report<'_>,
 ) -> Result<Raw<'a>, ()> {
     let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
-    if let Some(value) = &property.value {
+    if let Some(value) = property.value() {
         ways.push((value.location, Raw::one(value)));
     }
-    if let Some(text) = &property.text {
+    if let Some(text) = property.text() {
         ways.push((text.location, Raw::one(text)));
     }
     if let Some(first) = property.values().first() {

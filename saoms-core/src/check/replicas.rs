@@ -113,7 +113,7 @@ impl<'a> Plan<'a> {
 
     /// What the table says about an index.
     pub(super) fn row(&self, index: i64) -> Option<(&'a Table, usize)> {
-        let table = self.component.replicas.as_ref()?.table.as_ref()?;
+        let table = self.component.replicas()?.table.as_ref()?;
         Some((table, *self.rows.get(&index)?))
     }
 

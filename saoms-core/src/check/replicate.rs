@@ -17,8 +17,8 @@ impl<'a> Unfolding<'a> {
     pub(super) fn component(&mut self, component: &'a Component, report: &mut Report<'_>) {
         let Some(open) = self.open.last() else { return };
         let unit = open.unit;
-        let Some(replicas) = &component.replicas else {
-            let condition = component.condition.as_deref();
+        let Some(replicas) = component.replicas() else {
+            let condition = component.condition();
             let holds = condition.map_or(Some(true), |condition| self.holds(condition, unit, report));
             let presence = holds.map_or(Presence::Unknown, Presence::of);
             return self.member(component, component, None, presence, report);
@@ -56,7 +56,7 @@ impl<'a> Unfolding<'a> {
         let (made, faults) = instance.of(plan.component, plan.row(index));
         let Replica { component, instance } = self.replicas.add(Replica { component: made, instance });
         report.about_replica(&component.name, index);
-        let asked = plan.component.condition.as_deref();
+        let asked = plan.component.condition();
         let holds = asked.map(|text| condition(text, &plan.names, &mut |name| instance.value(name), report));
         let is_absent = matches!(holds, Some(Some(false)));
         let is_faulty = !faults.is_empty() || matches!(holds, Some(None));
@@ -102,7 +102,7 @@ impl<'a> Unfolding<'a> {
         let (made, faults) = instance.of(component, None);
         report.about_replica(&made.name, instance.index);
         self.faults(&instance.names, faults, report);
-        let asked = component.condition.as_deref();
+        let asked = component.condition();
         let value = &mut |name: &str| instance.value(name);
         let holds = asked.map(|text| condition(text, &instance.names, value, report));
         report.about_all();
@@ -120,7 +120,7 @@ impl<'a> Unfolding<'a> {
     ) {
         let Some(open) = self.open.last() else { return };
         let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
-        let has_table = component.replicas.as_ref().is_some_and(|replicas| replicas.overrides.is_some());
+        let has_table = component.replicas().is_some_and(|replicas| replicas.overrides.is_some());
         let instance = Instance { index, names: Rc::clone(names), partial: Some(Partial { has_table }) };
         let (made, _) = instance.of(component, None);
         let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });

@@ -195,7 +195,7 @@ pub(super) fn target(
         return Target::Wrong;
     }
     if let Some((binding, at)) = &uri.binding {
-        let declared = component.service(name).map_or(&[][..], |service| &service.bindings);
+        let declared = component.service(name).map_or(&[][..], |service| service.bindings());
         // A binding without a name has that of its service, and a service without bindings has one of SCA.
         let named = |known: &crate::model::Binding| {
             known.name.as_ref().map_or(name, |name| name.as_str()) == *binding

@@ -146,7 +146,7 @@ impl<'f, 'a> Wires<'f, 'a> {
     /// How many targets a reference of a component of a class can have.
     fn multiplicity(&self, (member, name): Place<'_>, declared: &ReferenceDeclaration) -> Multiplicity {
         let reference = self.fleet.members[member].component.reference(name);
-        let given = reference.and_then(|reference| reference.multiplicity.as_ref());
+        let given = reference.and_then(|reference| reference.multiplicity());
         given.map_or(of_class(declared), |given| given.value)
     }
 
@@ -160,9 +160,8 @@ impl<'f, 'a> Wires<'f, 'a> {
                 let described = fleet.component_type(member);
                 let own = described
                     .and_then(|own| own.references.iter().find(|own| own.name == *reference.name.value));
-                let given = reference.multiplicity.as_ref().map(|given| given.value);
-                let declared =
-                    own.map(|own| own.multiplicity.as_ref().map_or(Multiplicity::One, |own| own.value));
+                let given = reference.multiplicity().map(|given| given.value);
+                let declared = own.map(|own| own.multiplicity().map_or(Multiplicity::One, |own| own.value));
                 if let (Some(places), Some(most)) = (level.written.first_two, given.or(declared))
                     && !most.is_many()
                 {
@@ -248,7 +247,7 @@ impl<'f, 'a> Wires<'f, 'a> {
         let mut is_said = wires.clone().next().is_some();
         if let Some(reference) = fleet.members[member].component.reference(name) {
             let by_binding =
-                reference.bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+                reference.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
             for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref()))
             {
                 is_said = true;
@@ -327,7 +326,7 @@ impl<'f, 'a> Wires<'f, 'a> {
     fn is_autowired(&self, (member, _): Place<'_>, reference: Option<&Reference>) -> bool {
         let member = &self.fleet.members[member];
         let own = reference.and_then(|reference| reference.autowire());
-        own.or(member.component.autowire).map_or(member.autowire, |said| said.value)
+        own.or(member.component.autowire()).map_or(member.autowire, |said| said.value)
     }
 
     fn autowired(
@@ -407,7 +406,7 @@ impl<'f, 'a> Wires<'f, 'a> {
             let reference = fleet.members[place.0].component.reference(place.1);
             let is_wired_elsewhere = reference.is_some_and(|reference| {
                 reference.wired_by_impl().is_some_and(|wired| wired.value)
-                    || reference.bindings.iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
+                    || reference.bindings().iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
             });
             if is_wired_elsewhere {
                 return;

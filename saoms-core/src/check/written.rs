@@ -22,9 +22,9 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         composite
             .services
             .iter()
-            .for_each(|service| bindings("service", &service.name, &service.bindings, report));
+            .for_each(|service| bindings("service", &service.name, service.bindings(), report));
         for reference in &composite.references {
-            bindings("reference", &reference.name, &reference.bindings, report);
+            bindings("reference", &reference.name, reference.bindings(), report);
         }
     }
     for member in &fleet.members {
@@ -42,9 +42,9 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 }
 
 fn service(service: &Service, version: Version, report: &mut Report<'_>) {
-    bindings("service", &service.name, &service.bindings, report);
+    bindings("service", &service.name, service.bindings(), report);
     // In SCA 1.0 it is where the service can be reached from outside.
-    let of_sca = service.bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+    let of_sca = service.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
     for binding in of_sca.filter(|_| version.is_1_1()) {
         if let Some(uri) = &binding.uri {
             let message = format!("`binding.sca` of service {} has a `uri`", quoted(&service.name));
@@ -55,7 +55,7 @@ fn service(service: &Service, version: Version, report: &mut Report<'_>) {
 }
 
 fn reference(reference: &Reference, version: Version, report: &mut Report<'_>) {
-    bindings("reference", &reference.name, &reference.bindings, report);
+    bindings("reference", &reference.name, reference.bindings(), report);
     if reference.wired_by_impl().is_some_and(|wired| wired.value)
         && let Some(target) = reference.targets.first()
     {

@@ -132,8 +132,8 @@ impl Reader<'_> {
             name,
             namespace,
             properties: view.composites().flat_map(|one| &one.properties).map(setting).collect(),
-            services: view.services().map(|one| port(&one.name, one.interface.as_deref())).collect(),
-            references: view.references().map(|one| port(&one.name, one.interface.as_deref())).collect(),
+            services: view.services().map(|one| port(&one.name, one.interface())).collect(),
+            references: view.references().map(|one| port(&one.name, one.interface())).collect(),
             components: view.components().map(|(_, one)| self.component(one)).collect(),
             links: Vec::new(),
             topics: topics::of(&view),
@@ -146,7 +146,7 @@ impl Reader<'_> {
 
     fn component(&mut self, one: &model::Component) -> Component {
         let mut component = component(one, self.registry);
-        if one.replicas.is_some() {
+        if one.replicas().is_some() {
             component.replicas = self.census.range(&self.around, one.origin);
         }
         let named = one.implementation.as_ref().and_then(|one| self.contribution.link(one.origin));
@@ -191,9 +191,9 @@ pub(super) fn class_of<'r>(component: &model::Component, registry: &'r Registry)
 fn component(component: &model::Component, registry: &Registry) -> Component {
     let class = class_of(component, registry);
     let mut services: Vec<Port> =
-        component.services.iter().map(|one| port(&one.name, one.interface.as_deref())).collect();
+        component.services.iter().map(|one| port(&one.name, one.interface())).collect();
     let mut references: Vec<Port> =
-        component.references.iter().map(|one| port(&one.name, one.interface.as_deref())).collect();
+        component.references.iter().map(|one| port(&one.name, one.interface())).collect();
     if let Some(class) = class {
         // What the host serves for every component is drawn where it is named.
         let own = class.declaration().services.iter();
@@ -203,7 +203,7 @@ fn component(component: &model::Component, registry: &Registry) -> Component {
     }
     let is_unknown = class.is_none() && component.class().is_some();
     Component {
-        name: match component.replicas {
+        name: match component.replicas() {
             Some(_) => pattern(&component.name),
             None => component.name.to_string(),
         },

@@ -63,7 +63,7 @@ impl Linker<'_> {
         let count = view.components().count();
         for (component, (composite, model)) in view.components().enumerate() {
             let by_default = composite.autowire.is_some_and(|one| one.value);
-            let by_default = model.autowire.map_or(by_default, |one| one.value);
+            let by_default = model.autowire().map_or(by_default, |one| one.value);
             for port in 0..self.diagram.components[component].references.len() {
                 let from = End::Component { component, port };
                 let written = model.references.get(port);
@@ -71,7 +71,7 @@ impl Linker<'_> {
                 if !asked || self.linked.contains(&from) {
                     continue;
                 }
-                let many = written.and_then(|one| one.multiplicity).is_some_and(|one| one.value.is_many());
+                let many = written.and_then(|one| one.multiplicity()).is_some_and(|one| one.value.is_many());
                 let Some(interface) = self.diagram.components[component].references[port].interface.clone()
                 else {
                     continue;

@@ -8,7 +8,8 @@ use super::vocabulary::{
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
-    Component, Implementation, ImplementationKind, Origin, Policy, Replicas, SAOMS_NAMESPACE,
+    Component, ComponentDetails, Implementation, ImplementationKind, Origin, Policy, Replicas,
+    SAOMS_NAMESPACE,
 };
 use crate::source::Text;
 use crate::xml::Element;
@@ -23,24 +24,23 @@ impl Loader<'_> {
         let mut component = Component {
             origin: Origin::of(element),
             name: self.name(element),
-            path: None,
-            condition: None,
-            replicas,
-            autowire: None,
-            constraining_type: None,
             implementation: None,
             properties: Vec::with_capacity(properties),
             services: Vec::with_capacity(services),
             references: Vec::with_capacity(references),
-            loops: Vec::new(),
-            policy: Policy::default(),
+            details: None,
         };
         if !is_plain {
-            component.path = self.path(element);
-            component.condition = self.own(element, "if").map(Box::new);
-            component.autowire = self.boolean(element, "autowire");
-            component.constraining_type = self.optional(element, "constrainingType").map(Box::new);
-            component.policy = self.policy(element);
+            let details = ComponentDetails {
+                path: self.path(element),
+                condition: self.own(element, "if"),
+                replicas,
+                autowire: self.boolean(element, "autowire"),
+                constraining_type: self.optional(element, "constrainingType"),
+                loops: Vec::new(),
+                policy: self.policy(element),
+            };
+            component.details = (details != ComponentDetails::default()).then(|| Box::new(details));
         }
         let mut has_faulty = false;
         for child in element.children() {
@@ -72,7 +72,7 @@ impl Loader<'_> {
                 }
                 (Family::Own, "loop") => {
                     let one = self.looping(child);
-                    component.loops.push(one);
+                    component.details.get_or_insert_default().loops.push(one);
                 }
                 (Family::Own, "severity") => self.severity(child, element),
                 (Family::Foreign, _) => {}
@@ -92,7 +92,7 @@ impl Loader<'_> {
     }
 
     /// What a component says about its replicas.
-    fn replicas(&mut self, element: Element<'_>) -> Option<Box<Replicas>> {
+    fn replicas(&mut self, element: Element<'_>) -> Option<Replicas> {
         let replicas = Replicas {
             count: self.own(element, "count"),
             from: self.own(element, "from"),
@@ -100,11 +100,11 @@ impl Loader<'_> {
             table: None,
         };
         let is_given = replicas.count.is_some() || replicas.from.is_some() || replicas.overrides.is_some();
-        is_given.then(|| Box::new(replicas))
+        is_given.then_some(replicas)
     }
 
     /// The path that a component of an expanded composite keeps.
-    fn path(&mut self, element: Element<'_>) -> Option<Box<Text>> {
+    fn path(&mut self, element: Element<'_>) -> Option<Text> {
         let attribute = element.attribute_in(SAOMS_NAMESPACE, "path")?;
         let path = attribute.trimmed();
         if path.split('/').any(|name| name.is_empty() || name.contains(char::is_whitespace)) {
@@ -114,7 +114,7 @@ impl Loader<'_> {
             self.report(one.help("a path is names with `/` between them, as `hall/Robot001`"));
             return None;
         }
-        Some(Box::new(path))
+        Some(path)
     }
 
     /// `None` for an implementation of SCA, or of SAOMS, that does not exist; it is reported.

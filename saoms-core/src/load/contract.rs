@@ -8,18 +8,10 @@ use super::vocabulary::{
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
-    Binding, Callback, Interface, InterfaceKind, Origin, Policy, Reference, ReferenceDetails, Service,
+    Binding, Callback, Contract, Interface, InterfaceKind, Origin, Reference, ReferenceDetails, Service,
 };
 use crate::source::Text;
 use crate::xml::Element;
-
-/// What services and references hold alike.
-#[derive(Default)]
-struct Contract {
-    interface: Option<Box<Interface>>,
-    bindings: Vec<Binding>,
-    callback: Option<Box<Callback>>,
-}
 
 impl Loader<'_> {
     pub(super) fn service(&mut self, element: Element<'_>, kind: &'static Kind) -> Service {
@@ -27,9 +19,8 @@ impl Loader<'_> {
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_SERVICE);
         let promote = if is_promoting { self.required(element, "promote") } else { None };
-        let Contract { interface, bindings, callback } = self.contract(element, kind);
-        let policy = if is_plain { Policy::default() } else { self.policy(element) };
-        Service { origin: Origin::of(element), name, promote, interface, bindings, callback, policy }
+        let contract = self.contract(element, kind, is_plain);
+        Service { origin: Origin::of(element), name, promote: promote.map(Box::new), contract }
     }
 
     pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> Reference {
@@ -37,24 +28,10 @@ impl Loader<'_> {
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_REFERENCE);
         let promote = if is_promoting { self.promoted(element) } else { Vec::new() };
-        let Contract { interface, bindings, callback } = self.contract(element, kind);
-        let mut reference = Reference {
-            origin: Origin::of(element),
-            name,
-            targets: self.list(element, "target"),
-            multiplicity: None,
-            details: None,
-            interface,
-            bindings,
-            callback,
-            policy: Policy::default(),
-        };
-        if !is_plain {
-            reference.multiplicity = self.multiplicity(element);
-            reference.details = self.reference_details(element, promote);
-            reference.policy = self.policy(element);
-        }
-        reference
+        let targets = self.list(element, "target");
+        let contract = self.contract(element, kind, is_plain);
+        let details = if is_plain { None } else { self.reference_details(element, promote) };
+        Reference { origin: Origin::of(element), name, targets, details, contract }
     }
 
     /// What few references have; `None` for the others.
@@ -65,6 +42,7 @@ impl Loader<'_> {
     ) -> Option<Box<ReferenceDetails>> {
         let details = ReferenceDetails {
             promote,
+            multiplicity: self.multiplicity(element),
             autowire: self.boolean(element, "autowire"),
             wired_by_impl: self.boolean(element, "wiredByImpl"),
             non_overridable: self.boolean(element, "nonOverridable"),
@@ -89,8 +67,17 @@ impl Loader<'_> {
         list
     }
 
-    fn contract(&mut self, element: Element<'_>, kind: &'static Kind) -> Contract {
+    /// What a service or a reference holds, and its intents; one that is plain has none. `None` for one with neither.
+    fn contract(
+        &mut self,
+        element: Element<'_>,
+        kind: &'static Kind,
+        is_plain: bool,
+    ) -> Option<Box<Contract>> {
         self.no_text(element);
+        if is_plain && element.children().next().is_none() {
+            return None;
+        }
         let mut contract = Contract::default();
         for child in element.children() {
             let (family, name) = self.meaning(child);
@@ -98,7 +85,7 @@ impl Loader<'_> {
                 (Family::Nobody, _) => {}
                 (Family::Sca, "callback") => match &contract.callback {
                     Some(first) => self.repeated(child, first.origin.tag, kind, "callback"),
-                    None => contract.callback = Some(Box::new(self.callback(child))),
+                    None => contract.callback = Some(self.callback(child)),
                 },
                 (
                     Family::Sca,
@@ -123,7 +110,10 @@ impl Loader<'_> {
             }
         }
         contract.bindings.shrink_to_fit();
-        contract
+        if !is_plain {
+            contract.policy = self.policy(element);
+        }
+        (contract != Contract::default()).then(|| Box::new(contract))
     }
 
     fn interface(
@@ -163,7 +153,7 @@ impl Loader<'_> {
             (Family::Sca, "interface.partnerLinkType") => InterfaceKind::PartnerLinkType,
             _ => InterfaceKind::Other,
         };
-        contract.interface = Some(Box::new(Interface {
+        contract.interface = Some(Interface {
             origin: Origin::of(element),
             kind,
             interface: if required {
@@ -174,7 +164,7 @@ impl Loader<'_> {
             callback_interface: self.optional(element, names.1),
             remotable: if family != Family::Foreign { self.boolean(element, "remotable") } else { None },
             policy: self.policy(element),
-        }));
+        });
     }
 
     fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {

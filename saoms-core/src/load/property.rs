@@ -6,7 +6,7 @@ use super::vocabulary::{COMPONENT, COMPOSITE, Kind};
 use crate::diagnostic::nearest;
 use crate::model::{Origin, Property, PropertyDetails, PropertyValue};
 use crate::source::{Located, Span, Text};
-use crate::xml::{Element, ElementId};
+use crate::xml::{Attribute, Element, ElementId};
 
 impl Loader<'_> {
     pub(super) fn property(&mut self, element: Element<'_>, kind: &'static Kind) -> Property {
@@ -28,30 +28,34 @@ impl Loader<'_> {
         if !values.is_empty() {
             self.no_text(element);
         }
-        Property {
-            origin: Origin::of(element),
-            name,
-            value: self.attribute(element, "value").map(crate::xml::Attribute::trimmed),
-            text: element.trimmed_text(),
-            details: self.details(element, kind, is_plain, values, content),
-        }
+        let value = self.attribute(element, "value").map(Attribute::trimmed);
+        let is_attribute = value.is_some();
+        let (simple, inside) = match element.trimmed_text() {
+            Some(text) if is_attribute => (value, Some(text)),
+            text => (value.or(text), None),
+        };
+        let is_plain = is_plain && values.is_empty() && content.is_empty() && inside.is_none();
+        let details = if is_plain {
+            None
+        } else {
+            Some(Box::new(self.details(element, kind, inside, values, content)))
+        };
+        Property { origin: Origin::of(element), name, simple, is_attribute, details }
     }
 
-    /// What few properties have; `None` for the others.
+    /// What few properties have.
     fn details(
         &mut self,
         element: Element<'_>,
         kind: &'static Kind,
-        is_plain: bool,
+        inside: Option<Text>,
         values: Vec<PropertyValue>,
         content: Vec<ElementId>,
-    ) -> Option<Box<PropertyDetails>> {
-        if is_plain && values.is_empty() && content.is_empty() {
-            return None;
-        }
+    ) -> PropertyDetails {
         // A property of a composite has none: one is reported, and not read.
         let has_file = kind.attributes.iter().any(|known| known.name == "file");
-        Some(Box::new(PropertyDetails {
+        PropertyDetails {
+            inside,
             r#type: self.optional(element, "type"),
             element: self.optional(element, "element"),
             many: self.boolean(element, "many"),
@@ -63,7 +67,7 @@ impl Loader<'_> {
             document: None,
             values,
             content,
-        }))
+        }
     }
 
     /// Whether an element of SCA in a property is a mistake. Any other is a value of the user's own, since a default

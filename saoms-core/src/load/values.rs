@@ -27,7 +27,11 @@ pub fn read_values(
     // Many components may share a file.
     let mut known: HashMap<PathBuf, FileValue> = HashMap::new();
     let properties = composite.components.iter_mut().flat_map(|component| {
-        let of_loops = component.loops.iter_mut().flat_map(|one| &mut one.properties);
+        let of_loops = component
+            .details
+            .iter_mut()
+            .flat_map(|details| &mut details.loops)
+            .flat_map(|one| &mut one.properties);
         component.properties.iter_mut().chain(of_loops)
     });
     for property in properties {
@@ -54,7 +58,9 @@ pub fn read_values(
             (details.from_file, details.document) = (text, document);
         }
     }
-    for replicas in composite.components.iter_mut().filter_map(|component| component.replicas.as_mut()) {
+    for replicas in
+        composite.components.iter_mut().filter_map(|component| component.details.as_mut()?.replicas.as_mut())
+    {
         let Some(file) = &replicas.overrides else { continue };
         let path = folder.join(file.as_str());
         match read::value(&path, max_size, file.location, sources.open()) {

@@ -13,16 +13,6 @@ pub struct Component {
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
-    /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
-    pub path: Option<Box<Text>>,
-    /// `if`, in the namespace of SAOMS: it is there only where this is true.
-    pub condition: Option<Box<Text>>,
-    /// What is said about its replicas, in the namespace of SAOMS; `None` for a component that stands for itself alone.
-    pub replicas: Option<Box<Replicas>>,
-    /// `autowire`.
-    pub autowire: Option<Located<bool>>,
-    /// `constrainingType` (1.0).
-    pub constraining_type: Option<Box<Text>>,
     /// Its implementation.
     pub implementation: Option<Implementation>,
     /// Its properties in order.
@@ -31,6 +21,23 @@ pub struct Component {
     pub services: Vec<Service>,
     /// Its references in order.
     pub references: Vec<Reference>,
+    /// What few components have; the methods give it.
+    pub details: Option<Box<ComponentDetails>>,
+}
+
+/// What few components have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ComponentDetails {
+    /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
+    pub path: Option<Text>,
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub condition: Option<Text>,
+    /// What is said about its replicas, in the namespace of SAOMS; `None` for a component that stands for itself alone.
+    pub replicas: Option<Replicas>,
+    /// `autowire`.
+    pub autowire: Option<Located<bool>>,
+    /// `constrainingType` (1.0).
+    pub constraining_type: Option<Text>,
     /// What it says about its loops, in order.
     pub loops: Vec<Loop>,
     /// Intents and policy sets.
@@ -38,6 +45,41 @@ pub struct Component {
 }
 
 impl Component {
+    /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
+    pub fn path(&self) -> Option<&Text> {
+        self.details.as_ref()?.path.as_ref()
+    }
+
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub fn condition(&self) -> Option<&Text> {
+        self.details.as_ref()?.condition.as_ref()
+    }
+
+    /// What is said about its replicas, in the namespace of SAOMS; `None` for a component that stands for itself alone.
+    pub fn replicas(&self) -> Option<&Replicas> {
+        self.details.as_ref()?.replicas.as_ref()
+    }
+
+    /// `autowire`.
+    pub fn autowire(&self) -> Option<Located<bool>> {
+        self.details.as_ref()?.autowire
+    }
+
+    /// `constrainingType` (1.0).
+    pub fn constraining_type(&self) -> Option<&Text> {
+        self.details.as_ref()?.constraining_type.as_ref()
+    }
+
+    /// What it says about its loops, in order.
+    pub fn loops(&self) -> &[Loop] {
+        self.details.as_ref().map_or(&[], |details| &details.loops)
+    }
+
+    /// Intents and policy sets.
+    pub fn policy(&self) -> &Policy {
+        self.details.as_ref().map_or(&Policy::NONE, |details| &details.policy)
+    }
+
     /// The first property of this name.
     pub fn property(&self, name: &str) -> Option<&Property> {
         self.properties.iter().find(|property| property.name == name)

@@ -14,15 +14,9 @@ pub struct Service {
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
     /// `promote`, of a composite's service: `component` or `component/service`.
-    pub promote: Option<Text>,
-    /// Its interface.
-    pub interface: Option<Box<Interface>>,
-    /// Its bindings in order.
-    pub bindings: Vec<Binding>,
-    /// Its callback.
-    pub callback: Option<Box<Callback>>,
-    /// Intents and policy sets.
-    pub policy: Policy,
+    pub promote: Option<Box<Text>>,
+    /// What it holds, and its intents; the methods give it.
+    pub contract: Option<Box<Contract>>,
 }
 
 /// A reference: of a component, or of a composite, which promotes those of components.
@@ -34,25 +28,59 @@ pub struct Reference {
     pub name: Text,
     /// `target`: each URI, `component`, `component/service` or `component/service/binding`, with its own place.
     pub targets: Vec<Text>,
-    /// `multiplicity`.
-    pub multiplicity: Option<Located<Multiplicity>>,
     /// What few references have; the methods give it.
     pub details: Option<Box<ReferenceDetails>>,
+    /// What it holds, and its intents; the methods give it.
+    pub contract: Option<Box<Contract>>,
+}
+
+/// What services and references hold alike, and most do not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contract {
     /// Its interface.
-    pub interface: Option<Box<Interface>>,
+    pub interface: Option<Interface>,
     /// Its bindings in order.
     pub bindings: Vec<Binding>,
     /// Its callback.
-    pub callback: Option<Box<Callback>>,
+    pub callback: Option<Callback>,
     /// Intents and policy sets.
     pub policy: Policy,
 }
+
+macro_rules! contract {
+    ($($part:ty),*) => {
+        $(impl $part {
+            /// Its interface.
+            pub fn interface(&self) -> Option<&Interface> {
+                self.contract.as_ref()?.interface.as_ref()
+            }
+
+            /// Its bindings in order.
+            pub fn bindings(&self) -> &[Binding] {
+                self.contract.as_ref().map_or(&[], |contract| &contract.bindings)
+            }
+
+            /// Its callback.
+            pub fn callback(&self) -> Option<&Callback> {
+                self.contract.as_ref()?.callback.as_ref()
+            }
+
+            /// Intents and policy sets.
+            pub fn policy(&self) -> &Policy {
+                self.contract.as_ref().map_or(&Policy::NONE, |contract| &contract.policy)
+            }
+        })*
+    };
+}
+contract!(Service, Reference);
 
 /// What few references have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReferenceDetails {
     /// `promote`, of a composite's reference: each URI with its own place.
     pub promote: Vec<Text>,
+    /// `multiplicity`.
+    pub multiplicity: Option<Located<Multiplicity>>,
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
     /// `wiredByImpl`.
@@ -65,6 +93,11 @@ impl Reference {
     /// `promote`, of a composite's reference: each URI with its own place.
     pub fn promote(&self) -> &[Text] {
         self.details.as_ref().map_or(&[], |details| &details.promote)
+    }
+
+    /// `multiplicity`.
+    pub fn multiplicity(&self) -> Option<&Located<Multiplicity>> {
+        self.details.as_ref()?.multiplicity.as_ref()
     }
 
     /// `autowire`.

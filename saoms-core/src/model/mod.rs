@@ -18,11 +18,11 @@ mod replicas;
 mod severity;
 mod version;
 
-pub use component::{Component, Implementation, ImplementationKind};
+pub use component::{Component, ComponentDetails, Implementation, ImplementationKind};
 pub use component_type::ComponentType;
 pub use composite::{Composite, Include, Wire, WireDetails};
 pub use contract::{
-    Binding, Callback, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
+    Binding, Callback, Contract, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
 };
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
 pub use looping::Loop;

@@ -13,6 +13,9 @@ struct Lists {
 }
 
 impl Policy {
+    /// Neither.
+    pub const NONE: Self = Self(None);
+
     /// Each QName of `requires` and of `policySets` with its place.
     pub fn new(requires: Vec<Text>, policy_sets: Vec<Text>) -> Self {
         let none = requires.is_empty() && policy_sets.is_empty();

@@ -16,10 +16,10 @@ pub struct Property {
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
-    /// `value`: the value as an attribute.
-    pub value: Option<Text>,
-    /// The text inside, trimmed; `None` when there is none but white space.
-    pub text: Option<Text>,
+    /// The value as an attribute; where there is none, the text inside.
+    pub(crate) simple: Option<Text>,
+    /// Whether that is the attribute.
+    pub(crate) is_attribute: bool,
     /// What few properties have; the methods give it.
     pub details: Option<Box<PropertyDetails>>,
 }
@@ -27,6 +27,8 @@ pub struct Property {
 /// What few properties have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PropertyDetails {
+    /// The text inside, where there is an attribute `value`, too.
+    pub inside: Option<Text>,
     /// `type`: the QName of an XML Schema type.
     pub r#type: Option<Text>,
     /// `element`: the QName of a global XML Schema element.
@@ -80,6 +82,16 @@ pub struct PropertyValue {
 parts!(Property, PropertyValue);
 
 impl Property {
+    /// `value`: the value as an attribute.
+    pub fn value(&self) -> Option<&Text> {
+        self.simple.as_ref().filter(|_| self.is_attribute)
+    }
+
+    /// The text inside, trimmed; `None` when there is none but white space.
+    pub fn text(&self) -> Option<&Text> {
+        if self.is_attribute { self.details.as_ref()?.inside.as_ref() } else { self.simple.as_ref() }
+    }
+
     /// `type`: the QName of an XML Schema type.
     pub fn r#type(&self) -> Option<&Text> {
         self.details.as_ref()?.r#type.as_ref()
@@ -138,7 +150,7 @@ impl Property {
     /// Every simple value that is given, in the order attribute, text, `<value>` elements.
     pub fn simple_values(&self) -> impl Iterator<Item = &Text> {
         let listed = self.values().iter().filter(|value| value.content.is_empty()).map(|value| &value.text);
-        self.value.iter().chain(&self.text).chain(listed)
+        self.value().into_iter().chain(self.text()).chain(listed)
     }
 
     /// The one simple value, when exactly one is given and it stands in the property itself.
@@ -150,16 +162,12 @@ impl Property {
 
     /// The one text that it gives directly, where it gives nothing else and leads nowhere: what most properties are.
     pub(crate) fn only_text(&self) -> Option<&Text> {
-        match (&self.details, &self.value, &self.text) {
-            (None, Some(text), None) | (None, None, Some(text)) => Some(text),
-            _ => None,
-        }
+        if self.details.is_none() { self.simple.as_ref() } else { None }
     }
 
     /// Whether the property gives a value in any way: directly, by `source`, or by `file`.
     pub fn has_value(&self) -> bool {
-        self.value.is_some()
-            || self.text.is_some()
+        self.simple.is_some()
             || !self.values().is_empty()
             || !self.content().is_empty()
             || self.source().is_some()

@@ -96,8 +96,8 @@ fn texts(composite: &Composite) -> Vec<&Text> {
     composite.references.iter().for_each(|one| reference(one, &mut all));
     for component in &composite.components {
         all.push(&component.name);
-        all.extend(component.constraining_type.as_deref());
-        policy(&component.policy, &mut all);
+        all.extend(component.constraining_type());
+        policy(component.policy(), &mut all);
         if let Some(implementation) = &component.implementation {
             policy(&implementation.policy, &mut all);
             match &implementation.kind {
@@ -124,9 +124,9 @@ fn policy<'a>(policy: &'a Policy, all: &mut Vec<&'a Text>) {
 
 fn property<'a>(property: &'a Property, all: &mut Vec<&'a Text>) {
     all.push(&property.name);
-    all.extend(property.value.iter());
+    all.extend(property.value());
     // Text between markup is longer in the file than in the model.
-    all.extend(property.text.iter().filter(|_| property.content().is_empty()));
+    all.extend(property.text().into_iter().filter(|_| property.content().is_empty()));
     all.extend(
         [property.r#type(), property.element(), property.source(), property.file()].into_iter().flatten(),
     );
@@ -135,16 +135,16 @@ fn property<'a>(property: &'a Property, all: &mut Vec<&'a Text>) {
 
 fn service<'a>(service: &'a Service, all: &mut Vec<&'a Text>) {
     all.push(&service.name);
-    all.extend(&service.promote);
-    policy(&service.policy, all);
-    contract(service.interface.as_deref(), &service.bindings, service.callback.as_deref(), all);
+    all.extend(service.promote.as_deref());
+    policy(service.policy(), all);
+    contract(service.interface(), service.bindings(), service.callback(), all);
 }
 
 fn reference<'a>(reference: &'a Reference, all: &mut Vec<&'a Text>) {
     all.push(&reference.name);
     all.extend(reference.targets.iter().chain(reference.promote()));
-    policy(&reference.policy, all);
-    contract(reference.interface.as_deref(), &reference.bindings, reference.callback.as_deref(), all);
+    policy(reference.policy(), all);
+    contract(reference.interface(), reference.bindings(), reference.callback(), all);
 }
 
 fn contract<'a>(

@@ -92,7 +92,7 @@ pub(super) fn resolve<'a>(
         // A component that says nothing about its loops has them as those have that were there before it.
         let plain = member
             .component
-            .loops
+            .loops()
             .is_empty()
             .then(|| (index, list::choice(class, checked).map(SmolStr::new)));
         if let Some((with, specs)) = plain.as_ref().and_then(|plain| usual.get(plain)) {
@@ -155,7 +155,7 @@ fn resolved<'a>(
 
 /// What can be said of the loops of a component that has no class.
 fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
-    let loops = &member.component.loops;
+    let loops = member.component.loops();
     for source in loops.iter().flat_map(|one| &one.properties).filter_map(|property| property.source()) {
         let _ = parameters.resolve(member.unit, source, report);
     }
