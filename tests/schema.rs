@@ -85,19 +85,51 @@ fn xsd_1_1_asserts_what_xsd_1_0_cannot_say() {
     assert!(battery.contains("'robot.Robot010'") && battery.contains("xs:double($v) le 100.0"), "{battery}");
 }
 
-/// Two components of one name, of which a condition leaves one, are no mistake: that needs an assertion.
 #[test]
-fn xsd_1_1_refuses_repeated_components_and_unknown_attributes_of_saoms() {
-    let all = written(&["--xsd", "1.1"]);
-    for (text, target) in [(&all[0], "##targetNamespace ##local urn:saoms:1"), (&all[2], "urn:saoms:1")] {
-        let document = Document::parse(text).unwrap();
-        let mut asserted = document.descendants().filter_map(|node| node.attribute("test"));
-        assert!(asserted.any(|test| test.starts_with("count(component[not(@saoms:if)]/@name)")));
-        let open = document.descendants().filter(|node| node.has_tag_name((XSD, "anyAttribute")));
-        let open: Vec<_> = open.filter(|node| node.attribute("processContents") == Some("lax")).collect();
-        assert!(open.len() > 10 && open.iter().all(|node| node.attribute("notNamespace") == Some(target)));
+fn repeated_components_are_refused_unless_a_condition_or_an_index_decides() {
+    for arguments in [&[][..], &["--xsd", "1.1"]] {
+        let all = written(arguments);
+        for text in &all[..3] {
+            let document = Document::parse(text).unwrap();
+            let named = |name: &str| {
+                let found = document.descendants().find(|node| node.attribute("name") == Some(name)).unwrap();
+                let paths = found.children().filter_map(|node| node.attribute("xpath"));
+                paths.collect::<Vec<_>>()
+            };
+            assert_eq!(
+                named("component-of-composite"),
+                ["sca:component", "@name", "@saoms:if", "@saoms:from"]
+            );
+            assert_eq!(named("property-of-component"), ["sca:property", "@name"]);
+        }
+        // Without defaults only those would be compared that have all of them.
+        let own = Document::parse(&all[3]).unwrap();
+        let default = |name: &str| {
+            let mut attributes =
+                own.root_element().children().filter(|node| node.has_tag_name((XSD, "attribute")));
+            attributes.find(|node| node.attribute("name") == Some(name)).unwrap().attribute("default")
+        };
+        assert_eq!([default("if"), default("from"), default("count")], [Some("true"), Some("1"), None]);
     }
-    let plain = written(&[]);
+}
+
+#[test]
+fn unknown_attributes_of_saoms_are_refused() {
+    let (plain, asserting) = (written(&[]), written(&["--xsd", "1.1"]));
+    for (place, target) in [(0, "##targetNamespace ##local urn:saoms:1"), (2, "urn:saoms:1")] {
+        let open = |text: &str, attribute: &str| -> Vec<String> {
+            let document = Document::parse(text).unwrap();
+            let all = document.descendants().filter(|node| node.has_tag_name((XSD, "anyAttribute")));
+            let all = all.filter(|node| node.attribute("processContents") == Some("lax"));
+            all.map(|node| node.attribute(attribute).unwrap().to_owned()).collect()
+        };
+        let known = open(&plain[place], "namespace");
+        assert!(
+            known.len() > 10 && known.iter().all(|one| !one.contains("saoms") && !one.contains("##other"))
+        );
+        assert!(known.iter().all(|one| one.contains("http://www.w3.org/XML/1998/namespace")));
+        assert!(open(&asserting[place], "notNamespace").iter().all(|one| one == target));
+    }
     assert!(plain.iter().all(|text| !text.contains("notNamespace") && !text.contains("xs:assert")));
 }
 

@@ -29,15 +29,6 @@ pub(super) fn of_components(registry: &Registry, version: Version) -> Vec<Node> 
         .collect()
 }
 
-/// The assertion over composites: of components that are there without a condition, each has its own name.
-pub(super) fn of_composites(version: Version) -> Node {
-    let names = "component[not(@saoms:if)]/@name";
-    Node::new("xs:assert")
-        .with("test", format!("count({names}) = count(distinct-values({names}))"))
-        .with("xpathDefaultNamespace", version.namespace())
-        .doc("Two components have two names, unless a condition decides which of them is there.")
-}
-
 /// The tests of a class, each with what it is about.
 fn of_class(declaration: &ClassDeclaration, registry: &Registry) -> Vec<(String, String)> {
     let names: Vec<&str> = [declaration.name.as_str()]

@@ -15,16 +15,21 @@ use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 const DOC: &str =
     "What SAOMS adds to SCA, and the names that its classes and plugins bring. Written by `saoms schema`.";
 
+/// What attributes mean that are not written. With these as defaults every component has what tells it from others of its name, so that `xs:unique` holds for those
+/// without a condition, too. They stand on the declarations: libxml2 does not know defaults of references to these.
+pub(super) const DEFAULTS: [(&str, &str); 2] = [("if", "true"), ("from", "1")];
+
 pub(super) fn schema(words: &Words) -> Node {
     let own = [&LOOP, &SEVERITY, &IMPLEMENTATION_RUST, &INTERFACE_RUST];
     // Several elements can have an attribute.
     let attributes: BTreeMap<&str, &Known> =
         OWN_ATTRIBUTES.iter().map(|(_, known)| (known.name, known)).collect();
     let attributes = attributes.into_values().map(|known| {
-        Node::new("xs:attribute")
-            .with("name", known.name)
-            .with("type", type_of(known.holds, false))
-            .doc(known.doc)
+        let node =
+            Node::new("xs:attribute").with("name", known.name).with("type", type_of(known.holds, false));
+        let default = DEFAULTS.iter().find(|(name, _)| *name == known.name);
+        let node = default.into_iter().fold(node, |node, (_, value)| node.with("default", *value));
+        node.doc(known.doc)
     });
     root(SAOMS_NAMESPACE, DOC)
         .children(own.map(|kind| {

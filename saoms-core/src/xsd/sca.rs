@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::node::Node;
 use super::own::{any, type_of};
-use super::{OWN_FILE, assertions, root};
+use super::{OWN_FILE, root};
 use crate::load::vocabulary::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, Kind,
-    LOOP, SEVERITY, WIRE, children, other, own_attributes,
+    LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, WIRE, children, other, own_attributes,
 };
 use crate::model::{SAOMS_NAMESPACE, Version};
 
@@ -48,14 +48,30 @@ const OTHER_ROOTS: &[(&str, &str)] = &[
     ("definitions", "Policies. What is inside is not described here."),
 ];
 
-/// What can be named once only within an element. Of two components under two conditions (`saoms:if`) one may be left, which only assertions can say.
-const UNIQUE: &[(&Kind, &str)] = &[
-    (&COMPOSITE, "property"),
-    (&COMPOSITE, "service"),
-    (&COMPOSITE, "reference"),
-    (&COMPONENT, "property"),
-    (&COMPONENT, "service"),
-    (&COMPONENT, "reference"),
+/// What can be named once only within an element, and by which attributes: of two components of one name another condition or another first index decides.
+const UNIQUE: &[(&Kind, &str, &[&str])] = &[
+    (&COMPOSITE, "component", &["@name", "@saoms:if", "@saoms:from"]),
+    (&COMPOSITE, "property", &["@name"]),
+    (&COMPOSITE, "service", &["@name"]),
+    (&COMPOSITE, "reference", &["@name"]),
+    (&COMPONENT, "property", &["@name"]),
+    (&COMPONENT, "service", &["@name"]),
+    (&COMPONENT, "reference", &["@name"]),
+];
+
+/// The namespaces of attributes that others put on elements of SCA. XSD 1.0 cannot let all pass but that of SAOMS, in which mistakes are to be found.
+const FOREIGN: &[&str] = &[
+    "http://www.w3.org/XML/1998/namespace",
+    "http://www.w3.org/1999/xlink",
+    "http://www.w3.org/ns/wsdl-instance",
+    "http://www.w3.org/2006/01/wsdl-instance",
+    "http://www.w3.org/2004/08/wsdl-instance",
+    "http://docs.oasis-open.org/wss/2004/01/oasis-200401-wss-wssecurity-utility-1.0.xsd",
+    "http://tuscany.apache.org/xmlns/sca/1.0",
+    "http://tuscany.apache.org/xmlns/sca/1.1",
+    "http://frascati.ow2.org/xmlns/sca/1.1",
+    "http://fabric3.org/xmlns/sca/2.0-alpha",
+    "urn:fabric3.org",
 ];
 
 /// The schema of a version, with these assertions over components.
@@ -71,20 +87,13 @@ pub(super) fn schema(version: Version, assertions: Vec<Node>) -> Node {
             root.with("xmlns:vc", "http://www.w3.org/2007/XMLSchema-versioning").with("vc:minVersion", "1.1");
     }
     let has_assertions = !assertions.is_empty();
-    let others = TYPES.iter().filter(|(_, kind)| {
-        !(std::ptr::eq(*kind, &COMPONENT) || has_assertions && std::ptr::eq(*kind, &COMPOSITE))
-    });
-    let composite = has_assertions.then(|| {
-        let whole = complex(&COMPOSITE, version, has_assertions);
-        whole.child(assertions::of_composites(version))
-    });
+    let others = TYPES.iter().filter(|(_, kind)| !std::ptr::eq(*kind, &COMPONENT));
     root.child(own)
         .child(element("composite", Some(&COMPOSITE)))
         // Loops, which are of another namespace, hold those of a component.
         .child(element("property", Some(&COMPONENT_PROPERTY)))
         .children(everywhere().into_iter().map(|(name, kind)| element(name, kind)))
         .children(roots)
-        .children(composite)
         .children(others.map(|(_, kind)| complex(kind, version, has_assertions)))
         .child(complex(&COMPONENT, version, has_assertions).children(assertions))
         .child(open())
@@ -116,12 +125,12 @@ fn is_same_everywhere(name: &str) -> bool {
 fn element(name: &str, kind: Option<&Kind>) -> Node {
     let type_name = kind.map_or("Open", name_of);
     let doc = kind.map_or_else(|| other(name).unwrap_or_default(), |kind| kind.doc);
-    let unique = UNIQUE.iter().filter(|(of, _)| kind.is_some_and(|kind| std::ptr::eq(*of, kind)));
-    let unique = unique.map(|(_, what)| {
+    let unique = UNIQUE.iter().filter(|(of, ..)| kind.is_some_and(|kind| std::ptr::eq(*of, kind)));
+    let unique = unique.map(|(_, what, by)| {
         Node::new("xs:unique")
             .with("name", format!("{what}-of-{name}"))
             .child(Node::new("xs:selector").with("xpath", format!("sca:{what}")))
-            .child(Node::new("xs:field").with("xpath", "@name"))
+            .children(by.iter().map(|path| Node::new("xs:field").with("xpath", *path)))
     });
     Node::new("xs:element")
         .with("name", name)
@@ -130,7 +139,7 @@ fn element(name: &str, kind: Option<&Kind>) -> Node {
         .children(unique)
 }
 
-/// The type of an element. Other namespaces are open; that of SAOMS has what is known alone, where XSD can say so: with assertions.
+/// The type of an element. Other namespaces are open, as far as XSD can say so; that of SAOMS has what is known alone.
 fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> Node {
     let node = Node::new("xs:complexType").with("name", name_of(kind));
     let is_property =
@@ -143,7 +152,17 @@ fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> Node 
             true => Node::new("xs:element").with("ref", format!("sca:{name}")),
             false => element(name, kind.child(name)),
         });
-        node.child(holding(parts.chain([any("##other")])))
+        let own = own_children(kind).map(|name| Node::new("xs:element").with("ref", format!("saoms:{name}")));
+        let others: Vec<Node> = match has_assertions {
+            true => {
+                let any =
+                    Node::new("xs:any").with("notNamespace", format!("##targetNamespace {SAOMS_NAMESPACE}"));
+                own.chain([any.with("processContents", "lax")]).collect()
+            }
+            // Beside the wildcard, XSD 1.0 would find elements of SAOMS ambiguous.
+            false => vec![any("##other")],
+        };
+        node.child(holding(parts.chain(others)))
     };
     let own = own_attributes(kind)
         .map(|known| Node::new("xs:attribute").with("ref", format!("saoms:{}", known.name)));
@@ -152,10 +171,22 @@ fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> Node 
     let others = match (version.is_1_1(), has_assertions) {
         (true, true) => others.with("notNamespace", format!("##targetNamespace ##local {SAOMS_NAMESPACE}")),
         (false, true) => others.with("notNamespace", SAOMS_NAMESPACE),
-        (true, false) => others.with("namespace", "##other"),
-        (false, false) => others.with("namespace", "##any"),
+        (true, false) => others.with("namespace", FOREIGN.join(" ")),
+        (false, false) => {
+            others.with("namespace", format!("##targetNamespace ##local {}", FOREIGN.join(" ")))
+        }
     };
     node.children(attributes(kind, version)).children(own).child(others.with("processContents", "lax"))
+}
+
+/// The elements of SAOMS that can stand in an element.
+fn own_children(kind: &'static Kind) -> impl Iterator<Item = &'static str> {
+    let holds = move |name: &&str| match *name {
+        name if name == LOOP.name => std::ptr::eq(kind, &COMPONENT),
+        name if name == SEVERITY.name => SEVERITY_PARENTS.contains(&kind.name),
+        name => children(kind).any(|child| child == name),
+    };
+    OWN_ELEMENTS.iter().copied().filter(holds)
 }
 
 /// The declarations of the attributes of an element.
