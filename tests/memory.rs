@@ -3,10 +3,10 @@
 //! What is counted is what is allocated, at its peak, by the thread that does it.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
-#![allow(unsafe_code, reason = "an allocator is unsafe code")]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "robustness/targets/memory.rs"]
+mod memory;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -18,57 +18,10 @@ use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
 use saoms_core::source::Sources;
 
-/// Counts what each thread has allocated.
-struct Counting;
-
-thread_local! {
-    static NOW: Cell<isize> = const { Cell::new(0) };
-    static PEAK: Cell<isize> = const { Cell::new(0) };
-}
-
-fn count(bytes: isize) {
-    // While a thread ends, nothing is counted any more.
-    let _ = NOW.try_with(|now| {
-        now.set(now.get() + bytes);
-        let _ = PEAK.try_with(|peak| peak.set(peak.get().max(now.get())));
-    });
-}
-
-// SAFETY: every call goes on to the system's allocator as it is; counting allocates nothing.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count(layout.size() as isize);
-        // SAFETY: the caller keeps the contract of this very function.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count(-(layout.size() as isize));
-        // SAFETY: as above; the pointer came from the same allocator.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    // Large blocks are moved by the kernel, page by page: old and new are not there at once.
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count(size as isize - layout.size() as isize);
-        // SAFETY: as above.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
+use memory::{peak, within};
 
 thread_local! {
     static REGISTRY: Registry = Registry::linked().unwrap();
-}
-
-/// The most bytes that work takes beyond those that were there before.
-fn peak(work: impl FnOnce()) -> usize {
-    let before = NOW.get();
-    PEAK.set(before);
-    work();
-    usize::try_from(PEAK.get() - before).unwrap()
 }
 
 /// Reads, checks and tells what is wrong, as `saoms check` does; whether it could be run.
@@ -89,9 +42,7 @@ fn checked(bytes: &[u8], assume_classes: bool) -> bool {
 
 #[track_caller]
 fn holds(what: &str, bytes: &[u8]) {
-    let taken = peak(|| _ = checked(bytes, false));
-    let limit = 16_000_000 + 20 * bytes.len();
-    assert!(taken <= limit, "{what}: {taken} bytes for {} of the file, {limit} at most", bytes.len());
+    within(what, bytes.len(), || _ = checked(bytes, false));
 }
 
 const HEAD: &str =

@@ -8,10 +8,14 @@ use saoms_components as _;
 #[allow(dead_code, unused_imports, reason = "the server itself is left out")]
 mod lsp {
     mod complete;
+    mod contracts;
     mod describe;
+    mod diagnostics;
     mod expressions;
     mod file;
     mod hover;
+    mod laws;
+    mod loops;
     mod navigate;
     mod occurrences;
     mod outline;
@@ -22,11 +26,12 @@ mod lsp {
     mod symbols;
     mod syntax;
     pub(crate) mod testing;
+    mod uri;
 }
 
-// The first two bytes say where the question is asked.
+// The last two bytes say where the question is asked.
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let Some(([high, low], text)) = bytes.split_first_chunk() else { return };
+    let Some((text, [high, low])) = bytes.split_last_chunk() else { return };
     let text = String::from_utf8_lossy(text);
     let at = usize::from(u16::from_be_bytes([*high, *low])) % (text.len() + 1);
     lsp::testing::ask_everything(&text, text.floor_char_boundary(at), &[]);

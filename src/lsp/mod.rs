@@ -14,6 +14,8 @@ mod expressions;
 mod file;
 mod fixes;
 mod hover;
+#[cfg(test)]
+mod laws;
 mod loops;
 mod navigate;
 mod occurrences;

@@ -8,6 +8,7 @@ use saoms_core::registry::Registry;
 use super::complete::complete;
 use super::file::File;
 use super::hover::hover;
+use super::laws;
 use super::navigate::{definition, references};
 use super::rename::rename;
 use super::scene::Scene;
@@ -77,6 +78,7 @@ pub(super) fn ask_everything_in(name: &str, text: &str, at: usize, others: &[(&s
     }
     scene.fleets();
     symbols(file);
+    laws::hold(&scene, at);
     let near = file.lines.offset(text, file.lines.position(text, at));
     assert_eq!(file.lines.offset(text, file.lines.position(text, near)), near);
 }

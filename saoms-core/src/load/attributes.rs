@@ -96,9 +96,10 @@ impl Loader<'_> {
         let message = format!("{} has no attribute {}", quoted(element.name()), quoted(name));
         let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message).severity(severity);
         one = match meant {
-            Some(meant) => {
+            Some(meant) if free.contains(&meant) => {
                 one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
             }
+            Some(meant) => one.help(given_already(meant)),
             None if vocabulary::own_names(kind).any(|known| known == name) => one.help(format!(
                 "it is an attribute of SAOMS: write `saoms:{name}`, and `xmlns:saoms=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
             )),
@@ -124,11 +125,17 @@ impl Loader<'_> {
         let prefix = attribute.prefix().unwrap_or_default();
         let names: Vec<String> =
             vocabulary::own_names(kind).map(|known| quoted(&format!("{prefix}:{known}"))).collect();
-        self.report(match nearest(name, vocabulary::own_names(kind)) {
+        let is_free = |known: &&str| element.attribute_in(SAOMS_NAMESPACE, known).is_none();
+        let meant = nearest(name, vocabulary::own_names(kind).filter(is_free));
+        self.report(match meant.or_else(|| nearest(name, vocabulary::own_names(kind))) {
+            Some(meant) if !is_free(&meant) => one.help(given_already(&format!("{prefix}:{meant}"))),
             Some(meant) => {
                 let meant = format!("{prefix}:{meant}");
                 let description = format!("replace {} with {}", quoted(attribute.name()), quoted(&meant));
                 one.suggest(description, location, meant)
+            }
+            None if kind.has(name, self.version) && element.attribute(name).is_some() => {
+                one.help(given_already(name))
             }
             None if kind.has(name, self.version) => one.suggest("remove the prefix", location, name),
             None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
@@ -284,6 +291,11 @@ impl Loader<'_> {
         }
         self.report(one);
     }
+}
+
+/// What to do about an attribute that seems to be meant for one that the element has.
+fn given_already(name: &str) -> String {
+    format!("{} is given already: remove one of the two", quoted(name))
 }
 
 /// A text of a replicated component without its expressions, in which blanks and slashes are nothing odd.

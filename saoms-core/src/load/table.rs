@@ -116,17 +116,20 @@ fn lines(file: FileId, text: &str, diagnostics: &mut Diagnostics) -> Vec<Vec<Tex
 
 /// The value at a place, and where the comma or the end of the line behind it is.
 fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (Text, usize) {
-    let is_end = |c: char| c == ',' || c == '\n';
+    let is_end = |c: char| matches!(c, ',' | '\n' | '\r');
     let end_of = |from: usize| text[from..].find(is_end).map_or(text.len(), |length| from + length);
-    let blank = text[at..].len() - text[at..].trim_start_matches([' ', '\t']).len();
-    let start = at + blank;
-    if !text[start..].starts_with('"') {
-        let end = end_of(at);
-        let value = text[at..end].trim();
-        let start = if value.is_empty() { at } else { start };
-        let span = Span::new(start as u32, (start + value.len()) as u32);
-        return (Text::new(value.into(), span.in_file(file)), end);
+    // What stands there without white space at its ends, and where.
+    let trimmed = |from: usize, end: usize| {
+        let value = text[from..end].trim();
+        let start = if value.is_empty() { from } else { end - text[from..end].trim_start().len() };
+        (value, Span::new(start as u32, (start + value.len()) as u32).in_file(file))
+    };
+    let end = end_of(at);
+    let (value, place) = trimmed(at, end);
+    if !value.starts_with('"') {
+        return (Text::new(value.into(), place), end);
     }
+    let start = place.span.start as usize;
     let mut value = String::new();
     let mut inside = start + 1;
     loop {
@@ -145,9 +148,8 @@ fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (
         inside += 1;
     }
     let end = end_of(inside);
-    let behind = text[inside..end].trim();
+    let (behind, place) = trimmed(inside, end);
     if !behind.is_empty() {
-        let place = Span::new(inside as u32, end as u32).in_file(file);
         let one =
             Diagnostic::new(&codes::OVERRIDES, place, format!("{} behind a closing `\"`", quoted(behind)));
         diagnostics.push(one.help("a `\"` in a value between two of them is written twice"));

@@ -293,6 +293,16 @@ fn tables_say_what_differs() {
           fix: replace `R3` with `R03` [robots.csv:2:1-3 "R03"]
     "#]]
     .assert_eq(&found("name,speed\nR3,1\n"));
+    // Whatever white space is around a value and wherever a line ends, the place is that of the value.
+    expect![[r#"
+        robots.csv:2:4-7 error S3009: property `colour`: `rde` is not allowed: expected `red` or `blue` (in `R01`, index 1)
+          help: the default is `blue`
+          fix: replace `rde` with `red` [robots.csv:2:4-7 "red"]
+        robots.csv:3:9-10 error S2047: `x` behind a closing `"`
+          help: a `"` in a value between two of them is written twice
+        robots.csv:4:2-3 error S2047: there is no replica `x`
+          help: the indices go from 1 to 4
+    "#]].assert_eq(&found("index,colour\r1,\u{a0}rde\u{2003}\r\n2,\"red\" x\r\n\u{3000}x\u{3000},red\r\n"));
     // What the table has already is not meant again; `R05` comes with a larger count, the others never.
     expect![[r#"
         robots.csv:5:1-4 warning S2047: there is no replica `R05`

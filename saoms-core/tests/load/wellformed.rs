@@ -27,6 +27,7 @@ fn piece() -> impl Strategy<Value = &'static str> {
         " xmlns:q='u'",
         " xmlns='d'",
         " xmlns:p=''",
+        " xmlns:q=''",
         " xmlns=''",
         " y = '&lt;'",
         " z='<'",

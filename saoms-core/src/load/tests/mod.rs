@@ -254,6 +254,24 @@ fn unknown_names_come_with_the_nearest() {
     );
 }
 
+/// To follow a suggestion must not give an element one attribute twice.
+#[test]
+fn what_is_given_already_is_not_suggested() {
+    faults_1_1(
+        &format!("<component name='a' nqme='b'>{JAVA}</component>"),
+        "2:21 [nqme] error S1007 `component` has no attribute `nqme`",
+    );
+    let own = "xmlns:s='urn:saoms:1'";
+    faults_1_1(
+        &format!("<component name='a${{index}}' {own} s:count='2' s:coun='3'>{JAVA}</component>"),
+        "2:63 [s:coun] error S1007 `component` has no attribute `s:coun`",
+    );
+    faults_1_1(
+        &format!("<component name='a' {own} s:name='b'>{JAVA}</component>"),
+        "2:43 [s:name] error S1007 `component` has no attribute `s:name`",
+    );
+}
+
 #[test]
 fn a_suggestion_renames_the_end_tag_too() {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());

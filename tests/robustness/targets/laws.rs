@@ -1,0 +1,122 @@
+//! What has to hold for whatever is checked.
+
+use saoms_core::assembly::{Assembly, ComponentSpec};
+use saoms_core::check::{Options, check, count};
+use saoms_core::diagnostic::{Diagnostic, Edit, codes};
+use saoms_core::registry::Registry;
+use saoms_core::source::FileId;
+
+use super::input::{Asked, Checked, Input, kind};
+use super::{draw, parsed, show};
+
+/// Values from outside, for composite properties that a fleet may have.
+const SETTINGS: &[&str] = &["p=2", "site=north"];
+
+/// Checks a fleet as the command does, and draws it.
+///
+/// The same is found when nothing but the diagnostics is asked for, and when the files are formatted. What the fleet comes to is written
+/// out, and comes to the same. What is suggested mends what is wrong.
+pub(crate) fn holds(input: &Input, registry: &Registry) {
+    let known = Asked::default();
+    let fleet = examined(input, &known, registry);
+    assert_eq!(fleet.made.is_none(), fleet.has_errors(), "{}", fleet.told());
+    draw(&fleet.contribution, registry, &fleet.sources);
+    mended(input, &fleet, &known, registry);
+    if let Some(assembly) = &fleet.made {
+        written_out(input, &fleet, assembly, registry);
+    }
+    let options = Options { assume_classes: true, wiring: true, ..Options::default() };
+    let given = Asked { options, settings: SETTINGS };
+    let fleet = examined(input, &given, registry);
+    assert!(fleet.made.is_none() || !fleet.has_errors(), "{}", fleet.told());
+    mended(input, &fleet, &given, registry);
+}
+
+fn examined(input: &Input, asked: &Asked, registry: &Registry) -> Checked<Assembly> {
+    let fleet = input.checked(check, asked, registry);
+    show(&fleet.diagnostics, &fleet.sources);
+
+    let counted = input.checked(count, asked, registry);
+    if !asked.options.wiring {
+        let components = fleet.made.as_ref().map(|assembly| assembly.components.len());
+        assert_eq!(components, counted.made, "{input:#?}");
+        assert!(fleet.diagnostics == counted.diagnostics, "{}{}{input:#?}", fleet.told(), counted.told());
+    }
+
+    let formatted = input.formatted();
+    let of_formatted = formatted.checked(check, asked, registry);
+    let (found, again) = (fleet.kinds(), of_formatted.kinds());
+    assert!(found == again, "{:#?}\n{:#?}\n{formatted:#?}", without(&found, &again), without(&again, &found));
+    fleet
+}
+
+/// Those of some that are not among others.
+fn without<'k>(some: &'k [String], others: &[String]) -> Vec<&'k String> {
+    some.iter().filter(|one| !others.contains(one)).collect()
+}
+
+/// What a fleet comes to is written out, and comes to the same.
+fn written_out(input: &Input, fleet: &Checked<Assembly>, assembly: &Assembly, registry: &Registry) {
+    let text = fleet.expanded(assembly);
+    let alone = Input::Text(text.clone()).checked(check, &Asked::default(), registry);
+    assert!(alone.made.is_some(), "{}{input:#?}{text}", alone.told());
+    let Some(other) = &alone.made else { return };
+    assert_eq!(facts(assembly), facts(other), "{input:#?}{text}");
+    assert_eq!(text, alone.expanded(other), "{input:#?}");
+}
+
+/// An assembly without the declarations of its classes.
+fn facts(assembly: &Assembly) -> Vec<String> {
+    let fact = |one: &ComponentSpec| {
+        let loops = one.loops.iter().map(|one| (&one.name, one.class.name(), &one.values));
+        let loops: Vec<_> = loops.collect();
+        let (class, library) = (one.class.name(), &one.library);
+        format!(
+            "{} {class} {library:?} {:?} {:?} {:?} {loops:?}",
+            one.path, one.values, one.task, one.references
+        )
+    };
+    assembly.components.iter().map(fact).collect()
+}
+
+/// Follows one of the suggestions; which one, the length of the text says. What it is for is there once less.
+fn mended(input: &Input, fleet: &Checked<Assembly>, asked: &Asked, registry: &Registry) {
+    let Input::Text(text) = input else { return };
+    let is_here = |file: FileId| fleet.sources.get(file).path() == "x";
+    let all = fleet.diagnostics.iter().flat_map(|one| one.suggestions.iter().map(move |way| (one, way)));
+    let all: Vec<_> =
+        all.filter(|(_, way)| way.edits.iter().all(|edit| is_here(edit.location.file))).collect();
+    let Some((one, way)) = all.get(text.len() % all.len().max(1)) else { return };
+    let edited = edited(text, &way.edits);
+    let context = || format!("{way:?} for {one:?}\n{text}\nbecame\n{edited}\n");
+    assert!(parsed(text).is_none() || parsed(&edited).is_some(), "{}", context());
+    let after = Input::Text(edited.clone()).checked(check, asked, registry);
+    let number =
+        |fleet: &Checked<Assembly>| fleet.kinds().iter().filter(|kind_| **kind_ == kind(one)).count();
+    if one.code.id.starts_with("S01") || one.code == &codes::NAMESPACE_NEAR {
+        // Of these the first is told: the same may be wrong again further on.
+        let start = |one: &Diagnostic| one.location.span.start as usize;
+        let is_further = |next: &Diagnostic| {
+            start(next) > start(one) || edited.len() - start(next) < text.len() - start(one)
+        };
+        let next = after.diagnostics.iter().find(|next| kind(next) == kind(one));
+        assert!(next.is_none_or(is_further), "{}{}", context(), after.told());
+        return;
+    }
+    assert!(number(&after) < number(fleet), "{}{}", context(), after.told());
+}
+
+/// A text after edits, which must not overlap.
+fn edited(text: &str, edits: &[Edit]) -> String {
+    let mut edits: Vec<&Edit> = edits.iter().collect();
+    edits.sort_by_key(|edit| edit.location.span.start);
+    let (mut out, mut at) = (String::new(), 0);
+    for edit in &edits {
+        let (start, end) = (edit.location.span.start as usize, edit.location.span.end as usize);
+        assert!(at <= start, "{edits:?} overlap");
+        out += &text[at..start];
+        out += &edit.replacement;
+        at = end;
+    }
+    out + &text[at..]
+}
