@@ -265,6 +265,10 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
     for meant in near {
         one = one.suggest(replacing(class, meant), class.location, escaped(meant));
     }
+    if registry.get_loop(class).is_some() {
+        let inside = format!("`<saoms:loop name=\"...\" class=\"{class}\"/>`");
+        return one.help(format!("it is a loop: give it to a component that has loops, by {inside} in it"));
+    }
     let looked = match registry.len() {
         0 => "no class is linked into this program".to_owned(),
         1..=SHOWN => format!(

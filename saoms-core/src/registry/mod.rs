@@ -8,6 +8,7 @@ mod declaration;
 mod error;
 mod extend;
 mod looping;
+mod near;
 mod read;
 mod rule;
 mod team;
@@ -15,7 +16,7 @@ mod team;
 mod tests;
 mod validate;
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -33,10 +34,8 @@ pub use looping::{
 pub use rule::{Rule, RuleProvider};
 pub use team::{Team, TeamFault};
 
-use crate::diagnostic::{codes, nearest_few};
-
-/// How many names are offered in place of an unknown one.
-const OFFERED: usize = 3;
+use crate::diagnostic::codes;
+use near::{near, simple};
 
 /// Classes and loops by name.
 ///
@@ -257,14 +256,16 @@ impl Registry {
         self.classes.is_empty()
     }
 
-    /// Up to three names that are like `name`, the likeliest first: those that end alike behind the last dot, or else those that are spelt alike.
+    /// Up to three names that are like `name`, the likeliest first: those that end alike behind the last dot, or else those that are spelt alike,
+    /// or else those of which it is a part. What a class is called comes before what else it is called.
     pub fn nearest(&self, name: &str) -> Vec<&str> {
-        near(name, self.classes.keys().map(String::as_str))
+        let names = self.classes.values().map(|class| (class.name(), class.is_alias()));
+        near(name, names)
     }
 
     /// Up to three names of loops that are like `name`; see [`Registry::nearest`].
     pub fn nearest_loops(&self, name: &str) -> Vec<&str> {
-        near(name, self.loops.keys().map(String::as_str))
+        near(name, self.loops.keys().map(|name| (name.as_str(), false)))
     }
 
     /// Whether each list of loops that a class has by default can work together, as far as they are known.
@@ -285,23 +286,4 @@ impl Registry {
         }
         Ok(())
     }
-}
-
-fn near<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Vec<&'n str> {
-    let last = simple(name);
-    let same = names.clone().filter(|known| !last.is_empty() && simple(known).eq_ignore_ascii_case(last));
-    let mut all = nearest_few(name, same.clone(), OFFERED);
-    all.extend(same.take(OFFERED));
-    if all.is_empty() {
-        return nearest_few(name, names, OFFERED);
-    }
-    let mut seen = HashSet::new();
-    all.retain(|known| seen.insert(*known));
-    all.truncate(OFFERED);
-    all
-}
-
-/// What follows the last dot: the class without its package.
-fn simple(name: &str) -> &str {
-    name.rsplit('.').next().unwrap_or(name)
 }

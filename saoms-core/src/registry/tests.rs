@@ -91,12 +91,31 @@ fn a_name_stands_for_one_class_and_a_refused_class_leaves_nothing_behind() {
     assert_eq!(names(&registry), ["a.Eye", "a.Eye001"]);
 }
 
+/// An eye of another package.
+#[derive(Class)]
+#[class(name = "a.far.away.Eye", passive, also("a.GlassEye"))]
+struct FarEye;
+
+impl Component for FarEye {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(FarEye)
+    }
+}
+
 #[test]
 fn unknown_names_get_the_nearest_ones() {
     let mut registry = Registry::new();
+    registry.add(Registration::of::<FarEye>()).unwrap();
     registry.add(Registration::of::<Eye>()).unwrap();
     assert_eq!(registry.nearest("a.Eye01"), ["a.Eye001", "a.Eye"]);
-    assert_eq!(registry.nearest("org.example.robots.eye"), ["a.Eye"], "another package");
+    assert_eq!(registry.nearest("A.eye"), ["a.Eye"], "nothing else beside the same but for case");
+    assert_eq!(registry.nearest("Eye"), ["a.Eye", "a.far.away.Eye"], "the shorter first");
+    assert_eq!(registry.nearest("org.example.robots.eye"), ["a.Eye", "a.far.away.Eye"], "another package");
+    assert_eq!(registry.nearest("a.far.awy.Eye"), ["a.far.away.Eye", "a.Eye"], "nearly this package");
+    assert_eq!(registry.nearest("Eye1"), ["a.Eye", "a.far.away.Eye"], "spelt alike without its package");
+    assert_eq!(registry.nearest("Glass"), ["a.GlassEye"], "the start of a name");
     assert!(registry.nearest("Wheel").is_empty());
     assert!(registry.nearest("x.").is_empty());
 }

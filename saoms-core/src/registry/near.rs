@@ -1,0 +1,55 @@
+//! The names of classes that an unknown one was probably meant to be.
+
+use crate::diagnostic::nearest_few;
+
+/// How many names are offered.
+const OFFERED: usize = 3;
+/// A part of a name is looked for in others if it has at least so many letters.
+const TELLING: usize = 4;
+
+/// Up to three of the names, the likeliest first: what is the same but for case; what ends alike behind the last dot; what is spelt alike, with its
+/// package or without; what begins or ends with it. Among equals those come first that say what a class is called rather than what else it
+/// is called, and the shorter ones.
+pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>) -> Vec<&'n str> {
+    let last = simple(name);
+    if last.is_empty() {
+        return Vec::new();
+    }
+    let mut names: Vec<(&str, bool)> = names.collect();
+    names.sort_by_key(|(name, is_alias)| (*is_alias, name.split('.').count(), name.len()));
+    let names = || names.iter().map(|(name, _)| *name);
+    if let Some(same) = names().find(|known| known.eq_ignore_ascii_case(name)) {
+        return vec![same];
+    }
+    let ending = names().filter(|known| simple(known).eq_ignore_ascii_case(last));
+    let first = nearest_few(name, ending.clone(), OFFERED).into_iter();
+    let mut all: Vec<&str> = first.collect();
+    all.extend(ending);
+    if all.is_empty() {
+        all = nearest_few(name, names(), OFFERED);
+    }
+    if all.is_empty() {
+        let spelt = nearest_few(last, names().map(simple), OFFERED).into_iter();
+        all = spelt.flat_map(|spelt| names().filter(move |known| simple(known) == spelt)).collect();
+    }
+    if all.is_empty() && last.len() >= TELLING {
+        let part = last.to_lowercase();
+        let has_part = |known: &&str| {
+            let known = simple(known).to_lowercase();
+            known.starts_with(&part) || known.ends_with(&part)
+        };
+        all = names().filter(has_part).collect();
+    }
+    let mut kept: Vec<&str> = Vec::with_capacity(OFFERED);
+    for one in all {
+        if kept.len() < OFFERED && !kept.contains(&one) {
+            kept.push(one);
+        }
+    }
+    kept
+}
+
+/// What follows the last dot: the class without its package.
+pub(super) fn simple(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
