@@ -4,6 +4,7 @@
 //! values stay in the text: only spans are stored. Comments and processing instructions are checked and not kept.
 
 mod characters;
+mod curly;
 mod eight;
 mod element;
 mod fault;

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::curly;
 use super::fault::{Checked, Input};
 use super::names::{is_qualified_name, name_length, scan};
 use super::reference;
@@ -171,6 +172,9 @@ fn value_end(input: Input<'_>, start: u32, name_end: u32, quote_at: u32, quote: 
         match bytes[at as usize] {
             b'&' => at = reference::check(input, at)?,
             b'<' => {
+                if let Some(curly) = curly::closing(input, quote_at, at) {
+                    return Err(curly.into());
+                }
                 let name = quoted(input.slice(start, name_end));
                 let message = format!("`<` in the value of {name}");
                 return Err(input
@@ -265,6 +269,12 @@ fn misplaced(input: Input<'_>, tag: u32, name_end: u32, at: u32, in_attributes: 
     let end = input.character_end(at);
     let next = input.bytes()[at as usize];
     if in_attributes && name_length(&[next]) == 1 {
+        // What looks like two attributes may be a value that a curly quote does not close.
+        let quote = char::from(input.bytes()[at as usize - 1]);
+        let opened = input.slice(tag, at - 1).rfind(quote).map(|length| tag + length as u32);
+        if let Some(curly) = opened.and_then(|opened| curly::closing(input, opened, at - 1)) {
+            return curly;
+        }
         let message = "white space is missing between two attributes";
         let location = Span::empty(at).in_file(input.file);
         return input.fault(&codes::XML_ATTRIBUTE, at, end, message).suggest("insert a blank", location, " ");
@@ -289,6 +299,9 @@ fn unquoted(input: Input<'_>, start: u32, name_end: u32, at: u32) -> Diagnostic 
     let stop = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n' | '>' | '<' | '"' | '\'' | '/' | '&');
     let length = rest.find(stop).unwrap_or(rest.len()) as u32;
     let message = format!("the value of {name} is not in quotes");
+    if let Some(curly) = curly::around(input, at) {
+        return curly;
+    }
     if length == 0 {
         return input.fault(&codes::XML_ATTRIBUTE, at, input.character_end(at), message);
     }
