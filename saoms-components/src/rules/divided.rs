@@ -27,6 +27,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let parts = Parts::of(&area.map);
+    // A charger where no robot can be is reported: nobody knows which part it is meant to be in.
+    if robots.iter().any(|robot| parts.part(robot.charger).is_none()) {
+        return Vec::new();
+    }
     let chargers: Vec<u32> = robots.iter().filter_map(|robot| parts.part(robot.charger)).collect();
     luggage(fleet).iter().flat_map(|piece| judge(&area, &parts, &chargers, piece)).collect()
 }

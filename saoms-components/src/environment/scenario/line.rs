@@ -15,6 +15,10 @@ const MOST: u64 = 1_000_000;
 /// The least time from one event to the next: a line must not flood the fleet.
 const LEAST: Duration = Duration::from_millis(1);
 
+/// What happens again and again.
+const REPEATED: &str =
+    "as in `from 10s every 5s until 60s luggage (3,1) to (3,10)`, or `from 10s every 5s 100 times landing 2`";
+
 /// The lines of a text with something in them: they end with the text's lines or `;`, comments are left out.
 pub(super) fn split(text: &str) -> impl Iterator<Item = &str> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
@@ -37,6 +41,14 @@ pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFa
     let time = drawn(&mut words, time)?;
     let every = words.take("every").then(|| every(&mut words)).transpose()?;
     if every.is_none() && start == "from" {
+        let is_repeated = line.split_whitespace().any(|word| word == "every");
+        if let Some(next) = words.peek().filter(|next| is_repeated || *next == "until") {
+            let message = match is_repeated {
+                true => format!("found `{next}` before `every`, which comes right behind the first time"),
+                false => "found `until` without `every`: nothing says how often this happens".to_owned(),
+            };
+            return Err(words.fault(next, message).help(REPEATED));
+        }
         let message = "found no `every` after `from` and its time: what happens once happens `at` a time";
         return Err(words.fault(start, message).instead(Some("at")));
     }
@@ -83,8 +95,7 @@ fn until(
 ) -> Result<Duration, TextFault> {
     let until = words.last();
     if !repeats {
-        let help = "say how often: `from 10s every 5s until 60s luggage (3,1) to (3,10)`";
-        return Err(words.fault(until, "found `until` without `every`: this happens once").help(help));
+        return Err(words.fault(until, "found `until` without `every`: this happens once").help(REPEATED));
     }
     let at = words.peek().unwrap_or_default();
     let end = time(words)?;
