@@ -2,27 +2,28 @@
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
+use super::alike::told_together;
 use super::window::{Mark, Window, windows};
 use super::{Diagnostic, Severity};
 use crate::source::{FileId, Sources};
 
 /// All diagnostics as text, one after the other, an empty line between two. Beside the code stands the rule of the SCA
-/// specification, where there is one.
+/// specification, where there is one. Many that are alike are told once, with the lines of the others.
 pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
     let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
     let mut out = String::new();
-    for one in diagnostics {
+    for (one, others) in told_together(diagnostics, sources) {
         if !out.is_empty() {
             out.push('\n');
         }
         // A blank line that only ends the picture would be two with ours.
-        out.push_str(render(one, sources, &renderer).trim_end());
+        out.push_str(render(one, others.as_deref(), sources, &renderer).trim_end());
         out.push('\n');
     }
     out
 }
 
-fn render(one: &Diagnostic, sources: &Sources, renderer: &Renderer) -> String {
+fn render(one: &Diagnostic, others: Option<&str>, sources: &Sources, renderer: &Renderer) -> String {
     let level = match one.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
@@ -39,6 +40,9 @@ fn render(one: &Diagnostic, sources: &Sources, renderer: &Renderer) -> String {
     }
     for help in &one.help {
         group = group.element(Level::HELP.message(help));
+    }
+    if let Some(others) = others {
+        group = group.element(Level::NOTE.message(others));
     }
     renderer.render(&[group])
 }

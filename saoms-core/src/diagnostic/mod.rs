@@ -4,6 +4,7 @@
 //! help, the rule of the SCA specification it stems from, and suggestions that a tool can apply as edits.
 //! [`Diagnostics`] collects them.
 
+mod alike;
 pub mod codes;
 mod collector;
 mod human;
