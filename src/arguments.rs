@@ -40,7 +40,7 @@ const FMT_EXIT_CODES: &str = "\
 Exit codes:
   0  every file is formatted now; with --check, was before
   1  with --check, a file is not formatted (its name is on standard output); else, a file could not be written
-  2  a file cannot be read or is not well-formed XML (the diagnostics say where); it was left as it is";
+  2  a file cannot be read or is not well-formed XML (the diagnostics say where), and was left as it is; or a folder has no composites";
 
 const GRAPH_EXIT_CODES: &str = "\
 Exit codes:
@@ -250,7 +250,7 @@ pub(crate) enum ConsoleStyle {
 
 #[derive(Debug, Args)]
 pub(crate) struct FmtArguments {
-    /// Files to format in place; `-` is from standard input to standard output
+    /// Files to format in place; a folder stands for all composites in it and below, `-` is from standard input to standard output
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
 

@@ -1,11 +1,13 @@
 //! `saoms fmt`: writes composites in one layout.
 
+use std::collections::HashSet;
 use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use saoms_core::diagnostic::{Diagnostics, human};
 use saoms_core::format::format;
+use saoms_core::load::composites_below;
 use saoms_core::source::{FileId, Sources};
 use saoms_core::xml;
 
@@ -16,7 +18,21 @@ use crate::output::{eprint, print, try_print};
 
 pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     let (mut is_wrong, mut has_failed) = (false, false);
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let mut files: Vec<PathBuf> = Vec::with_capacity(arguments.files.len());
     for path in &arguments.files {
+        match path.is_dir() {
+            true => files.extend(composites_below(path, &mut sources, &mut diagnostics)),
+            false => files.push(path.clone()),
+        }
+    }
+    if diagnostics.has_errors() {
+        eprint(&human(&diagnostics.into_sorted(), &sources, io::stderr().is_terminal()));
+        is_wrong = true;
+    }
+    let mut seen = HashSet::with_capacity(files.len());
+    files.retain(|path| seen.insert(path.clone()));
+    for path in &files {
         match one(path, arguments) {
             Outcome::Formatted => {}
             Outcome::Unformatted => {

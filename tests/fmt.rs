@@ -34,6 +34,43 @@ fn folder(files: &[(&str, &str)]) -> TempDir {
 }
 
 #[test]
+fn a_folder_stands_for_all_composites_in_it_and_below() {
+    let folder =
+        folder(&[("b.composite", WRONG_LAYOUT), ("a.composite", WRONG_LAYOUT), ("c.xml", WRONG_LAYOUT)]);
+    let at = |name: &str| folder.path().join(name);
+    for name in ["z/inner", "own", ".hidden", "target", "none"] {
+        fs::create_dir_all(at(name)).unwrap();
+    }
+    for name in [
+        "z/inner/one.composite",
+        "own/sca-contribution.xml",
+        "own/two.composite",
+        ".hidden/x.composite",
+        "target/x.composite",
+    ] {
+        fs::write(at(name), WRONG_LAYOUT).unwrap();
+    }
+    let listed = "./a.composite\n./b.composite\n./own/two.composite\n./z/inner/one.composite\n";
+    assert_eq!(fmt(folder.path(), &["--check", "."], b""), (1, listed.to_owned(), String::new()));
+    let twice = fmt(folder.path(), &["--check", "z", "z/inner/one.composite"], b"");
+    assert_eq!((twice.0, twice.1.as_str()), (1, "z/inner/one.composite\n"), "each file once");
+    let (code, _, told) = fmt(folder.path(), &["none", "z"], b"");
+    assert_eq!(code, 2);
+    assert!(told.starts_with("error[S0002]: a directory without composites\n--> none\n"), "{told}");
+    assert_eq!(
+        fs::read_to_string(at("z/inner/one.composite")).unwrap(),
+        RIGHT_LAYOUT,
+        "the others are formatted all the same"
+    );
+    assert_eq!(fmt(folder.path(), &["."], b""), (0, String::new(), String::new()));
+    assert_eq!(fmt(folder.path(), &["--check", "."], b""), (0, String::new(), String::new()));
+    assert_eq!(fs::read_to_string(at("own/two.composite")).unwrap(), RIGHT_LAYOUT);
+    for passed_over in ["c.xml", ".hidden/x.composite", "target/x.composite", "own/sca-contribution.xml"] {
+        assert_eq!(fs::read_to_string(at(passed_over)).unwrap(), WRONG_LAYOUT, "{passed_over}");
+    }
+}
+
+#[test]
 fn files_are_replaced_whole_with_their_permissions_and_links() {
     let folder = folder(&[("a", WRONG_LAYOUT)]);
     let path = folder.path().join("a");

@@ -55,6 +55,30 @@ pub fn load_folder(
     fleets
 }
 
+/// The composites in a folder and in those below it, other contributions among them, in the order of their paths; hidden folders and what tools made
+/// are passed over. Reported is that there are none, or more files than are looked at.
+pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Vec<PathBuf> {
+    let mut shelf = Shelf::new(sources.open().clone());
+    let (mut all, mut waiting) = (Vec::new(), vec![folder.to_owned()]);
+    while let Some(root) = waiting.pop() {
+        let (files, inner) = shelf.contribution(&root);
+        all.extend(files);
+        waiting.extend(inner);
+    }
+    all.sort_unstable();
+    let (message, help) = match (shelf.is_complete(), all.is_empty()) {
+        (true, false) => return all,
+        (true, true) => ("a directory without composites", "the names of composites end with `.composite`"),
+        (false, _) => {
+            ("a directory with too many files in it and below", "name the directories in it one by one")
+        }
+    };
+    let file = sources.add(folder.display().to_string(), "");
+    let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);
+    diagnostics.push(one.help(help));
+    all
+}
+
 /// The composites of one contribution.
 struct Files {
     /// All of them, sorted.

@@ -36,7 +36,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use component_type::load_component_type;
-pub use folder::{FolderFleet, load_folder};
+pub use folder::{FolderFleet, composites_below, load_folder};
 pub use named::load_named;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 pub use shelf::{composites_near, description_near};
@@ -106,7 +106,8 @@ fn contradicts(fault: &Diagnostic, sources: &Sources, diagnostics: &Diagnostics)
     }
     let end = sources.snippet(fault.location);
     let right = end.strip_prefix("</").and_then(|name| name.strip_suffix('>')).unwrap_or(end).trim_end();
-    diagnostics.iter().filter(|one| one.code == &codes::UNKNOWN_ELEMENT).any(|one| {
+    let is_name = |one: &&Diagnostic| [&codes::UNKNOWN_ELEMENT, &codes::ROOT].contains(&one.code);
+    diagnostics.iter().filter(is_name).any(|one| {
         let mut edits = one.suggestions.iter().flat_map(|suggestion| &suggestion.edits);
         fault.labels.iter().any(|label| label.location == one.location)
             && edits.any(|edit| edit.location == one.location && edit.replacement == right)

@@ -167,6 +167,11 @@ impl Shelf {
         (composites, others)
     }
 
+    /// Whether every file was looked at.
+    pub(super) fn is_complete(&self) -> bool {
+        self.left > 0
+    }
+
     /// Makes a file that was found for one in `folder` one of its contribution.
     pub(super) fn adopt(&mut self, folder: &Path, found: &Path) {
         let root = self.root(folder);
