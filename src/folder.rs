@@ -1,7 +1,7 @@
 //! Folders on the command line: contributions, with the fleets in them.
 
+use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use saoms_core::check::Options;
@@ -135,15 +135,25 @@ pub(crate) fn is_of_user(one: &Diagnostic) -> bool {
 #[derive(Default)]
 struct Merged {
     all: Vec<Diagnostic>,
-    known: HashSet<(String, Span, &'static str, String)>,
+    /// What was said of each place with each code.
+    known: HashMap<(String, Span, &'static str), Told>,
+    fleets: usize,
     /// Settings that fleets do not know: a fault where none of them does.
     unknown: Vec<Diagnostic>,
     is_one: bool,
 }
 
+/// What a fleet says of a place.
+struct Told {
+    fleet: usize,
+    worst: Severity,
+    messages: Vec<String>,
+}
+
 impl Merged {
     /// Adds those of a fleet. One that nobody says runs by itself may lack what those that use it give.
     fn add(&mut self, found: Vec<Diagnostic>, is_deployable: bool, sources: &Sources) {
+        self.fleets += 1;
         for one in found {
             if is_of_user(&one) && !is_deployable && !self.is_one {
                 continue;
@@ -153,7 +163,14 @@ impl Merged {
                 continue;
             }
             let path = sources.get(one.location.file).path().to_owned();
-            if self.known.insert((path, one.location.span, one.code.id, one.message.clone())) {
+            // What a fleet says of a place is not said again of another one in other words, unless it is worse there.
+            let new = Told { fleet: self.fleets, worst: one.severity, messages: Vec::new() };
+            let told = self.known.entry((path, one.location.span, one.code.id)).or_insert(new);
+            let is_wanted = told.fleet == self.fleets || one.severity > told.worst;
+            if is_wanted && !told.messages.contains(&one.message) {
+                told.fleet = self.fleets;
+                told.worst = told.worst.max(one.severity);
+                told.messages.push(one.message.clone());
                 self.all.push(one);
             }
         }

@@ -406,6 +406,27 @@ fn several_blocked_blocks_in_one_text_are_told_how_to_write_them() {
 }
 
 #[test]
+fn what_a_charger_without_a_block_cuts_off_is_not_told() {
+    let world = ("World", "saoms.World", &[("map", "#...\n....")][..], false);
+    let environment =
+        ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (1,0) to (3,0)")][..], false);
+    let robot = ("Robot1", "saoms.Robot", &[("chargeX", "0"), ("chargeY", "0")][..], true);
+    let master = ("Master", "saoms.MasterEnvironment", &[][..], false);
+    assert_eq!(
+        found(&[world, environment, robot, master]),
+        ["error S5002 the charger of robot 1 is at (0,0), on a blocked block"]
+    );
+}
+
+#[test]
+fn a_world_that_is_pasted_again_is_told_once() {
+    let world = ("World", "saoms.World", &[("width", "5")][..], false);
+    let other = ("World", "saoms.World", &[("width", "7")][..], false);
+    let robot = ("Robot1", "saoms.Robot", &[][..], true);
+    assert_eq!(found(&[world, robot, other]), ["error S2002 there are two components `World`"]);
+}
+
+#[test]
 fn luggage_that_is_there_already_is_told() {
     let found =
         with_scenario("...\n...", "at 1s luggage (2,0) to (2,0); at 1s luggage (2,0) to (0,0)..(2,0)");

@@ -127,6 +127,10 @@ fn tell(findings: &[Finding], subject: Subject<'_>, class: &str, report: &mut Re
     for finding in findings {
         let one = diagnostic(&codes::CONSTRUCTION, Severity::Error, finding, subject, &|_| None, report);
         let Some(one) = one else { continue };
+        // What comes of a value that replicas share is not told beside that.
+        if !report.tells_echoes && report.has_told_of_replicas(&codes::NOT_UNIQUE, one.location) {
+            continue;
+        }
         let is_plain = one.help.is_empty() && one.suggestions.is_empty();
         report.push(if is_plain { one.help(help(class)) } else { one });
     }

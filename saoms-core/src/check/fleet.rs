@@ -153,6 +153,13 @@ impl<'a> Fleet<'a> {
         by_name.get(&(scope, name)).copied()
     }
 
+    /// Whether a component has the name of an earlier one, which is reported.
+    pub(super) fn is_repeated(&self, place: usize) -> bool {
+        let Member { scope, component, is_partial, is_absent, .. } = &self.members[place];
+        let is_taken = |first: usize| first != place && !self.members[first].is_partial;
+        !is_partial && !is_absent && self.find(*scope, &component.name).is_some_and(is_taken)
+    }
+
     /// Whether this may be the name of a component that a fault, which is reported, kept from being made.
     pub(super) fn is_missing(&self, scope: usize, name: &str) -> bool {
         self.scopes[scope].missing.iter().any(|pattern| is_like(name, pattern))

@@ -5,13 +5,10 @@ use std::rc::Rc;
 
 use super::names::Names;
 use crate::diagnostic::nearest;
-use crate::expression::{Fault, Problem, Value, has_expression, render};
+use crate::expression::{Fault, INDEX, Problem, Value, has_expression, render};
 use crate::model::{Component, Loop, Property, Table};
 use crate::source::Text;
 use crate::xml::Document;
-
-/// What the replicas of a component are counted by.
-pub(super) const INDEX: &str = "index";
 
 /// One of the replicas.
 pub(super) struct Instance {

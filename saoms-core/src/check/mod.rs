@@ -146,6 +146,7 @@ fn examine<T>(
     let mut severities = Severities::of(contribution, options, registry, diagnostics);
     let report = &mut Report::new(sources, diagnostics);
     report.assumes = options.assume_classes;
+    report.tells_echoes = severities.mentions(&codes::NOT_UNIQUE);
     let replicas = Arena::new();
     let mut fleet = unfold::unfold(contribution, options, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);
@@ -187,7 +188,7 @@ fn examine<T>(
     report.about_all();
     let rules =
         registry.rules().iter().filter(|rule| !options.without_plugin_code || rule.origin().is_none());
-    rules::check(&fleet, &classes, &resolved, (&wiring, has_open_wires), (rules, &severities), report);
+    rules::check(&fleet, &classes, &resolved, (&wiring, has_open_wires), rules, report);
     if options.assume_classes {
         elsewhere(&fleet, report);
     }

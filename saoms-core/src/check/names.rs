@@ -7,7 +7,7 @@ use super::options::Options;
 use super::report::{Report, list};
 use super::value_type;
 use crate::diagnostic::{codes, nearest, quoted};
-use crate::expression::{Problem, Value};
+use crate::expression::{INDEX, Problem, Value};
 use crate::model::{Component, Composite, Contribution, Link, Property};
 use crate::source::{Location, Text};
 
@@ -84,6 +84,18 @@ impl Names {
         let mut known: Vec<&str> = self.all.keys().map(String::as_str).collect();
         known.sort_unstable();
         let problem = Problem::new(format!("the composite has no property {}", quoted(name)));
+        let truth = match name.to_ascii_lowercase().as_str() {
+            "true" | "yes" | "on" => Some("true"),
+            "false" | "no" | "off" => Some("false"),
+            _ => None,
+        };
+        if let Some(truth) = truth {
+            return problem.instead(truth);
+        }
+        if name == INDEX {
+            return problem
+                .help("`index` is what replicas are counted by: give the component a `saoms:count`");
+        }
         match nearest(name, known.iter().copied()) {
             Some(meant) => problem.instead(meant),
             None if known.is_empty() => {

@@ -7,7 +7,7 @@ use super::fleet::{Fleet, Member, Unit};
 use super::instance::Instance;
 use super::options::Options;
 use super::path::{expression, walk};
-use super::raw::{Piece, Raw, raw};
+use super::raw::{Piece, Raw, beside_source, raw};
 use super::report::Report;
 use super::value_type::{self, Match, Typed};
 use super::{Setting, Variable};
@@ -186,6 +186,10 @@ impl<'a> Parameters<'a> {
         if let Some(source) = property.source() {
             let raw = self.resolve(place.unit, source, report)?;
             if !raw.0.is_empty() {
+                let named = expression(source).and_then(|(name, _)| self.units[place.unit].by_name.get(name));
+                if named.is_some_and(|named| named.property.has_value()) {
+                    beside_source(property, source, &place.composite.document, report);
+                }
                 return Ok(Found { raw, source: Some(source.location) });
             }
             // A source without a value leaves what stands in the property itself, as SCA says.
@@ -318,6 +322,8 @@ impl<'a> Parameters<'a> {
                 }
                 let origin = property.origin;
                 let is_open = declared.has_wrong_source || fleet.scopes[unit.scope].is_faulty;
+                // No `source` can name one that is of the wrong form, which is reported.
+                let is_open = is_open || name.contains(char::is_whitespace);
                 if !used.contains(&(origin.file(), origin.element)) && !is_open {
                     let message =
                         format!("the property {} of the composite is used by no component", quoted(name));

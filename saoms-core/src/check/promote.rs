@@ -160,7 +160,7 @@ fn find<'f>(
     classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Option<Place<'f>> {
-    let uri = Uri::of(text, 2, report)?;
+    let uri = Uri::of(text, 2, (unit.scope, fleet), report)?;
     let member = uri.member(text, unit.scope, fleet, Some(side.rule()), report)?;
     let names = match side {
         Side::Service => fleet.service_names(member, classes),

@@ -192,6 +192,12 @@ pub(super) fn check<'a>(
                 if let Some(described) = giver.described {
                     described::value(described, &property.name, &value, report);
                 }
+                // What lacks the index as the name does, which is reported, can be anything.
+                if member.is_partial
+                    && property.simple_value().is_some_and(|text| text.value == member.component.name.value)
+                {
+                    unsure.push(place);
+                }
                 given.push(value);
             }
             Err(()) => {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::instance::Instance;
 use super::report::Report;
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Part, Property, ValueDocument};
 use crate::source::{Located, Location, Text};
 use crate::xml::{Document, Element};
@@ -119,6 +119,26 @@ pub(super) fn raw<'a>(
         return Err(());
     }
     Ok(raw)
+}
+
+/// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's property has no value of its own, it
+/// is what counts until somebody gives one from outside.
+pub(super) fn beside_source(
+    property: &Property,
+    source: &Text,
+    document: &Document,
+    report: &mut Report<'_>,
+) {
+    let texts = [property.value(), property.text(), property.file()];
+    let listed = property.values().first().map(Part::tag);
+    let content = property.content().first().map(|id| document.element(*id).name_location());
+    let mut ways = texts.into_iter().flatten().map(|text| text.location).chain(listed).chain(content);
+    let Some(at) = ways.next() else { return };
+    let message = format!("the property {} is given a value beside its `source`", quoted(&property.name));
+    let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message).severity(Severity::Warning);
+    report.push(
+        one.label(source.location, "this counts").help("this value counts for nothing: keep one of them"),
+    );
 }
 
 /// The values of XML in a file.

@@ -5,13 +5,16 @@ use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::fleet::is_like;
-use super::instance::{INDEX, Instance};
+use super::instance::Instance;
 use super::names::Names;
-use super::report::{Parts, Report};
-use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
-use crate::expression::{self, Expression, Fault, Problem, Value, boolean, integer, parse, pattern, render};
-use crate::model::{Component, Replicas, Table};
+use super::report::{Parts, Report, replacing};
+use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
+use crate::expression::{
+    self, Expression, Fault, INDEX, Problem, Value, boolean, integer, parse, pattern, render,
+};
+use crate::model::{Component, Property, Replicas, Table};
 use crate::source::Text;
+use crate::xml::Document;
 
 /// Replicas of a fleet in all: a slip of the finger must not take all memory.
 pub(super) const MOST_REPLICAS: u64 = 100_000;
@@ -33,17 +36,21 @@ impl<'a> Plan<'a> {
     pub(super) fn of(
         component: &'a Component,
         replicas: &'a Replicas,
+        document: &Document,
         names: &Rc<Names>,
         left: u64,
         report: &mut Report<'_>,
     ) -> Option<Self> {
         let Some(written) = &replicas.count else {
-            let (name, at) = match (&replicas.from, &replicas.overrides) {
-                (Some(from), _) => ("from", from.location),
-                (_, Some(overrides)) => ("overrides", overrides.location),
-                _ => ("count", component.name.location),
+            if is_misspelt(component, document) {
+                return None;
+            }
+            let (what, at) = match (&replicas.from, &replicas.overrides) {
+                (Some(from), _) => ("`from` is about".to_owned(), from.location),
+                (_, Some(overrides)) => ("`overrides` is about".to_owned(), overrides.location),
+                _ => (format!("{} is a name of", quoted(&component.name)), component.name.location),
             };
-            let message = format!("`{name}` is about replicas, and nothing says how many there are");
+            let message = format!("{what} replicas, and nothing says how many there are");
             let one = Diagnostic::new(&codes::REPLICAS, at, message);
             report.push(one.help("add `saoms:count=\"...\"`"));
             return None;
@@ -209,6 +216,12 @@ pub(super) fn first_index(replicas: &Replicas, names: &Names) -> Option<i64> {
     parse(from).and_then(|one| integer(&one, &mut |name| names.value(name))).ok()
 }
 
+/// Whether a component has an attribute that `count` may be meant by, which is reported.
+fn is_misspelt(component: &Component, document: &Document) -> bool {
+    let mut attributes = component.origin.element(document).attributes();
+    attributes.any(|attribute| nearest(attribute.local_name(), ["count"]).is_some())
+}
+
 /// Checks that the name of a replicated component differs from replica to replica.
 fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) -> bool {
     let name = &component.name;
@@ -221,14 +234,29 @@ fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) 
         return true;
     }
     let message = format!("all replicas would be called {}", quoted(name));
-    let meant = format!("{name}${{index}}");
+    let meant = with_index(name);
     let one = Diagnostic::new(&codes::REPLICAS, name.location, message);
-    report.push(one.suggest(
-        format!("replace {} with {}", quoted(name), quoted(&meant)),
-        name.location,
-        meant,
-    ));
+    // What is written in the same way elsewhere, as in an ID, is meant in the same way.
+    let texts = component.properties.iter().flat_map(Property::simple_values);
+    let places = std::iter::once(name).chain(texts.filter(|text| text.value == name.value));
+    let edits = places.map(|text| Edit { location: text.location, replacement: meant.clone() });
+    report.push(one.suggest_edits(replacing(name, &meant), edits.collect()));
     false
+}
+
+/// A text of replicas that lacks their index, with it: in place of what looks like it, or else at the end.
+pub(super) fn with_index(text: &str) -> String {
+    /// How others write it.
+    const WRITTEN: [(&str, &str); 6] = [
+        ("#{index", "${index"),
+        ("$(index)", "${index}"),
+        ("%index%", "${index}"),
+        ("$index", "${index}"),
+        ("{index", "${index"),
+        ("[index]", "${index}"),
+    ];
+    let found = WRITTEN.iter().find(|(written, _)| text.contains(written));
+    found.map_or_else(|| format!("{text}${{index}}"), |(written, meant)| text.replace(written, meant))
 }
 
 /// The number that an attribute comes to. Faults are reported.

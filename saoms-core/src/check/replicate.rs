@@ -16,7 +16,7 @@ impl<'a> Unfolding<'a> {
     /// Makes what stands next in the composite at hand.
     pub(super) fn component(&mut self, component: &'a Component, report: &mut Report<'_>) {
         let Some(open) = self.open.last() else { return };
-        let unit = open.unit;
+        let (unit, document) = (open.unit, &open.composite.document);
         let Some(replicas) = component.replicas() else {
             let condition = component.condition();
             let holds = condition.map_or(Some(true), |condition| self.holds(condition, unit, report));
@@ -24,7 +24,7 @@ impl<'a> Unfolding<'a> {
             return self.member(component, component, None, presence, report);
         };
         let names = self.names(unit);
-        let Some(plan) = Plan::of(component, replicas, &names, self.replicas_left, report) else {
+        let Some(plan) = Plan::of(component, replicas, document, &names, self.replicas_left, report) else {
             return self.unplanned(component, replicas, &names, report);
         };
         let (is_empty, index) = (plan.count == 0, plan.sample());

@@ -5,7 +5,7 @@ use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::ops::Range;
 
 use super::fleet::Member;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Suggestion, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest, quoted};
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
 use crate::xml::Writing;
@@ -23,6 +23,8 @@ pub(super) struct Report<'a> {
     candidates: usize,
     /// Whether what is not known is taken as given.
     pub(super) assumes: bool,
+    /// Whether what comes of a value that components share is told beside that: where sharing is let pass, it counts.
+    pub(super) tells_echoes: bool,
     escalated: HashSet<(&'static str, FileId)>,
     /// What was said where: a composite that implements several components has its faults once.
     said: HashSet<(&'static str, Location, u64)>,
@@ -53,6 +55,7 @@ impl<'a> Report<'a> {
             diagnostics,
             candidates: CANDIDATES,
             assumes: false,
+            tells_echoes: false,
             escalated: HashSet::new(),
             said: HashSet::new(),
             copy: None,
@@ -65,6 +68,16 @@ impl<'a> Report<'a> {
     pub(super) fn has_told(&self, code: &'static Code, at: Location) -> bool {
         self.known_copies.contains_key(&(code.id, at))
             || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
+    }
+
+    /// Whether something of this code was told of several replicas at this place.
+    pub(super) fn has_told_of_replicas(&self, code: &'static Code, at: Location) -> bool {
+        self.known_copies.contains_key(&(code.id, at))
+    }
+
+    /// Takes back what was told of this code at this place, since something else says it better.
+    pub(super) fn withdraw(&mut self, code: &'static Code, at: Location) {
+        self.diagnostics.withdraw(code, at);
     }
 
     /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
@@ -212,6 +225,10 @@ impl<'a> Report<'a> {
         (known_as, candidates): (&str, impl IntoIterator<Item = &'n str> + Clone),
     ) -> Diagnostic {
         let one = Diagnostic::new(code, at, message);
+        // No name that is known is of the wrong form: the right one mends both.
+        if name.contains(char::is_whitespace) {
+            self.withdraw(&codes::ATTRIBUTE_VALUE, at);
+        }
         // It is counted alone.
         if self.copy.is_none() && self.diagnostics.is_full(code, at.file) {
             return one;

@@ -10,7 +10,6 @@ use super::classes::ClassIndex;
 use super::findings::{Subject, diagnostic};
 use super::fleet::Fleet;
 use super::report::Report;
-use super::severities::Severities;
 use super::wires::Wiring;
 use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, Severity, codes};
@@ -28,7 +27,7 @@ pub(super) fn check<'s>(
     classes: &'s [ClassIndex<'_>],
     resolved: &'s [Option<Box<Resolved<'_>>>],
     (wiring, has_open_wires): (&Wiring, bool),
-    (rules, severities): (impl Iterator<Item = &'s Rule>, &Severities),
+    rules: impl Iterator<Item = &'s Rule>,
     report: &mut Report<'_>,
 ) {
     let mut places = Vec::with_capacity(fleet.members.len());
@@ -40,6 +39,8 @@ pub(super) fn check<'s>(
     let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
     for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
         let class = fleet.class_of(place, classes);
+        // Of two components of one name nobody can say which is meant.
+        let resolved = resolved.as_ref().filter(|_| !fleet.is_repeated(place));
         let (true, Some(resolved), Some(class)) = (member.runs(), resolved, class) else {
             places.push(None);
             if member.runs() {
@@ -109,7 +110,7 @@ pub(super) fn check<'s>(
             let Some(one) = diagnostic(rule.code(), severity, finding, own, &named, report) else { continue };
             // What comes of a value that two components share is not told beside that, unless somebody lets that pass.
             let is_echo = report.has_told(&codes::NOT_UNIQUE, one.location);
-            if !is_echo || severities.mentions(&codes::NOT_UNIQUE) {
+            if !is_echo || report.tells_echoes {
                 report.push(one);
             }
         }

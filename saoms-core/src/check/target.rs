@@ -46,8 +46,13 @@ pub(super) struct Uri<'t> {
 }
 
 impl<'t> Uri<'t> {
-    /// Splits a URI of at most `most` parts; another one is reported.
-    pub(super) fn of(text: &'t Text, most: usize, report: &mut Report<'_>) -> Option<Self> {
+    /// Splits a URI of at most `most` parts, whose component is to be in this scope; another one is reported.
+    pub(super) fn of(
+        text: &'t Text,
+        most: usize,
+        (scope, fleet): (usize, &Fleet<'_>),
+        report: &mut Report<'_>,
+    ) -> Option<Self> {
         let mut start = 0;
         let mut parts = text.split('/').map(|part| {
             let at = start..start + part.len();
@@ -65,9 +70,14 @@ impl<'t> Uri<'t> {
                 "`component`, `component/service` or `component/service/binding`"
             };
             let message = format!("{} has the wrong form", quoted(text));
-            report.push(
-                Diagnostic::new(&codes::URI_MALFORMED, text.location, message).help(format!("write {form}")),
-            );
+            let one = Diagnostic::new(&codes::URI_MALFORMED, text.location, message);
+            let named: Vec<&str> = text.split('/').filter(|part| !part.is_empty()).collect();
+            let meant = named.join("/");
+            let is_known = named.first().is_some_and(|name| fleet.find(scope, name).is_some());
+            report.push(match is_known && named.len() <= most {
+                true => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),
+                false => one.help(format!("write {form}")),
+            });
             return None;
         }
         Some(uri)
@@ -98,6 +108,15 @@ impl<'t> Uri<'t> {
             }
             let message = format!("there is no component {}", quoted(self.component));
             let at = report.part(text, 0..self.component.len());
+            if let Some((meant, help)) = misread(text, scope, fleet) {
+                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+                let one = one.suggest(replacing(text, &meant), text.location, escaped(&meant)).help(help);
+                report.push(match rule {
+                    Some(rule) => one.rule(rule),
+                    None => one,
+                });
+                return None;
+            }
             let groups = fleet.group_names(scope);
             let known = ("the components are", fleet.names(scope).chain(groups));
             let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known);
@@ -108,6 +127,23 @@ impl<'t> Uri<'t> {
         }
         found
     }
+}
+
+/// What a URI means that is written as other languages write it, and why: with commas between several, or something else than `/` before the
+/// name of a service.
+fn misread(text: &str, scope: usize, fleet: &Fleet<'_>) -> Option<(String, &'static str)> {
+    const LISTED: [char; 3] = [',', ';', '|'];
+    const BEHIND: [char; 6] = ['#', '.', ':', '\\', '>', '-'];
+    if text.contains(LISTED) {
+        let named: Vec<&str> = text.split(LISTED).filter(|name| !name.is_empty()).collect();
+        let is_known = |name: &&str| fleet.find(scope, parts(name).0).is_some();
+        return named.iter().any(is_known).then(|| (named.join(" "), "several stand between blanks"));
+    }
+    let places = text.char_indices().filter(|(_, character)| BEHIND.contains(character));
+    let mut split = places.map(|(at, _)| (&text[..at], text[at..].trim_start_matches(BEHIND)));
+    let (component, behind) =
+        split.find(|(component, behind)| !behind.is_empty() && fleet.find(scope, component).is_some())?;
+    Some((format!("{component}/{behind}"), "the name of a service stands behind `/`"))
 }
 
 /// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with its place.
@@ -142,7 +178,7 @@ pub(super) fn target(
     if report.assumes && is_address(text) || fleet.scopes[scope].is_faulty && has_expression(text) {
         return Target::Open;
     }
-    let Some(uri) = Uri::of(text, 3, report) else { return Target::Wrong };
+    let Some(uri) = Uri::of(text, 3, (scope, fleet), report) else { return Target::Wrong };
     let is_elsewhere =
         || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
     if scope == 0 && report.assumes && is_elsewhere() {

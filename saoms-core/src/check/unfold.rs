@@ -14,6 +14,7 @@ use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Include, Link, Missing, Naming};
+use crate::source::Location;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
 pub(super) const MOST_MEMBERS: usize = 1_000_000;
@@ -121,6 +122,13 @@ fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut Hash
     }
     known.insert(place, size);
     size
+}
+
+/// A component as it stands in its file.
+fn written<'c>(composite: &'c Composite, component: &Component) -> Option<(Location, &'c str)> {
+    let span = component.origin.element(&composite.document).span();
+    let text = composite.document.text().get(span.start as usize..span.end as usize)?;
+    Some((span.in_file(component.origin.file()), text))
 }
 
 /// A composite whose components are being collected.
@@ -329,7 +337,14 @@ impl<'a> Unfolding<'a> {
         if let Some(by) = by.filter(|_| first.composite.file() != component.origin.file()) {
             one = one.label(by.name.location, "included here");
         }
-        report.push(one.help("give each its own name"));
+        let here = self.open.last().and_then(|open| written(open.composite, component));
+        let there = written(first.composite, first.component);
+        report.push(match here {
+            Some((at, _)) if !first.is_copy && here.map(|here| here.1) == there.map(|there| there.1) => {
+                one.suggest("remove the second: both are the same, word for word", at, "")
+            }
+            _ => one.help("give each its own name"),
+        });
     }
 
     /// Opens the composite that implements a component.

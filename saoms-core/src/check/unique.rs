@@ -10,9 +10,11 @@ use smol_str::SmolStr;
 use super::classes::ClassIndex;
 use super::fleet::Member;
 use super::properties::Checked;
-use super::report::Report;
+use super::replicas::with_index;
+use super::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::hash::Map;
+use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
 
@@ -57,7 +59,7 @@ impl<'a> Unique<'a> {
             let Some(value) = value.and_then(|value| Canonical::of(value, declaration)) else { continue };
             let seen = Seen { component, place, is_declared: word };
             if let Some(word) = word {
-                self.declared(word, value.clone(), seen, declaration, report);
+                self.declared(word, value.clone(), seen, declaration, member, report);
             }
             if slot.is_task_id() {
                 self.task(value, seen, report);
@@ -71,6 +73,7 @@ impl<'a> Unique<'a> {
         value: Canonical,
         seen: Seen<'a>,
         declaration: &PropertyDeclaration,
+        member: &Member<'_>,
         report: &mut Report<'_>,
     ) {
         let entry = match self.seen.entry((word, value)) {
@@ -81,6 +84,10 @@ impl<'a> Unique<'a> {
             }
         };
         let ((_, value), first) = (entry.key(), entry.get());
+        // That there are two components of one name is told.
+        if first.component == seen.component {
+            return;
+        }
         let message = format!(
             "components {} and {} have the same {} {}",
             quoted(first.component),
@@ -90,7 +97,17 @@ impl<'a> Unique<'a> {
         );
         let one = Diagnostic::new(&codes::NOT_UNIQUE, seen.place, message);
         let one = one.help(format!("every {word} needs its own"));
+        let own = member.component.properties.iter().filter_map(Property::only_text);
+        let is_own = own.clone().any(|text| text.location == seen.place);
         report.push(match first.place == seen.place {
+            // Of replicas.
+            true if member.instance.is_some() && is_own => {
+                let meant = match value {
+                    Canonical::Integer(_) => "${index}".to_owned(),
+                    Canonical::Text(text) => with_index(text),
+                };
+                one.suggest(replacing(&value.to_string(), &meant), seen.place, meant)
+            }
             // In a composite that is there several times.
             true => one
                 .help("both have it from here: let each get its own from outside, by a property or an index"),
@@ -108,7 +125,8 @@ impl<'a> Unique<'a> {
             }
         };
         let (value, first) = (entry.key(), entry.get());
-        if seen.is_declared.is_some() && seen.is_declared == first.is_declared {
+        let is_told = seen.is_declared.is_some() && seen.is_declared == first.is_declared;
+        if is_told || first.component == seen.component {
             return;
         }
         let message = format!(

@@ -33,7 +33,7 @@ pub(super) fn wires<'f>(
         for wire in unit.composites.iter().flat_map(|composite| &composite.wires) {
             let (Some(source), Some(to)) = (&wire.source, &wire.target) else { continue };
             if fleet.is_absent_wire(place, wire) {
-                let _ = (Uri::of(source, 2, report), Uri::of(to, 3, report));
+                let _ = (Uri::of(source, 2, (scope, fleet), report), Uri::of(to, 3, (scope, fleet), report));
                 continue;
             }
             let is_replacing = wire.replace().is_some_and(|replace| replace.value);
@@ -101,7 +101,7 @@ fn source_of<'f>(
     classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Option<(usize, &'f str)> {
-    let uri = Uri::of(source, 2, report)?;
+    let uri = Uri::of(source, 2, (scope, fleet), report)?;
     let member = uri.member(source, scope, fleet, None, report)?;
     let named = parts(written).1.unwrap_or_default();
     let Some(names) = fleet.reference_names(member, classes) else {

@@ -427,6 +427,13 @@ impl<'f, 'a> Wires<'f, 'a> {
         let message =
             format!("reference {} of component {} leads to no service", quoted(name), quoted(component));
         let is_1_1 = fleet.members[member].composite.version.is_1_1();
+        // One that is there and empty is told already.
+        if let Some(empty) = reference.and_then(|one| {
+            let element = one.origin.element(&fleet.members[member].composite.document);
+            element.attribute("target").filter(|_| one.targets.is_empty())
+        }) {
+            report.withdraw(&codes::ATTRIBUTE_VALUE, empty.location());
+        }
         let help = format!(
             "give it a target with the interface {}: `<reference name=\"{name}\" target=\"...\"/>`",
             quoted(interface)

@@ -126,6 +126,26 @@ impl Diagnostics {
         }
     }
 
+    /// Takes back those of a code at a place, where another one says it better.
+    pub(crate) fn withdraw(&mut self, code: &'static Code, location: Location) {
+        let before = self.items.len();
+        let mut severities = Vec::new();
+        self.items.retain(|one| {
+            let is_meant = one.code == code && one.location == location;
+            severities.extend(is_meant.then_some(one.severity));
+            !is_meant
+        });
+        let number = (before - self.items.len()) as u32;
+        severities.into_iter().for_each(|severity| self.recount(severity, 1, usize::saturating_sub));
+        if let Some(count) = self.counts.get_mut(&(location.file, code.id)) {
+            count.number -= number;
+            count.kept -= number;
+        }
+        if let Some(kept) = self.kept.get_mut(&location.file) {
+            *kept -= number;
+        }
+    }
+
     /// How many were kept.
     pub(crate) fn len(&self) -> usize {
         self.items.len()

@@ -31,6 +31,9 @@ pub use token::{is_name, words};
 
 use crate::diagnostic::quoted;
 
+/// What the replicas of a component are counted by.
+pub const INDEX: &str = "index";
+
 /// What an expression comes to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {

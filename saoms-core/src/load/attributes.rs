@@ -208,9 +208,7 @@ impl Loader<'_> {
         let Some(name) = self.required(element, "name") else {
             return Located::new("".into(), element.name_location());
         };
-        let plain =
-            if self.is_replicated { without_expressions(&name) } else { Cow::Borrowed(name.as_str()) };
-        if let Some(bad) = plain.chars().find(|c| c.is_whitespace() || *c == '/') {
+        if let Some(bad) = without_expressions(&name).chars().find(|c| c.is_whitespace() || *c == '/') {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
             let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));
             let help = "names are used in targets as `component/service`, and in lists between blanks";

@@ -7,6 +7,7 @@ use super::vocabulary::{
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
     Component, ComponentDetails, Implementation, ImplementationKind, Origin, Policy, Replicas,
     SAOMS_NAMESPACE,
@@ -18,19 +19,22 @@ impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> Component {
         let is_plain = self.is_plain(element, &COMPONENT, &["name"]);
         self.no_text(element);
+        let name = self.name(element);
         let replicas = if is_plain { None } else { self.replicas(element) };
+        // A name that uses the index is one of replicas, also where nothing says how many there are.
+        let replicas = replicas.or_else(|| has_index(&name).then(Replicas::default));
         self.is_replicated = replicas.is_some();
         let [properties, services, references, ..] = self.counted(element);
         let mut component = Component {
             origin: Origin::of(element),
-            name: self.name(element),
+            name,
             implementation: None,
             properties: Vec::with_capacity(properties),
             services: Vec::with_capacity(services),
             references: Vec::with_capacity(references),
             details: None,
         };
-        if !is_plain {
+        if !is_plain || replicas.is_some() {
             let details = ComponentDetails {
                 path: self.path(element),
                 condition: self.own(element, "if"),
@@ -178,4 +182,9 @@ impl Loader<'_> {
         let one = Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message);
         self.report(one.severity(severity).help(help));
     }
+}
+
+/// Whether a name has the index of replicas in it.
+fn has_index(name: &str) -> bool {
+    has_expression(name) && expression::names(name).iter().any(|name| name == INDEX)
 }

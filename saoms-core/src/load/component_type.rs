@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Loader;
-use super::children::Family;
+use super::children::{Family, meant_name};
 use super::root::of_another_kind;
-use super::vocabulary::{COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE_PROPERTY};
+use super::vocabulary::{self, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPONENT_TYPE, COMPOSITE_PROPERTY};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Component, ComponentType, Composite, ImplementationKind, Origin, Version};
 use crate::source::{FileId, Sources};
@@ -60,12 +60,17 @@ pub fn load_component_type(
         references: Vec::new(),
         properties: Vec::new(),
     };
+    loader.check_attributes(root, &COMPONENT_TYPE);
+    loader.no_text(root);
     for child in root.children() {
-        match (loader.family(child), child.local_name()) {
+        let family = loader.family(child);
+        match (family, meant_name(child)) {
             (Family::Sca, "service") => made.services.push(loader.service(child, &COMPONENT_SERVICE)),
             (Family::Sca, "reference") => made.references.push(loader.reference(child, &COMPONENT_REFERENCE)),
             (Family::Sca, "property") => made.properties.push(loader.property(child, &COMPOSITE_PROPERTY)),
             // What else a component type can say is for the containers of other languages.
+            (Family::Sca, name) if vocabulary::children(&COMPONENT_TYPE).any(|known| known == name) => {}
+            (Family::Sca | Family::Own, _) => loader.unexpected(child, &COMPONENT_TYPE, family),
             _ => {}
         }
     }

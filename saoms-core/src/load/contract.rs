@@ -29,6 +29,15 @@ impl Loader<'_> {
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_REFERENCE);
         let promote = if is_promoting { self.promoted(element) } else { Vec::new() };
         let targets = self.list(element, "target");
+        if targets.is_empty()
+            && let Some(attribute) = self.attribute(element, "target")
+        {
+            let one =
+                Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), "`target` names nothing");
+            let one = one.severity(Severity::Warning).help("name a component, or leave `target` out");
+            // The schema lets the list be empty.
+            self.report(Diagnostic { rule: None, ..one });
+        }
         let contract = self.contract(element, kind, is_plain);
         let details = if is_plain { None } else { self.reference_details(element, promote) };
         Reference { origin: Origin::of(element), name, targets, details, contract }

@@ -179,7 +179,12 @@ impl Loader<'_> {
     /// The parts of `binding.jms`, or of its `response`.
     fn jms_children(&mut self, element: Element<'_>) {
         let namespace = element.namespace();
-        for child in element.children().filter(|child| child.namespace() == namespace) {
+        for child in element.children() {
+            if child.namespace() != namespace {
+                // One of no namespace, or of another version of SCA, is reported; others are extensions.
+                self.family(child);
+                continue;
+            }
             let name = child.local_name();
             let is_known = |known: &&str| *known == name || known.ends_with('.') && name.starts_with(known);
             if !JMS_CHILDREN.iter().any(is_known) {

@@ -7,14 +7,16 @@ use crate::source::{Location, Span};
 use crate::xml::Element;
 
 impl Loader<'_> {
-    /// Whether the root is a composite; finds out of which version of SCA.
+    /// Whether the root is a composite, or written as nearly one; finds out of which version of SCA.
     pub(super) fn root(&mut self, root: Element<'_>) -> bool {
         let namespace = root.namespace();
         namespace.clone_into(&mut self.namespace);
         let version = Version::from_namespace(namespace);
         if root.local_name() != "composite" {
             self.report(wrong_root(root, version));
-            return false;
+            if meant_root(root).is_none() {
+                return false;
+            }
         }
         // Behind a wrong namespace the rest is read as if it were the right one, so that other faults are found too.
         self.version = version.or_else(|| meant(namespace)).unwrap_or(Version::Osoa10);
@@ -28,11 +30,9 @@ impl Loader<'_> {
 fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
     let message = format!("the root element is {} and has to be `composite`", quoted(root.name()));
     let location = root.name_location();
-    let one =
-        Diagnostic::new(&codes::ROOT, location, message).help(format!("of the namespace {}", namespaces()));
+    let mut one = Diagnostic::new(&codes::ROOT, location, message);
     let local = root.local_name();
-    let meant = nearest(local, ["composite"]).filter(|_| version.is_some() || root.namespace().is_empty());
-    if let Some(meant) = meant {
+    if let Some(meant) = meant_root(root) {
         let replacement =
             root.prefix().map_or_else(|| meant.to_owned(), |prefix| format!("{prefix}:{meant}"));
         let file = location.file;
@@ -42,6 +42,9 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
             .collect();
         return one.suggest_edits(format!("replace {} with {}", quoted(local), quoted(meant)), edits);
     }
+    if version.is_none() {
+        one = one.help(format!("of the namespace {}", namespaces()));
+    }
     let hint = match (version.is_some(), local) {
         (true, "componentType") => "this describes an implementation; name the composite that uses it",
         (true, "contribution") => "this describes a contribution; name a composite in it",
@@ -50,6 +53,12 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
         _ => return one,
     };
     one.help(hint)
+}
+
+/// The name that a root of SCA, or of no namespace, has by a slip of the pen.
+fn meant_root(root: Element<'_>) -> Option<&'static str> {
+    let is_of_sca = Version::from_namespace(root.namespace()).is_some() || root.namespace().is_empty();
+    nearest(root.local_name(), ["composite"]).filter(|_| is_of_sca)
 }
 
 fn wrong_namespace(root: Element<'_>) -> Diagnostic {

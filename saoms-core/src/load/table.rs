@@ -12,7 +12,12 @@ const KEYS: [&str; 2] = ["index", "name"];
 /// Reads a table. What is wrong with it is reported at its line and column. `None` where it has no columns; otherwise all that can be understood,
 /// so that what is wrong with names and values is found together with a line that is too long.
 pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
-    let lines = lines(file, sources.get(file).text(), diagnostics);
+    let text = sources.get(file).text();
+    if let Some(fault) = separated(file, text) {
+        diagnostics.push(fault);
+        return None;
+    }
+    let lines = lines(file, text, diagnostics);
     let mut lines = lines.into_iter();
     let Some(mut head) = lines.next().map(Vec::into_iter) else {
         let one = Diagnostic::new(&codes::OVERRIDES, Span::empty(0).in_file(file), "the table is empty");
@@ -81,6 +86,20 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         rows.push(Row { key: of, values });
     }
     Some(Table { file, key, properties, rows })
+}
+
+/// What is wrong with a table whose first line has another separator than commas, as some spreadsheets write them.
+fn separated(file: FileId, text: &str) -> Option<Diagnostic> {
+    let start = text.len() - text.trim_start_matches('\u{feff}').trim_start().len();
+    let head = text[start..].lines().next()?;
+    let (at, separator) = head.match_indices([';', '\t', '|']).next().filter(|_| !head.contains(','))?;
+    let first = head[..at].trim().trim_matches('"');
+    nearest(first, KEYS)?;
+    let shown = if separator == "\t" { "tabs".to_owned() } else { quoted(separator) };
+    let place = Span::new((start + at) as u32, (start + at + separator.len()) as u32).in_file(file);
+    let message = format!("the values of this table stand between {shown}, and have to stand between commas");
+    let one = Diagnostic::new(&codes::OVERRIDES, place, message);
+    Some(one.help("save it as comma-separated values; a value that holds a comma stands between two `\"`"))
 }
 
 /// An empty value is none.

@@ -3,9 +3,9 @@
 use crate::source::{FileId, Text};
 
 /// What a component says about its replicas.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Replicas {
-    /// `count`: an expression; how many there are. `None` when only the others are given.
+    /// `count`: an expression; how many there are. `None` when only the others are given, or a name that uses the index.
     pub count: Option<Text>,
     /// `from`: an expression; the index of the first.
     pub from: Option<Text>,

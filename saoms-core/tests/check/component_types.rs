@@ -114,6 +114,27 @@ fn a_script_has_what_its_file_says_and_nothing_else() {
     .assert_eq(&script(&wrong));
 }
 
+#[test]
+fn what_a_file_cannot_say_is_told() {
+    let described = "<servise name='tick'/><property name='speed' defualt='5'/>\n<component name='x'/>text<service xmlns='' name='a'/>
+<o:service xmlns:o='http://www.osoa.org/xmlns/sca/1.0' name='b'/><x:more xmlns:x='urn:x'/><implementation.java class='a.B'/>";
+    let inside = "<component name='S'><t:implementation.script script='run.py'/></component>";
+    expect![[r#"
+        run.componentType:2:2-9 error S1004: SCA 1.1 has no element `servise`
+          fix: replace `servise` with `service` [run.componentType:2:2-9 "service"]
+        run.componentType:2:46-53 error S1007: `property` has no attribute `defualt`
+          help: `property` has the attributes `name`, `value`, `type`, `element`, `many`, `mustSupply`
+        run.componentType:3:2-11 error S1005: `component` cannot stand in `componentType`
+          help: `componentType` can hold `implementation.*`, `service`, `reference`, `property`, `requires`, `policySetAttachment`, `documentation`, `extensions`
+        run.componentType:3:22-26 error S1012: text in `componentType`, which holds no text
+        run.componentType:3:27-34 error S1004: `service` is in no namespace
+          help: elements of SCA are in the namespace of the composite, extensions in one of their own
+        run.componentType:4:2-11 error S1003: `o:service` is of SCA 1.0, and the componentType is of SCA 1.1
+          run.componentType:1:2-15 the componentType
+          help: a composite and all of SCA inside it are of one namespace
+    "#]].assert_eq(&found(inside, &[("run.componentType", described)], true));
+}
+
 /// Its file is added to what it says itself, which nobody here can see.
 #[test]
 fn a_class_may_have_more_than_its_file_says() {

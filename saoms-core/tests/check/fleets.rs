@@ -200,7 +200,7 @@ fn what_is_said_of_many_replicas_is_told_once() {
           help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
         3:21-22 error S3013: components `R01` and `R02` have the same `ID` `R` (index 2, and in 10 more)
           help: every robot needs its own
-          help: both have it from here: let each get its own from outside, by a property or an index
+          fix: replace `R` with `R${index}` [3:21-22 "R${index}"]
         3:57-70 error S3008: property `number`: `100` is out of range: expected a whole number from 1 to 99 (in `R10`, index 10, and in 2 more)
           help: `number`: The number of the robot
         3:97-101 error S3004: class `example.Robot` has no property `sped` (in `R01`, index 1, and in 11 more)
@@ -377,7 +377,7 @@ fn conditions_take_away_what_is_checked_all_the_same() {
         6:35-36 error S2045: there is no `=`
           fix: replace `=` with `==` [6:35-36 "=="]
         7:31-36 error S2045: the composite has no property `index`
-          help: its properties are `site`
+          help: `index` is what replicas are counted by: give the component a `saoms:count`
         8:21-32 error S1011: the attribute `saoms:if` is empty
     "#]].assert_eq(&of(
         r#"<property name="site">north</property>

@@ -20,6 +20,7 @@ mod properties;
 mod reference;
 mod rules;
 mod severities;
+mod slips;
 mod support;
 mod tasks;
 mod together;

@@ -11,10 +11,10 @@ fn names_are_unique_across_files() {
     expect![[r#"
         3:18-19 error S2002: there are two components `G`
           2:18-19 the first
-          help: give each its own name
+          fix: remove the second: both are the same, word for word [3:1-75 ""]
         4:18-19 error S2002: there are two components `G`
           2:18-19 the first
-          help: give each its own name
+          fix: remove the second: both are the same, word for word [4:1-75 ""]
     "#]]
     .assert_eq(&faults(&format!("{GPS}\n{GPS}\n{GPS}")));
     let one = fleet_1_0(GPS);
@@ -22,7 +22,7 @@ fn names_are_unique_across_files() {
     expect![[r#"
         more.composite:2:18-19 error S2002: there are two components `G`
           2:18-19 the first
-          help: give each its own name
+          fix: remove the second: both are the same, word for word [more.composite:2:1-75 ""]
     "#]]
     .assert_eq(&faults_of(&[&one, &other], &[]));
     expect![[r#"

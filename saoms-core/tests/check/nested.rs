@@ -91,7 +91,7 @@ fn includes_that_cannot_be_say_so() {
           help: a composite cannot be a part of itself: remove one of these
         7:18-19 error S2002: there are two components `A`
           more:2:18-19 the first
-          help: give each its own name
+          fix: remove the second: both are the same, word for word [7:1-75 ""]
         more:2:90-95 error S2032: composites hold each other in a circle: `fleet` -> `more` -> `fleet`
           2:16-22 through this
           help: a composite cannot be a part of itself: remove one of these

@@ -77,7 +77,7 @@ fn targets_lead_to_services() {
           help: write `component`, `component/service` or `component/service/binding`
         R//b
         3:34-38 error S2010: `R//b` has the wrong form
-          help: write `component`, `component/service` or `component/service/binding`
+          fix: replace `R//b` with `R/b` [3:34-38 "R/b"]
         R/move/b/c
         3:34-44 error S2010: `R/move/b/c` has the wrong form
           help: write `component`, `component/service` or `component/service/binding`
@@ -305,7 +305,7 @@ fn both_ends_of_a_wire_can_be_wrong() {
         3:30-31 error S2011: there is no component `I`
           help: the components are `G`
         3:57-65 error S2010: `G/other/` has the wrong form
-          help: write `component` or `component/name`
+          fix: replace `G/other/` with `G/other` [3:57-65 "G/other"]
         3:77-82 error S2012: component `G` has no service `posit`
           help: its services are `position`
     "#]]

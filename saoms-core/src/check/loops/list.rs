@@ -63,7 +63,7 @@ pub(super) fn plan<'a>(
             let found = registry.get_loop(class);
             if found.is_none() {
                 is_sound = false;
-                if !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) {
+                if !report.assumes && !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) {
                     report.push(unknown_class(class, registry));
                 }
             }
@@ -179,11 +179,13 @@ fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
     const SHOWN: usize = 6;
     let message = format!("there is no loop class {}", quoted(class));
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
+    if registry.get(class).is_some() {
+        let component = format!("`<implementation.rust class=\"{class}\"/>`");
+        return one
+            .help(format!("it is a class of components: those are implemented by it, with {component}"));
+    }
     for meant in registry.nearest_loops(class) {
         one = one.suggest(replacing(class, meant), class.location, escaped(meant));
-    }
-    if registry.get(class).is_some() {
-        one = one.help("it is a class of components");
     }
     let names = registry.loops().map(|one| one.name());
     one.help(match registry.loops().len() {

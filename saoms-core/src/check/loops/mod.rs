@@ -20,7 +20,7 @@ use super::values::Values;
 use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::hash::Map;
-use crate::model::Loop;
+use crate::model::{Loop, Property};
 use crate::registry::{LoopClass, Registry};
 
 /// The loops of a component, resolved.
@@ -136,7 +136,11 @@ fn resolved<'a>(
     let mut specs = Vec::with_capacity(planned.len());
     let mut changed = Vec::new();
     for one in planned {
-        let Some(class) = one.class else { continue };
+        let Some(class) = one.class else {
+            let properties = one.element.into_iter().flat_map(|element| &element.properties);
+            sources(properties, member, parameters, report);
+            continue;
+        };
         let mut spec = LoopSpec { name: one.name.to_owned(), class: Arc::clone(class), values: Vec::new() };
         if let Some(element) = one.element {
             let slots = Slots::of_loop(class);
@@ -153,12 +157,22 @@ fn resolved<'a>(
     (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed })
 }
 
+/// Looks at where the properties of loops without a class take their values from.
+fn sources<'a>(
+    properties: impl Iterator<Item = &'a Property>,
+    member: &Member<'a>,
+    parameters: &mut Parameters<'a>,
+    report: &mut Report<'_>,
+) {
+    for source in properties.filter_map(|property| property.source()) {
+        let _ = parameters.resolve(member.unit, source, report);
+    }
+}
+
 /// What can be said of the loops of a component that has no class.
 fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
     let loops = member.component.loops();
-    for source in loops.iter().flat_map(|one| &one.properties).filter_map(|property| property.source()) {
-        let _ = parameters.resolve(member.unit, source, report);
-    }
+    sources(loops.iter().flat_map(|one| &one.properties), member, parameters, report);
     if let (Kind::Composite(_), Some(first)) = (member.kind, loops.first()) {
         let message =
             format!("component {} is a composite, which has no loops", quoted(&member.component.name));

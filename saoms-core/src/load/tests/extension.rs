@@ -56,6 +56,15 @@ fn parts_of_jms_are_named_and_their_values_known() {
 }
 
 #[test]
+fn parts_of_jms_of_no_namespace_or_another_version_are_told() {
+    binding(
+        "<binding.jms><destination xmlns='' name='q'/>\n<o:headers xmlns:o='http://docs.oasis-open.org/ns/opencsa/sca/200912'/><x:own xmlns:x='urn:x'/></binding.jms>",
+        "4:15 [destination] error S1004 `destination` is in no namespace
+5:2 [o:headers] error S1003 `o:headers` is of SCA 1.1, and the composite is of SCA 1.0",
+    );
+}
+
+#[test]
 fn implementations_of_other_kinds_need_what_their_schemas_say() {
     implementation(
         "<implementation.cpp library='l'/>",

@@ -169,7 +169,7 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
 #[test]
 fn a_root_that_is_no_composite_is_told_what_it_has_to_be() {
     faults(
-        &format!("<Composite xmlns='{OSOA}' name='c'/>"),
+        &format!("<Composite xmlns='{OSOA}' name='c' targetNamespace='u'/>"),
         "1:2 [Composite] error S1001 the root element is `Composite` and has to be `composite` \
          | replace `Composite` with `composite`",
     );

@@ -1,4 +1,4 @@
-//! The tables of `sca-contribution.xml`.
+//! The tables of `sca-contribution.xml` and of component types.
 
 use super::elements::{known, required};
 use super::{Holds, Kind, Known};
@@ -26,7 +26,28 @@ pub static CONTRIBUTION: Kind = Kind {
     ],
 };
 
-/// The elements in it that have attributes.
+/// The root of a component type.
+pub(in crate::load) static COMPONENT_TYPE: Kind = Kind {
+    name: "componentType",
+    doc: "What the implementation of the same name offers, needs and can be told.",
+    attributes: &[
+        known("constrainingType", Holds::Text, "The type that this has to conform to. Not looked at."),
+        known("requires", Holds::Names, "The intents of policies that apply."),
+        known("policySets", Holds::Names, "The policy sets that apply."),
+    ],
+    children: &[
+        "implementation.",
+        "service",
+        "reference",
+        "property",
+        "requires",
+        "policySetAttachment",
+        "documentation",
+        "extensions",
+    ],
+};
+
+/// The elements of a contribution that have attributes.
 pub(super) static PARTS: [Kind; 7] = [
     Kind {
         name: "deployable",

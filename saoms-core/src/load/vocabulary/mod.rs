@@ -8,6 +8,7 @@ mod elements;
 mod own;
 mod types;
 
+pub(super) use contribution::COMPONENT_TYPE;
 pub use contribution::CONTRIBUTION;
 pub use elements::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,

@@ -1,0 +1,358 @@
+//! Slips of the pen: each is told once, at its place, with what was probably meant.
+
+use expect_test::expect;
+
+use crate::files::checked;
+use crate::support::{faults_of, fleet, nested, outcome, part, shown};
+
+/// What is wrong with a fleet with the prefix of SAOMS.
+fn of(inside: &str) -> String {
+    outcome(&[&part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside)], &[])
+}
+
+/// A robot of this name, with this besides what it needs.
+fn robot(name: &str, inside: &str) -> String {
+    format!(
+        "<component name=\"{name}\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">{name}</property><property name=\"period\">1</property>\n{inside}</component>"
+    )
+}
+
+const GPS: &str = "<component name=\"G\"><implementation.java class=\"example.Gps\"/></component>";
+
+#[test]
+fn the_nearest_class_comes_first() {
+    let component =
+        |class: &str| format!("<component name=\"C\"><implementation.java class=\"{class}\"/></component>");
+    let fix = |class: &str| {
+        let found = of(&component(class));
+        found
+            .lines()
+            .filter_map(|line| line.strip_prefix("  fix: ")?.split(" [").next())
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    expect!["replace `Robot` with `example.Robot`"].assert_eq(&fix("Robot"));
+    expect!["replace `EXAMPLE.ROBOT` with `example.Robot`"].assert_eq(&fix("EXAMPLE.ROBOT"));
+    expect![[r#"
+        replace `saoms.Robot1` with `example.Robot`
+        replace `saoms.Robot1` with `robot.Robot001`
+        replace `saoms.Robot1` with `example.Robot001`"#]]
+    .assert_eq(&fix("saoms.Robot1"));
+    expect!["replace `MessageBroker` with `unibg.robotics.tca.MessageBrokerImpl`"]
+        .assert_eq(&fix("MessageBroker"));
+    expect![[r#"
+        2:49-66 error S3001: there is no class `example.BatteryMS`
+          help: it is a loop: give it to a component that has loops, by `<saoms:loop name="..." class="example.BatteryMS"/>` in it
+    "#]].assert_eq(&of(&component("example.BatteryMS")));
+    let looping = "<component name=\"C\"><implementation.java class=\"example.Cart\"/><property name=\"ID\">C</property><property name=\"period\">1</property>\n<saoms:loop name=\"X\" class=\"example.Gps\"/></component>";
+    expect![[r#"
+        3:29-40 error S3001: there is no loop class `example.Gps`
+          help: it is a class of components: those are implemented by it, with `<implementation.rust class="example.Gps"/>`
+    "#]].assert_eq(&of(looping));
+}
+
+#[test]
+fn a_name_of_the_wrong_form_is_told_once() {
+    let inside = format!(
+        "<property name=\"awa ke\">true</property>\n{}",
+        robot("R 1", "<property name=\"num ber\">1</property><reference name=\"g ps\"/>")
+    );
+    expect![[r#"
+        2:17-23 error S1011: `awa ke` cannot be a name: it holds ` `
+          help: names are used in targets as `component/service`, and in lists between blanks
+        3:18-21 error S1011: `R 1` cannot be a name: it holds ` `
+          help: names are used in targets as `component/service`, and in lists between blanks
+        4:17-24 error S3004: class `example.Robot` has no property `num ber`
+          fix: replace `num ber` with `number` [4:17-24 "number"]
+        4:55-59 error S2006: class `example.Robot` has no reference `g ps`
+          fix: replace `g ps` with `gps` [4:55-59 "gps"]
+    "#]]
+    .assert_eq(&of(&inside));
+}
+
+#[test]
+fn replicas_that_lack_their_index_get_it() {
+    let replicas = |name: &str, id: &str, number: &str| {
+        of(&format!(
+            "<component name=\"{name}\" saoms:count=\"3\"><implementation.java class=\"example.Robot\"/>\n<property name=\"ID\">{id}</property><property name=\"period\">1</property><property name=\"number\">{number}</property></component>"
+        ))
+    };
+    expect![[r#"
+        3:21-32 error S3013: components `R1` and `R2` have the same `ID` `R{index:02}` (index 2, and in 1 more)
+          help: every robot needs its own
+          fix: replace `R{index:02}` with `R${index:02}` [3:21-32 "R${index:02}"]
+    "#]].assert_eq(&replicas("R${index}", "R{index:02}", "${index}"));
+    expect![[r#"
+        2:18-26 error S2046: all replicas would be called `R{index}`
+          fix: replace `R{index}` with `R${index}` [2:18-26 "R${index}"] [3:21-29 "R${index}"]
+    "#]]
+    .assert_eq(&replicas("R{index}", "R{index}", "${index}"));
+    expect![[r#"
+        2:18-27 error S2046: all replicas would be called `R$(index)`
+          fix: replace `R$(index)` with `R${index}` [2:18-27 "R${index}"]
+    "#]]
+    .assert_eq(&replicas("R$(index)", "R${index}", "7"));
+    expect![[r#"
+        2:18-19 error S2046: all replicas would be called `R`
+          fix: replace `R` with `R${index}` [2:18-19 "R${index}"]
+    "#]]
+    .assert_eq(&replicas("R", "S", "${index}"));
+    expect![[r#"
+        2:18-27 error S2046: `R${index}` is a name of replicas, and nothing says how many there are
+          help: add `saoms:count="..."`
+    "#]].assert_eq(&of("<component name=\"R${index}\"><implementation.java class=\"example.Robot\"/>\n<property name=\"ID\">R${index}</property><property name=\"period\">1</property><property name=\"number\">${index}</property></component>"));
+    expect![[r#"
+        2:31-36 error S2045: the composite has no property `index`
+          help: `index` is what replicas are counted by: give the component a `saoms:count`
+    "#]].assert_eq(&of("<component name=\"G\" saoms:if=\"index &lt; 3\"><implementation.java class=\"example.Gps\"/></component>"));
+}
+
+#[test]
+fn a_component_that_is_pasted_again_is_told_once() {
+    let one = robot("R", "<property name=\"number\">1</property>");
+    expect![[r#"
+        4:18-19 error S2002: there are two components `R`
+          2:18-19 the first
+          fix: remove the second: both are the same, word for word [4:1-5:49 ""]
+    "#]]
+    .assert_eq(&of(&format!("{one}\n{one}")));
+    expect![[r#"
+        4:18-19 error S2002: there are two components `R`
+          2:18-19 the first
+          help: give each its own name
+    "#]]
+    .assert_eq(&of(&format!("{one}\n{}", one.replace("\">1<", "\">2<"))));
+}
+
+#[test]
+fn a_misspelt_root_is_read_on() {
+    let text = fleet(&format!("{GPS}\n{GPS}"));
+    let end = "</composite>";
+    expect![[r#"
+        1:2-10 error S1001: the root element is `compsite` and has to be `composite`
+          fix: replace `compsite` with `composite` [1:2-10 "composite"]
+    "#]]
+    .assert_eq(&faults_of(&[&text.replace("<composite", "<compsite")], &[]));
+    expect![[r#"
+        1:2-10 error S1001: the root element is `compsite` and has to be `composite`
+          fix: replace `compsite` with `composite` [1:2-10 "composite"] [4:3-11 "composite"]
+        3:18-19 error S2002: there are two components `G`
+          2:18-19 the first
+          fix: remove the second: both are the same, word for word [3:1-75 ""]
+    "#]]
+    .assert_eq(&faults_of(&[&text.replace("<composite", "<compsite").replace(end, "</compsite>")], &[]));
+    expect![[r#"
+        4:1-12 error S0102: `</compsite>` found where `</composite>` is expected
+          1:2-11 `composite` is open
+          fix: replace it with `</composite>` [4:1-12 "</composite>"]
+    "#]]
+    .assert_eq(&faults_of(&[&text.replace(end, "</compsite>")], &[]));
+}
+
+#[test]
+fn a_value_beside_a_source_counts_for_nothing() {
+    let inside = |declared: &str| {
+        format!(
+            "<property name=\"p\">{declared}</property>\n{}",
+            robot(
+                "R",
+                "<property name=\"number\" source=\"$p\" value=\"1\"/>\n<property name=\"delay\" source=\"$p\">1</property>\n<property name=\"awake\">true</property>"
+            )
+        )
+    };
+    expect![[r#"
+        4:44-45 warning S3012: the property `number` is given a value beside its `source`
+          4:33-35 this counts
+          help: this value counts for nothing: keep one of them
+        5:36-37 warning S3012: the property `delay` is given a value beside its `source`
+          5:32-34 this counts
+          help: this value counts for nothing: keep one of them
+        R (example.Robot) ID=Text("R") number=Text("5") awake=Text("true") gps->
+    "#]]
+    .assert_eq(&of(&inside("5")));
+    // What counts until somebody gives one from outside.
+    expect![[r#"
+        R (example.Robot) ID=Text("R") number=Text("1") awake=Text("true") gps->
+    "#]]
+    .assert_eq(&of(&inside("")));
+}
+
+#[test]
+fn a_target_of_nothing_is_told() {
+    let inside = robot("R", "<property name=\"number\">1</property>\n<reference name=\"gps\" target=\" \"/>");
+    expect![[r#"
+        4:23-33 warning S1011: `target` names nothing
+          help: name a component, or leave `target` out
+        R (example.Robot) ID=Text("R") number=Text("1") gps->
+    "#]]
+    .assert_eq(&of(&inside));
+    let needed = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/>\n<reference name=\"wheels\" target=\"\"/></component>";
+    expect![[r#"
+        3:18-24 error S2018: reference `wheels` of component `N` leads to no service
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
+    "#]].assert_eq(&of(needed));
+}
+
+#[test]
+fn targets_are_written_as_sca_writes_them() {
+    let conductor = |target: &str| {
+        let found = of(&format!(
+            "{GPS}\n<component name=\"H\"><implementation.java class=\"example.Gps\"/></component>\n<component name=\"C\"><implementation.java class=\"example.Conductor\"/><reference name=\"gps\" target=\"{target}\"/></component>"
+        ));
+        found
+            .lines()
+            .filter(|line| !line.starts_with(|c: char| c.is_ascii_uppercase()))
+            .fold(String::new(), |all, line| all + line + "\n")
+    };
+    expect![[r#"
+        4:99-102 error S2011: there is no component `G,H`
+          help: several stand between blanks
+          fix: replace `G,H` with `G H` [4:99-102 "G H"]
+    "#]]
+    .assert_eq(&conductor("G,H"));
+    expect![[r#"
+        4:99-101 error S2011: there is no component `G,`
+          help: several stand between blanks
+          fix: replace `G,` with `G` [4:99-101 "G"]
+    "#]]
+    .assert_eq(&conductor("G, H"));
+    expect![[r#"
+        4:99-101 error S2011: there is no component `G;`
+          help: several stand between blanks
+          fix: replace `G;` with `G` [4:99-101 "G"]
+        4:102-103 error S2011: there is no component `X`
+          help: the components are `G`, `H` and `C`
+    "#]]
+    .assert_eq(&conductor("G; X"));
+    expect![[r#"
+        4:99-109 error S2011: there is no component `G#position`
+          help: the name of a service stands behind `/`
+          fix: replace `G#position` with `G/position` [4:99-109 "G/position"]
+    "#]]
+    .assert_eq(&conductor("G#position"));
+    expect![[r#"
+        4:99-109 error S2011: there is no component `G.position`
+          help: the name of a service stands behind `/`
+          fix: replace `G.position` with `G/position` [4:99-109 "G/position"]
+        4:110-121 error S2011: there is no component `H::position`
+          help: the name of a service stands behind `/`
+          fix: replace `H::position` with `H/position` [4:110-121 "H/position"]
+    "#]]
+    .assert_eq(&conductor("G.position H::position"));
+    expect![[r#"
+        4:99-101 error S2010: `/G` has the wrong form
+          fix: replace `/G` with `G` [4:99-101 "G"]
+        4:102-104 error S2010: `H/` has the wrong form
+          fix: replace `H/` with `H` [4:102-104 "H"]
+    "#]]
+    .assert_eq(&conductor("/G H/"));
+    expect![[r#"
+        4:99-102 error S2011: there is no component `a.b`
+          help: the components are `G`, `H` and `C`
+    "#]]
+    .assert_eq(&conductor("a.b"));
+}
+
+#[test]
+fn a_table_between_other_separators_is_told_once() {
+    let inside = "<component xmlns:s=\"urn:saoms:1\" name=\"R${index}\" s:count=\"2\" s:overrides=\"r.csv\"><implementation.java class=\"example.Robot\"/>
+<property name=\"ID\">R${index}</property><property name=\"period\">1</property><property name=\"number\">${index}</property></component>";
+    let with = |table: &str| checked(inside, &[("r.csv", table.as_bytes())], 1 << 20).1;
+    expect![[r#"
+        r.csv:1:6-7 error S2047: the values of this table stand between `;`, and have to stand between commas
+          help: save it as comma-separated values; a value that holds a comma stands between two `"`
+    "#]]
+    .assert_eq(&with("index;delay;awake\n1;60;\n2;;true\n"));
+    expect![[r#"
+        r.csv:1:7-8 error S2047: the values of this table stand between tabs, and have to stand between commas
+          help: save it as comma-separated values; a value that holds a comma stands between two `"`
+    "#]]
+    .assert_eq(&with("\u{feff}\"name\"\tdelay\nR1\t60\n"));
+    assert_eq!(with("index\n1\n"), "");
+}
+
+#[test]
+fn quotes_of_word_processors_are_told() {
+    let with = |component: &str| {
+        faults_of(
+            &[&fleet(&format!("{component}<implementation.java class=\"example.Gps\"/></component>"))],
+            &[],
+        )
+    };
+    expect![[r#"
+        2:17-20 error S0105: `“` is no quote of XML: values stand between two `"`
+          fix: replace it with `"G"` [2:17-20 "\"G\""]
+    "#]]
+    .assert_eq(&with("<component name=“G”>"));
+    expect![[r#"
+        2:17-20 error S0105: `„` is no quote of XML: values stand between two `"`
+          fix: replace it with `"G"` [2:17-20 "\"G\""]
+    "#]]
+    .assert_eq(&with("<component name=„G“>"));
+    expect![[r#"
+        2:19-20 error S0105: `”` does not close a value that starts with `"`
+          2:17-18 the value starts here
+          fix: replace `”` with `"` [2:19-20 "\""]
+    "#]]
+    .assert_eq(&with("<component name=\"G”>"));
+    expect![[r#"
+        2:17-20 error S0105: `“` is no quote of XML: values stand between two `"`
+          fix: replace it with `"G"` [2:17-20 "\"G\""]
+    "#]]
+    .assert_eq(&with("<component name=“G\" autowire=\"true\">"));
+    expect![[r#"
+        2:19-20 error S0105: `”` does not close a value that starts with `"`
+          2:17-18 the value starts here
+          fix: replace `”` with `"` [2:19-20 "\""]
+    "#]]
+    .assert_eq(&with("<component name=\"G” autowire=\"true\">"));
+    // They may stand in a value.
+    assert_eq!(with("<component name=\"“G”\">"), "");
+}
+
+#[test]
+fn truth_is_written_small() {
+    let with = |condition: &str| {
+        of(&format!(
+            "<property name=\"a\">1</property>\n<component name=\"G\" saoms:if=\"{condition}\"><implementation.java class=\"example.Gps\"/></component>"
+        ))
+    };
+    expect![[r#"
+        3:31-35 error S2045: the composite has no property `True`
+          fix: replace `True` with `true` [3:31-35 "true"]
+    "#]]
+    .assert_eq(&with("True"));
+    expect![[r#"
+        3:46-51 error S2045: the composite has no property `FALSE`
+          fix: replace `FALSE` with `false` [3:46-51 "false"]
+    "#]]
+    .assert_eq(&with("a == 1 and not FALSE"));
+    expect![[r#"
+        3:31-34 error S2045: the composite has no property `yes`
+          fix: replace `yes` with `true` [3:31-34 "true"]
+    "#]]
+    .assert_eq(&with("yes"));
+}
+
+#[test]
+fn loops_are_taken_as_given_with_the_classes() {
+    let cart = "<property name=\"f\">1</property><component name=\"C\"><implementation.java class=\"example.Cart\"/><property name=\"ID\">C</property><property name=\"period\">1</property>
+<saoms:loop name=\"X\" class=\"other.Saver\" after=\"BatteryMS\"><property name=\"floor\" source=\"$f\"/></saoms:loop><saoms:loop name=\"PathMs\" remove=\"true\"/></component>";
+    let text = part("fleet", "xmlns:saoms=\"urn:saoms:1\"", cart);
+    let found = |assume_classes: bool| {
+        let (_, found, sources) = nested(&[&text], &[], assume_classes);
+        found.iter().map(|one| shown(one, &sources)).collect::<String>()
+    };
+    expect![[r#"
+        3:29-40 error S3001: there is no loop class `other.Saver`
+          help: looked among the 12 loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          fix: replace `other.Saver` with `example.BatterySaver` [3:29-40 "example.BatterySaver"]
+        3:127-133 error S4501: component `C` has no loop `PathMs`
+          fix: replace `PathMs` with `PathMS` [3:127-133 "PathMS"]
+    "#]].assert_eq(&found(false));
+    expect![[r#"
+        3:127-133 error S4501: component `C` has no loop `PathMs`
+          fix: replace `PathMs` with `PathMS` [3:127-133 "PathMS"]
+    "#]]
+    .assert_eq(&found(true));
+}
