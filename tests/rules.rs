@@ -407,7 +407,7 @@ fn several_blocked_blocks_in_one_text_are_told_how_to_write_them() {
 
 #[test]
 fn what_a_charger_without_a_block_cuts_off_is_not_told() {
-    let world = ("World", "saoms.World", &[("map", "#...\n....")][..], false);
+    let world = ("World", "saoms.World", &[("map", "@...\n....")][..], false);
     let environment =
         ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (1,0) to (3,0)")][..], false);
     let robot = ("Robot1", "saoms.Robot", &[("chargeX", "0"), ("chargeY", "0")][..], true);

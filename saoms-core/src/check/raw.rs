@@ -136,6 +136,7 @@ pub(super) fn beside_source(
     let Some(at) = ways.next() else { return };
     let message = format!("the property {} is given a value beside its `source`", quoted(&property.name));
     let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message).severity(Severity::Warning);
+    let one = Diagnostic { rule: None, ..one };
     report.push(
         one.label(source.location, "this counts").help("this value counts for nothing: keep one of them"),
     );
