@@ -22,12 +22,17 @@ impl Loader<'_> {
 
     /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
     pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
+        if self.is_sound(element, kind) {
+            return;
+        }
+        let mut is_sound = true;
         let mut free: Option<Vec<&'static str>> = None;
         for attribute in element.attributes() {
             if attribute.namespace().is_empty()
                 && let Some(known) = kind.find(attribute.name(), self.version)
             {
                 if known.only_1_1 && !self.version.is_1_1() {
+                    is_sound = false;
                     self.newer(element, attribute, known);
                 }
                 continue;
@@ -40,6 +45,7 @@ impl Loader<'_> {
                 }
                 _ => continue,
             };
+            is_sound = false;
             // What is given already is not meant a second time.
             let free = free.get_or_insert_with(|| {
                 let names = kind.names(self.version);
@@ -50,6 +56,9 @@ impl Loader<'_> {
             } else {
                 self.prefixed(element, attribute, free);
             }
+        }
+        if is_sound {
+            self.set_sound(element, kind);
         }
     }
 

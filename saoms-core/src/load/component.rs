@@ -1,7 +1,7 @@
 //! Components and their implementations.
 
 use super::Loader;
-use super::children::{Family, is_defined, meant_name, variant};
+use super::children::{Family, variant};
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
@@ -63,7 +63,7 @@ impl Loader<'_> {
                 (Family::Sca | Family::Own | Family::Foreign, name)
                     if name.starts_with("implementation.") =>
                 {
-                    let made = self.implementation(child, family);
+                    let made = self.implementation(child, family, name);
                     match (&component.implementation, made) {
                         (Some(first), _) => {
                             self.repeated(child, first.origin.tag, &COMPONENT, "implementation");
@@ -122,8 +122,8 @@ impl Loader<'_> {
     }
 
     /// `None` for an implementation of SCA, or of SAOMS, that does not exist; it is reported.
-    fn implementation(&mut self, element: Element<'_>, family: Family) -> Option<Implementation> {
-        let kind = match (family, meant_name(element)) {
+    fn implementation(&mut self, element: Element<'_>, family: Family, name: &str) -> Option<Implementation> {
+        let kind = match (family, name) {
             (Family::Sca, "implementation.java") => {
                 self.parts_of(element, &IMPLEMENTATION_JAVA);
                 ImplementationKind::Java { class: self.required(element, "class") }
@@ -141,7 +141,7 @@ impl Loader<'_> {
                 self.unexpected(element, &COMPONENT, family);
                 return None;
             }
-            (Family::Sca, _) if !is_defined(element) => {
+            (Family::Sca, _) if !self.is_defined(element) => {
                 self.unexpected(element, &COMPONENT, family);
                 return None;
             }

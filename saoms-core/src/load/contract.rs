@@ -1,7 +1,7 @@
 //! Services and references, their interfaces, callbacks and bindings.
 
 use super::Loader;
-use super::children::{Family, is_defined, meant_name, variant};
+use super::children::{Family, variant};
 use super::vocabulary::{
     BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST,
     INTERFACE_WSDL, Kind,
@@ -100,14 +100,14 @@ impl Loader<'_> {
                     Family::Sca,
                     "operation" | "requires" | "policySetAttachment" | "documentation" | "extensions",
                 ) => {}
-                (Family::Sca, name) if name.starts_with("interface.") && is_defined(child) => {
+                (Family::Sca, name) if name.starts_with("interface.") && self.is_defined(child) => {
                     self.interface(child, family, kind, &mut contract);
                 }
                 (Family::Own, "interface.rust") => self.interface(child, family, kind, &mut contract),
                 (Family::Foreign, name) if name.starts_with("interface.") => {
                     self.interface(child, family, kind, &mut contract);
                 }
-                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
+                (Family::Sca, name) if name.starts_with("binding.") && self.is_defined(child) => {
                     contract.bindings.push(self.binding(child, family));
                 }
                 (Family::Foreign, name) if name.starts_with("binding.") => {
@@ -137,7 +137,7 @@ impl Loader<'_> {
         }
         let mut names = ("interface", "callbackInterface");
         let mut required = false;
-        let name = meant_name(element);
+        let (_, name) = self.meaning(element);
         let kind = match (family, name) {
             (Family::Sca, "interface.java") => {
                 self.parts_of(element, &INTERFACE_JAVA);
@@ -178,7 +178,7 @@ impl Loader<'_> {
 
     fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {
         // What other bindings hold is theirs.
-        if family == Family::Sca && meant_name(element) == BINDING_SCA.name {
+        if self.meaning(element) == (Family::Sca, BINDING_SCA.name) {
             self.parts_of(element, &BINDING_SCA);
         } else {
             self.extension(element, family);
@@ -201,7 +201,7 @@ impl Loader<'_> {
             let (family, name) = self.meaning(child);
             match (family, name) {
                 (Family::Nobody, _) => {}
-                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
+                (Family::Sca, name) if name.starts_with("binding.") && self.is_defined(child) => {
                     bindings.push(self.binding(child, family));
                 }
                 (Family::Foreign, name) if name.starts_with("binding.") => {

@@ -1,7 +1,8 @@
 //! What the loader knows of an element by the shape of its start tag: found once for all tags that are written alike.
 
 use super::Loader;
-use super::children::{Family, meant_name};
+use super::children::{Family, is_defined, meant_name};
+use super::vocabulary::{Kind, VARIANTS};
 use crate::xml::{Attribute, Element};
 
 /// How many attributes are usual.
@@ -38,6 +39,10 @@ pub(super) struct Tag {
     pub(super) family: Option<Family>,
     /// The place of its local name among the frequent ones, when it is one of these of SCA.
     frequent: u8,
+    /// What it is called, when SCA defines such a variant of an implementation, an interface or a binding.
+    variant: Option<&'static str>,
+    /// What its attributes are all right for.
+    sound_for: Option<&'static Kind>,
     /// Where each of the usual attributes is among all.
     places: [u8; USUAL],
     /// A bit for each of the usual attributes that it has, and [`OTHERS`] for all others, declarations of namespaces included.
@@ -51,14 +56,23 @@ const OTHERS: u16 = 1 << USUAL;
 const FREQUENT: [&str; 5] = ["property", "service", "reference", "component", "wire"];
 
 impl Tag {
-    const UNKNOWN: Self =
-        Self { is_known: false, family: None, frequent: NONE, places: [NONE; USUAL], has: 0 };
+    const UNKNOWN: Self = Self {
+        is_known: false,
+        family: None,
+        frequent: NONE,
+        variant: None,
+        sound_for: None,
+        places: [NONE; USUAL],
+        has: 0,
+    };
 
     fn of(element: Element<'_>, family: Option<Family>) -> Self {
         let mut tag = Self { is_known: true, family, ..Self::UNKNOWN };
         if family == Some(Family::Sca) {
             let name = element.local_name();
             tag.frequent = FREQUENT.iter().position(|one| *one == name).map_or(NONE, |place| place as u8);
+            let mut variants = VARIANTS.iter().flat_map(|(_, variants)| *variants);
+            tag.variant = variants.find(|one| **one == name).copied();
         }
         for (place, attribute) in element.written_attributes().enumerate() {
             match usual(attribute.name()) {
@@ -97,10 +111,29 @@ impl Loader<'_> {
     /// Whose an element is, as [`Loader::family`] has it, and what it is called there: the local name, or what is meant by it.
     #[inline]
     pub(super) fn meaning<'a>(&mut self, element: Element<'a>) -> (Family, &'a str) {
-        match FREQUENT.get(usize::from(self.tag(element).frequent)) {
+        let tag = self.tag(element);
+        match FREQUENT.get(usize::from(tag.frequent)).copied().or(tag.variant) {
             Some(name) => (Family::Sca, name),
             None => (self.family(element), meant_name(element)),
         }
+    }
+
+    /// Whether SCA defines this variant of an implementation, an interface or a binding.
+    #[inline]
+    pub(super) fn is_defined(&mut self, element: Element<'_>) -> bool {
+        self.tag(element).variant.is_some() || is_defined(element)
+    }
+
+    /// Whether the attributes of an element of its shape were found to be all right for this kind.
+    #[inline]
+    pub(super) fn is_sound(&mut self, element: Element<'_>, kind: &'static Kind) -> bool {
+        self.tag(element).sound_for.is_some_and(|sound| std::ptr::eq(sound, kind))
+    }
+
+    /// Remembers that they are.
+    pub(super) fn set_sound(&mut self, element: Element<'_>, kind: &'static Kind) {
+        self.tag(element);
+        self.tags[element.shape()].sound_for = Some(kind);
     }
 
     /// How many children have each of the [`FREQUENT`] names.

@@ -25,8 +25,8 @@ const BLOCK: usize = 1024;
 #[derive(Debug)]
 pub(super) struct LineIndex {
     starts: Vec<u32>,
-    /// How many scalars there are before each multiple of [`BLOCK`].
-    scalars: Vec<u32>,
+    /// How many scalars there are before each multiple of [`BLOCK`]; `None` where all are ASCII.
+    scalars: Option<Vec<u32>>,
 }
 
 impl LineIndex {
@@ -38,13 +38,16 @@ impl LineIndex {
                 starts.push(at as u32 + 1);
             }
         }
+        if text.is_ascii() {
+            return Self { starts, scalars: None };
+        }
         let mut scalars = Vec::with_capacity(bytes.len().div_ceil(BLOCK));
         let mut before = 0;
         for block in bytes.chunks(BLOCK) {
             scalars.push(before);
             before += counted(block);
         }
-        Self { starts, scalars }
+        Self { starts, scalars: Some(scalars) }
     }
 
     pub(super) fn line_column(&self, text: &str, at: u32) -> LineColumn {
@@ -63,9 +66,13 @@ impl LineIndex {
         let content = text[start..end].trim_end_matches(['\r', '\n']);
         let end = start + content.len();
         let start = start + mark(content);
-        let wanted = self.before(text, start).saturating_add(place.column.max(1) - 1);
+        let columns = place.column.max(1) - 1;
+        let Some(scalars) = &self.scalars else {
+            return start.saturating_add(columns as usize).min(end) as u32;
+        };
+        let wanted = self.before(text, start).saturating_add(columns);
         // The last block that begins no later; the scalar with this number begins in it.
-        let block = self.scalars.partition_point(|&before| before <= wanted).saturating_sub(1);
+        let block = scalars.partition_point(|&before| before <= wanted).saturating_sub(1);
         let from = (block * BLOCK).clamp(start, end);
         let mut left = wanted - self.before(text, from);
         let place = text.as_bytes()[from..end].iter().position(|&byte| {
@@ -78,12 +85,13 @@ impl LineIndex {
 
     /// How many scalars begin before byte `at`.
     fn before(&self, text: &str, at: usize) -> u32 {
+        let Some(scalars) = &self.scalars else { return at as u32 };
         let block = at / BLOCK;
-        match self.scalars.get(block) {
+        match scalars.get(block) {
             Some(before) => before + counted(&text.as_bytes()[block * BLOCK..at]),
             // Right behind the last block.
             None => match block.checked_sub(1) {
-                Some(last) => self.scalars[last] + counted(&text.as_bytes()[last * BLOCK..at]),
+                Some(last) => scalars[last] + counted(&text.as_bytes()[last * BLOCK..at]),
                 None => 0,
             },
         }
