@@ -136,6 +136,37 @@ fn fleets_by_their_size_alone() {
     }
 }
 
+/// The same where nearly everything is wrong: little is taken but by the size.
+#[test]
+fn files_of_one_kind_by_their_size() {
+    const SIZE: usize = 1_000_000;
+    const REST: usize = 4_000_000;
+    let component = "<component name='a'>";
+    let end = "</component>";
+    for (what, text) in [
+        ("nothing of components", composite(SIZE, "", same("<component/>"), "")),
+        ("components", composite(SIZE, "", |n| format!("<component name='{n}'/>"), "")),
+        ("wires", composite(SIZE, "", same("<wire/>"), "")),
+        ("includes", composite(SIZE, "", same("<include/>"), "")),
+        ("properties", composite(SIZE, component, same("<property/>"), end)),
+        ("services", composite(SIZE, component, same("<service/>"), end)),
+        ("references", composite(SIZE, component, same("<reference/>"), end)),
+        ("loops", composite(SIZE, component, same("<s:loop xmlns:s='urn:saoms:1'/>"), end)),
+    ] {
+        let taken = peak(|| _ = checked(text.as_bytes(), false));
+        let limit = REST + 20 * text.len();
+        assert!(taken <= limit, "{what}: {taken} bytes for {} of the file, {limit} at most", text.len());
+    }
+}
+
+/// What is inside one attribute.
+#[test]
+fn lists_as_long_as_they_can_be() {
+    const SIZE: usize = 2_100_000;
+    let target = "<component name='a'><reference name='b' target='";
+    holds("targets", composite(SIZE, target, same("a "), "'/></component>").as_bytes());
+}
+
 /// What could take the square of its size.
 #[test]
 fn files_with_very_many_of_one_kind() {

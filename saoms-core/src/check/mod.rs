@@ -253,20 +253,16 @@ fn properties<'a>(
     classes: &[ClassIndex<'a>],
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<Option<Checked>> {
+) -> Vec<Option<Box<Checked>>> {
     let mut values = Values::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
         parameters.types(member, report);
         if let Kind::Class(index) = member.kind {
-            all.push(Some(properties::check(
-                &Giver::component(member, fleet.component_type(place)),
-                &classes[index].slots,
-                parameters,
-                &mut values,
-                report,
-            )));
+            let giver = Giver::component(member, fleet.component_type(place));
+            let checked = properties::check(&giver, &classes[index].slots, parameters, &mut values, report);
+            all.push(Some(Box::new(checked)));
             continue;
         }
         properties::repeated(member.component, report);
@@ -285,7 +281,7 @@ fn properties<'a>(
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
-    checked: Vec<Option<Checked>>,
+    checked: Vec<Option<Box<Checked>>>,
     loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
 ) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half<'a>>) {

@@ -9,6 +9,9 @@ use crate::model::{Multiplicity, Policy, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Text};
 use crate::xml::{Attribute, Element};
 
+/// How long a list can be: a fleet has no more components.
+const MOST_WORDS: usize = 1_000_000;
+
 impl Loader<'_> {
     /// Whether an element of this kind has no attribute but these usual ones, which it can have: there is nothing else to read. The others
     /// of one that has more are checked.
@@ -275,11 +278,19 @@ impl Loader<'_> {
             // One word, as most lists are.
             return vec![attribute.trimmed()];
         }
-        if self.is_replicated {
-            attribute.words_with_expressions().collect()
+        let mut words = if self.is_replicated {
+            attribute.words_with_expressions().take(MOST_WORDS + 1).collect()
         } else {
-            attribute.words().collect()
+            attribute.words().take(MOST_WORDS + 1).collect::<Vec<_>>()
+        };
+        if let Some(beyond) = words.get(MOST_WORDS) {
+            let message = format!("{} has more than {MOST_WORDS} words", quoted(name));
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, beyond.location, message);
+            self.report(one.help("the others are not looked at"));
+            words.truncate(MOST_WORDS);
+            words.shrink_to_fit();
         }
+        words
     }
 
     /// `requires` and `policySets`.

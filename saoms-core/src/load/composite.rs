@@ -20,6 +20,8 @@ impl Loader<'_> {
         self.no_text(root);
         let name = self.name(root);
         let [properties, services, references, components, wires] = self.counted(root);
+        // What holds nothing is told, and not kept.
+        let bare = root.children().filter(|child| child.is_bare()).count();
         let mut composite = Composite {
             origin: Origin::of(root),
             document: Arc::clone(document),
@@ -32,8 +34,8 @@ impl Loader<'_> {
             properties: Vec::with_capacity(properties),
             services: Vec::with_capacity(services),
             references: Vec::with_capacity(references),
-            components: Vec::with_capacity(components),
-            wires: Vec::with_capacity(wires),
+            components: Vec::with_capacity(components.saturating_sub(bare)),
+            wires: Vec::with_capacity(wires.saturating_sub(bare)),
             severities: Vec::new(),
             policy: self.policy(root),
             name,
@@ -42,9 +44,24 @@ impl Loader<'_> {
             let (family, name) = self.meaning(child);
             match (family, name) {
                 (Family::Foreign | Family::Nobody, _) => {}
-                (Family::Sca, "component") => composite.components.push(self.component(child)),
-                (Family::Sca, "include") => composite.includes.push(self.include(child)),
-                (Family::Sca, "wire") => composite.wires.push(self.wire(child)),
+                (Family::Sca, "component") => {
+                    let component = self.component(child);
+                    if !component.is_nothing() {
+                        composite.components.push(component);
+                    }
+                }
+                (Family::Sca, "include") => {
+                    let include = self.include(child);
+                    if !include.name.is_empty() || include.uri.is_some() {
+                        composite.includes.push(include);
+                    }
+                }
+                (Family::Sca, "wire") => {
+                    let wire = self.wire(child);
+                    if wire.source.is_some() || wire.target.is_some() {
+                        composite.wires.push(wire);
+                    }
+                }
                 (Family::Sca, "property") => {
                     composite.properties.push(self.property(child, &COMPOSITE_PROPERTY));
                 }

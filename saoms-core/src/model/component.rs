@@ -45,6 +45,16 @@ pub struct ComponentDetails {
 }
 
 impl Component {
+    /// Whether it has no name and says nothing.
+    pub(crate) fn is_nothing(&self) -> bool {
+        self.name.is_empty()
+            && self.implementation.is_none()
+            && self.details.is_none()
+            && self.properties.is_empty()
+            && self.services.is_empty()
+            && self.references.is_empty()
+    }
+
     /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
     pub fn path(&self) -> Option<&Text> {
         self.details.as_ref()?.path.as_ref()

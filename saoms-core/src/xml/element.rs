@@ -141,6 +141,11 @@ impl<'a> Element<'a> {
         self.document.shapes.parts(self.node().shape).len()
     }
 
+    /// Whether it has neither attributes nor anything inside.
+    pub(crate) fn is_bare(self) -> bool {
+        self.count_of_attributes() == 0 && self.content_span().is_empty()
+    }
+
     /// The attribute at a place among all that are written.
     ///
     /// # Panics

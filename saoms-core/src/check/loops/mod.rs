@@ -69,7 +69,7 @@ type Usual = (usize, Arc<[LoopSpec]>);
 pub(super) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
     classes: &mut Vec<ClassIndex<'a>>,
-    checked: &[Option<Checked>],
+    checked: &[Option<Box<Checked>>],
     registry: &'a Registry,
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,

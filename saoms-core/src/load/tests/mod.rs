@@ -514,3 +514,17 @@ fn figure_6_25_of_the_manual_has_nothing_wrong() {
         ("unibg.robotics.tca.MessageBrokerImpl", vec!["localhost", "61616"])
     );
 }
+
+#[test]
+fn a_list_has_an_end() {
+    let long = "a ".repeat(1_000_001);
+    let text = format!(
+        "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='u'><component name='a'><implementation.java class='b'/><reference name='r' target='{long}'/></component></composite>"
+    );
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = sources.add("c.composite", text);
+    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    assert_eq!(composite.components[0].references[0].targets.len(), 1_000_000);
+    let messages: Vec<_> = diagnostics.iter().map(|one| one.message.as_str()).collect();
+    assert_eq!(messages, ["`target` has more than 1000000 words"]);
+}
