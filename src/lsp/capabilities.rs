@@ -1,16 +1,22 @@
 //! What the two sides of a session can do.
 
+use std::path::PathBuf;
+
 use lsp_types::{
     CodeActionKind, CodeActionOptions, CodeActionProviderCapability, CompletionOptions,
-    HoverProviderCapability, OneOf, PositionEncodingKind, RenameOptions, SaveOptions, ServerCapabilities,
-    TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions, TextDocumentSyncSaveOptions,
-    WorkDoneProgressOptions,
+    HoverProviderCapability, LinkedEditingRangeServerCapabilities, OneOf, PositionEncodingKind,
+    RenameOptions, SaveOptions, ServerCapabilities, TextDocumentSyncCapability, TextDocumentSyncKind,
+    TextDocumentSyncOptions, TextDocumentSyncSaveOptions, WorkDoneProgressOptions,
 };
 use serde_json::{Value, json};
 
-/// What the editor can do.
-#[derive(Clone, Copy, Debug, Default)]
+use super::uri;
+
+/// What the editor can do, and where it works.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Client {
+    /// The folders that it has open.
+    pub(super) folders: Vec<PathBuf>,
     pub(super) knows_snippets: bool,
     pub(super) watches_files: bool,
 }
@@ -18,8 +24,15 @@ pub(super) struct Client {
 impl Client {
     /// As the parameters of `initialize` say.
     pub(super) fn of(params: &Value) -> Self {
+        let several = params.pointer("/workspaceFolders").and_then(Value::as_array);
+        let uris = several.into_iter().flatten().filter_map(|folder| folder.get("uri")?.as_str());
+        let mut folders: Vec<PathBuf> = uris.filter_map(uri::path).collect();
+        if folders.is_empty() {
+            folders.extend(params.get("rootUri").and_then(Value::as_str).and_then(uri::path));
+        }
         let can = |place: &str| params.pointer(place).and_then(Value::as_bool).unwrap_or(false);
         Self {
+            folders,
             knows_snippets: can("/capabilities/textDocument/completion/completionItem/snippetSupport"),
             watches_files: can("/capabilities/workspace/didChangeWatchedFiles/dynamicRegistration"),
         }
@@ -46,13 +59,15 @@ pub(super) fn capabilities() -> Value {
         references_provider: Some(OneOf::Left(true)),
         document_highlight_provider: Some(OneOf::Left(true)),
         document_symbol_provider: Some(OneOf::Left(true)),
+        workspace_symbol_provider: Some(OneOf::Left(true)),
+        linked_editing_range_provider: Some(LinkedEditingRangeServerCapabilities::Simple(true)),
         document_formatting_provider: Some(OneOf::Left(true)),
         rename_provider: Some(OneOf::Right(RenameOptions {
             prepare_provider: Some(true),
             work_done_progress_options: WorkDoneProgressOptions::default(),
         })),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
-            code_action_kinds: Some(vec![CodeActionKind::QUICKFIX]),
+            code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, CodeActionKind::SOURCE_FIX_ALL]),
             ..CodeActionOptions::default()
         })),
         ..ServerCapabilities::default()

@@ -20,6 +20,8 @@ pub(super) struct Reported {
     pub(super) shown: lsp_types::Diagnostic,
     /// What the code means, for hovering.
     pub(super) meaning: String,
+    /// The code, where a composite can say that it is no fault.
+    pub(super) can_be_allowed: Option<&'static str>,
     pub(super) fixes: Vec<Fix>,
 }
 
@@ -47,7 +49,8 @@ pub(super) fn reported<'d>(
                 Some(DiagnosticRelatedInformation { location, message: label.text.clone() })
             })
             .collect();
-        let lines = one.help.iter().map(|help| format!("\n{help}"));
+        let mended = one.suggestions.iter().map(|suggestion| &suggestion.description);
+        let lines = mended.chain(&one.help).map(|help| format!("\n{help}"));
         let unused = [&codes::UNUSED_PROPERTY, &codes::RENAME_UNUSED, &codes::RESTART_UNUSED];
         let is_unused = unused.iter().any(|code| code.id == one.code.id);
         let shown = lsp_types::Diagnostic {
@@ -78,7 +81,9 @@ pub(super) fn reported<'d>(
             }),
         });
         let fixes = fixes.collect();
-        (places.path(one.location.file), Reported { shown, meaning, fixes })
+        let can_be_allowed = one.severity != Severity::Error || codes::is_judgement(one.code);
+        let can_be_allowed = can_be_allowed.then_some(one.code.id);
+        (places.path(one.location.file), Reported { shown, meaning, can_be_allowed, fixes })
     })
 }
 

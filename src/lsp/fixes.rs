@@ -6,48 +6,68 @@ use std::path::Path;
 use std::str::FromStr;
 
 use lsp_types::{
-    CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionParams, Position, Range, Uri, WorkspaceEdit,
+    CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionParams, Diagnostic, Position, Range, TextEdit,
+    Uri, WorkspaceEdit,
 };
 
-use super::diagnostics::{Fix, Reported};
-use super::server::Server;
-use super::uri;
+use super::allow::allowed;
+use super::diagnostics::Reported;
+use super::server::{Refusal, Server};
 
 impl<W: Write> Server<W> {
-    /// The suggestions of the diagnostics that a range touches, the likeliest first.
-    pub(super) fn fixes(&self, params: &CodeActionParams) -> Vec<CodeActionOrCommand> {
-        let wants = params.context.only.as_ref().is_none_or(|kinds| {
-            // `quickfix` is also meant by the empty kind, which all are part of.
-            kinds.iter().any(|kind| *kind == CodeActionKind::QUICKFIX || *kind == CodeActionKind::EMPTY)
-        });
-        let document = self.documents.get(params.text_document.uri.as_str());
-        let shown = document.and_then(|document| {
-            // What was found in an older text does not fit any more.
-            self.shown.get(&document.path).filter(|shown| shown.is_of(document.version))
-        });
-        let Some(shown) = shown.filter(|_| wants) else { return Vec::new() };
-        let touched = shown.all.iter().filter(|one| overlap(one.shown.range, params.range));
-        touched
-            .flat_map(|one| one.fixes.iter().enumerate().map(|(rank, fix)| self.action(one, fix, rank == 0)))
-            .collect()
+    /// What can be done about the diagnostics that a range touches, the likeliest first; then about all of the file.
+    pub(super) fn fixes(&mut self, params: &CodeActionParams) -> Result<Vec<CodeActionOrCommand>, Refusal> {
+        let uri = &params.text_document.uri;
+        let Some(document) = self.documents.get(uri.as_str()) else { return Ok(Vec::new()) };
+        let (path, version) = (document.path.clone(), document.version);
+        // What was found in an older text does not fit any more.
+        let shown = self.shown.get(&path).filter(|shown| shown.is_of(version));
+        let all: Vec<Reported> = shown.map(|shown| shown.all.clone()).unwrap_or_default();
+        let touched = all.iter().filter(|one| overlap(one.shown.range, params.range));
+        let mut actions = Vec::new();
+        if is_wanted(params, &CodeActionKind::QUICKFIX) {
+            let scene = self.scene(uri)?;
+            for one in touched.clone() {
+                for (rank, fix) in one.fixes.iter().enumerate() {
+                    let edits = fix.edits.iter().map(|(path, edits)| (path.as_path(), edits.clone()));
+                    actions.push(self.action(&fix.title, &[one], edits, rank == 0));
+                }
+            }
+            for (one, code) in touched.filter_map(|one| Some((one, one.can_be_allowed?))) {
+                let at = scene.file().lines.offset(&scene.file().text, one.shown.range.start);
+                for (title, edits) in allowed(&scene, at, code) {
+                    actions.push(self.action(&title, &[one], [(path.as_path(), edits)].into_iter(), false));
+                }
+            }
+        }
+        let (mended, edits) = mended(&all, &path);
+        if mended.len() > 1 && is_wanted(params, &CodeActionKind::SOURCE_FIX_ALL) {
+            let title = format!("Mend all {} faults of this file that have one suggestion", mended.len());
+            let whole = self.action(&title, &mended, [(path.as_path(), edits)].into_iter(), false);
+            actions.push(CodeAction { kind: Some(CodeActionKind::SOURCE_FIX_ALL), ..whole });
+        }
+        Ok(actions.into_iter().map(CodeActionOrCommand::CodeAction).collect())
     }
 
     #[expect(clippy::mutable_key_type, reason = "the protocol's edits are by URIs, which never change")]
-    fn action(&self, of: &Reported, fix: &Fix, is_preferred: bool) -> CodeActionOrCommand {
-        let uri_of = |path: &Path| {
-            let open = self.documents.iter().find(|(_, one)| one.path == path);
-            Uri::from_str(&open.map_or_else(|| uri::uri(path), |(uri, _)| uri.to_owned())).ok()
-        };
-        let changes = fix.edits.iter().filter_map(|(path, edits)| Some((uri_of(path)?, edits.clone())));
+    fn action<'p>(
+        &self,
+        title: &str,
+        of: &[&Reported],
+        edits: impl Iterator<Item = (&'p Path, Vec<TextEdit>)>,
+        is_preferred: bool,
+    ) -> CodeAction {
+        let changes =
+            edits.filter_map(|(path, edits)| Some((Uri::from_str(&self.uri_of(path)).ok()?, edits)));
         let changes: HashMap<Uri, _> = changes.collect();
-        CodeActionOrCommand::CodeAction(CodeAction {
-            title: fix.title.clone(),
+        CodeAction {
+            title: title.to_owned(),
             kind: Some(CodeActionKind::QUICKFIX),
-            diagnostics: Some(vec![of.shown.clone()]),
+            diagnostics: Some(of.iter().map(|one| one.shown.clone()).collect::<Vec<Diagnostic>>()),
             edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
             is_preferred: Some(is_preferred),
             ..CodeAction::default()
-        })
+        }
     }
 
     /// What the codes of the diagnostics mean that are shown at a place.
@@ -58,6 +78,32 @@ impl<W: Write> Server<W> {
             .filter(move |one| overlap(one.shown.range, Range::new(at, at)))
             .map(|one| one.meaning.clone())
     }
+}
+
+/// Whether actions of a kind are asked for: all are where none is named, or the empty one.
+fn is_wanted(params: &CodeActionParams, kind: &CodeActionKind) -> bool {
+    params.context.only.as_ref().is_none_or(|kinds| {
+        kinds.iter().any(|asked| {
+            let rest = kind.as_str().strip_prefix(asked.as_str());
+            rest.is_some_and(|rest| asked.as_str().is_empty() || rest.is_empty() || rest.starts_with('.'))
+        })
+    })
+}
+
+/// What the only suggestions of diagnostics come to, where they change this file alone and do not meet: the diagnostics, and the edits.
+fn mended<'r>(all: &'r [Reported], path: &Path) -> (Vec<&'r Reported>, Vec<TextEdit>) {
+    let (mut mended, mut edits): (Vec<&Reported>, Vec<TextEdit>) = (Vec::new(), Vec::new());
+    for one in all {
+        let [fix] = &one.fixes[..] else { continue };
+        let Some(own) = fix.edits.get(path).filter(|_| fix.edits.len() == 1) else { continue };
+        let meets = |new: &TextEdit| edits.iter().any(|known| overlap(known.range, new.range));
+        if own.iter().any(meets) {
+            continue;
+        }
+        edits.extend(own.iter().cloned());
+        mended.push(one);
+    }
+    (mended, edits)
 }
 
 /// Whether two ranges touch.

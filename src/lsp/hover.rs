@@ -6,12 +6,13 @@ use saoms_core::diagnostic::codes;
 use saoms_core::load::vocabulary::{Holds, other, own_attributes};
 
 use super::complete::names::declared;
-use super::complete::{table, topics};
+use super::complete::table;
 use super::describe;
 use super::outline::{Component, Implementation, Side};
 use super::scene::Scene;
 use super::symbol::{Symbol, at};
 use super::syntax::{Cursor, local, trimmed};
+use super::topics::RENAME;
 
 /// What there is to say at a byte, in Markdown, and the text that it is about.
 pub(super) fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)> {
@@ -99,6 +100,7 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             let class = scene.class_of_loop((0, component), one)?;
             Some(describe::looping(scene.registry.get_loop(&class)?))
         }
+        Symbol::Topic { name } => scene.about_topic(name),
         Symbol::Index { component, .. } => {
             Some(format!("**index**, what the replicas of `{component}` are counted by"))
         }
@@ -139,25 +141,27 @@ fn value_of(
     let file = scene.file();
     let kind = file.kinds[element]?;
     let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
-    let known = kind.attributes.iter().find(|known| known.name == name)?;
-    match known.holds {
-        Holds::PropertyName => {
-            let parent = file.tree.elements[element].parent?;
-            let at = trimmed(&file.text, value);
-            Some((property(scene, parent, &file.text[at.clone()])?, at))
-        }
-        Holds::Value => value_of_property(scene, element, value, byte),
+    let of_sca = kind.attributes.iter().find(|known| known.name == name);
+    let own = || own_attributes(kind).find(|known| name.contains(':') && known.name == local(name));
+    let known = of_sca.or_else(own)?;
+    let at = trimmed(&file.text, value);
+    if known.holds == Holds::Value
+        && let Some(found) = value_of_property(scene, element, at.clone(), byte.clamp(at.start, at.end))
+    {
+        return Some(found);
+    }
+    let more = match known.holds {
+        Holds::PropertyName => property(scene, file.tree.elements[element].parent?, &file.text[at.clone()]),
         Holds::Code => {
-            let id = &file.text[value.clone()];
             let of_rules = scene.registry.rules().iter().map(|rule| rule.code());
-            let code = codes::ALL.iter().copied().chain(of_rules).find(|code| code.id == id)?;
-            Some((describe::code(code, code.rule), value))
-        }
-        Holds::Interface | Holds::Boolean | Holds::Multiplicity | Holds::Level => {
-            Some((describe::attribute(known), value))
+            let mut all = codes::ALL.iter().copied().chain(of_rules);
+            let found = all.find(|code| code.id == &file.text[at.clone()]);
+            found.map(|code| describe::code(code, code.rule))
         }
         _ => None,
-    }
+    };
+    // Of what nothing more is known, at least what it is for.
+    Some((more.unwrap_or_else(|| describe::attribute(known)), at))
 }
 
 fn property(scene: &Scene, parent: usize, name: &str) -> Option<String> {
@@ -174,16 +178,16 @@ fn value_of_property(
 ) -> Option<(String, Range<usize>)> {
     let file = scene.file();
     let name = &file.text[file.tree.value(&file.text, element, "name")?];
-    if name == "topicRename"
+    if name == RENAME
         && let Some(component) = scene.component_around(element)
     {
         let is_part = |c: char| c != ',' && c != ':' && !c.is_whitespace();
         let before = file.text[value.start..byte].trim_end_matches(is_part).len();
         let behind = &file.text[byte..value.end];
         let at = value.start + before..byte + behind.len() - behind.trim_start_matches(is_part).len();
-        let topics = topics::of_component(scene, (0, component));
-        if let Some(topic) = topics.get(&file.text[at.clone()]) {
-            return Some((describe::topic(topic), at));
+        let topics = scene.topics((0, component));
+        if let Some(topic) = topics.iter().find(|one| one.declaration.name == file.text[at.clone()]) {
+            return Some((describe::topic(topic.declaration), at));
         }
     }
     Some((property(scene, file.tree.elements[element].parent?, name)?, value))

@@ -3,6 +3,7 @@
 //! One thread reads, one answers, one checks. Answers come from a reading of the text that understands what is half typed (`syntax`, `outline`);
 //! diagnostics come from the loader and the checker, as `saoms check` has them.
 
+mod allow;
 mod capabilities;
 mod check;
 mod complete;
@@ -34,6 +35,7 @@ mod syntax;
 mod testing;
 #[cfg(test)]
 mod tests;
+mod topics;
 mod uri;
 mod workspace;
 

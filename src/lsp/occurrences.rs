@@ -132,6 +132,12 @@ impl<'s> Found<'s> {
         }
         if self.touched.is_none() {
             self.beside(component, inside.first().copied());
+            return;
+        }
+        for [_, new] in scene.renamed(file, component) {
+            let text = scene.files[file].text[new.clone()].to_owned();
+            let name = Named { element: component.name.element, text, at: new };
+            self.add(&name, false, || Some(Symbol::Topic { name: name.text.clone() }));
         }
     }
 

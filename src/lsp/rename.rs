@@ -28,8 +28,13 @@ pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Plac
             "`{name}` cannot be a name: it has to be there, without blanks, `/`, quotes, `<`, `>` and `&`"
         ));
     }
+    if matches!(found.symbol, Symbol::Topic { .. }) && (name.contains(',') || name.contains("::")) {
+        return Err(format!("`{name}` cannot be the name of a topic: `,` and `::` stand between them"));
+    }
     let all = places(scene, &found.symbol);
-    let old = all.iter().find(|one| one.is_definition).map(|one| text(scene, &own(scene, one)).to_owned());
+    // Nobody defines a topic that is read alone.
+    let is_named = |one: &&Occurrence| one.is_definition || matches!(one.symbol, Symbol::Topic { .. });
+    let old = all.iter().find(is_named).map(|one| text(scene, &own(scene, one)).to_owned());
     let Some(old) = old else {
         return Err("what is named here is not defined in any file near this one".to_owned());
     };
@@ -78,6 +83,12 @@ fn refusal(scene: &Scene, symbol: &Symbol) -> Option<String> {
             let is_added = scene.class(of.1).is_some() && !scene.default_loops(of).iter().any(is_meant);
             (!is_added).then(|| format!("the loop `{name}` has its name from the class"))
         }
+        Symbol::Topic { name } => {
+            let uses = scene.uses_of_topics();
+            let own = uses.iter().find(|one| one.name == name && one.at.is_none())?;
+            let component = &own.component.name.text;
+            Some(format!("`{name}` is the name that the class of `{component}` gives the topic"))
+        }
         Symbol::Index { .. } => Some(format!("`{INDEX}` is what replicas are counted by")),
         _ => None,
     }
@@ -120,6 +131,7 @@ fn taken(scene: &Scene, symbol: &Symbol, name: &str) -> Result<(), String> {
                 other.namespace == *namespace && other.name.as_ref().is_some_and(|known| known.text == name)
             })
         }
+        Symbol::Topic { .. } => scene.uses_of_topics().iter().any(|one| one.name == name),
         Symbol::Loop { file, component, .. } => {
             let of = scene.component(*file, component).ok_or("there is no such component")?;
             let mut given = of.1.loops.iter().map(|one| &one.name.text);

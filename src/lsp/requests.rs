@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use lsp_server::ErrorCode;
@@ -9,9 +10,9 @@ use lsp_types::request::{self as ask, Request};
 use lsp_types::{
     CompletionList, CompletionParams, CompletionResponse, DocumentFormattingParams, DocumentHighlight,
     DocumentHighlightParams, DocumentSymbolParams, DocumentSymbolResponse, GotoDefinitionParams,
-    GotoDefinitionResponse, Hover, HoverContents, HoverParams, Location, MarkupContent, MarkupKind,
-    PrepareRenameResponse, ReferenceParams, RenameParams, TextDocumentPositionParams, TextEdit, Uri,
-    WorkspaceEdit,
+    GotoDefinitionResponse, Hover, HoverContents, HoverParams, LinkedEditingRangeParams, LinkedEditingRanges,
+    Location, MarkupContent, MarkupKind, PrepareRenameResponse, ReferenceParams, RenameParams,
+    SymbolInformation, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit, WorkspaceSymbolResponse,
 };
 use saoms_core::format::{WIDTH, format};
 use saoms_core::source::Sources;
@@ -26,7 +27,8 @@ use super::rename::{prepare, rename};
 use super::scene::Scene;
 use super::server::{Refusal, Server, written};
 use super::symbol::Place;
-use super::symbols::symbols;
+use super::symbols::{matching, symbols};
+use super::syntax::Cursor;
 use super::uri;
 
 /// So many proposals can be looked through; of thousands of components those come that fit what is typed.
@@ -52,8 +54,14 @@ impl<W: Write> Server<W> {
             ask::DocumentSymbolRequest::METHOD => {
                 answered::<ask::DocumentSymbolRequest>(params, |params| self.symbols(&params))
             }
+            ask::WorkspaceSymbolRequest::METHOD => {
+                answered::<ask::WorkspaceSymbolRequest>(params, |params| Ok(self.found(&params.query)))
+            }
+            ask::LinkedEditingRange::METHOD => {
+                answered::<ask::LinkedEditingRange>(params, |params| self.linked(&params))
+            }
             ask::CodeActionRequest::METHOD => {
-                answered::<ask::CodeActionRequest>(params, |params| Ok(Some(self.fixes(&params))))
+                answered::<ask::CodeActionRequest>(params, |params| self.fixes(&params).map(Some))
             }
             ask::Formatting::METHOD => answered::<ask::Formatting>(params, |params| self.formatting(&params)),
             _ => Err(Refusal(ErrorCode::MethodNotFound, format!("`{method}` is not known"))),
@@ -154,6 +162,42 @@ impl<W: Write> Server<W> {
         Ok(Some(DocumentSymbolResponse::Nested(symbols(scene.file()))))
     }
 
+    /// The composites and components of all files by their names.
+    #[expect(deprecated, reason = "the field has to be given, and nothing is deprecated here")]
+    fn found(&mut self, query: &str) -> Option<WorkspaceSymbolResponse> {
+        let open: Vec<PathBuf> = self.documents.iter().map(|(_, one)| one.path.clone()).collect();
+        let files = self.workspace.all(&self.client.folders, &open);
+        let all = matching(&files, query).into_iter().filter_map(|(file, name, kind, container)| {
+            let uri = Uri::from_str(&self.uri_of(&file.path)).ok()?;
+            let location = Location { uri, range: file.lines.range(&file.text, name.at.clone()) };
+            let container_name = (!container.is_empty()).then(|| container.to_owned());
+            Some(SymbolInformation {
+                name: name.text.clone(),
+                kind,
+                tags: None,
+                deprecated: None,
+                location,
+                container_name,
+            })
+        });
+        Some(WorkspaceSymbolResponse::Flat(all.take(MOST).collect()))
+    }
+
+    /// The names of both tags of an element, which are typed as one.
+    fn linked(&mut self, params: &LinkedEditingRangeParams) -> Result<Option<LinkedEditingRanges>, Refusal> {
+        let (scene, byte) = self.place(&params.text_document_position_params)?;
+        let file = scene.file();
+        let element = match file.tree.cursor(&file.text, byte) {
+            Cursor::ElementName { element, .. } | Cursor::EndTag { element: Some(element), .. } => element,
+            _ => return Ok(None),
+        };
+        let one = &file.tree.elements[element];
+        let Some(tag) = &one.end_tag else { return Ok(None) };
+        let both = [one.name.clone(), tag.start + 2..tag.start + 2 + one.name.len()];
+        let ranges = both.map(|at| file.lines.range(&file.text, at)).into();
+        Ok(Some(LinkedEditingRanges { ranges, word_pattern: None }))
+    }
+
     /// The layout of `saoms fmt`; a text that is not well-formed stays as it is.
     fn formatting(&mut self, params: &DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>, Refusal> {
         let scene = self.scene(&params.text_document.uri)?;
@@ -171,10 +215,14 @@ impl<W: Write> Server<W> {
     }
 
     fn location(&self, scene: &Scene, place: &Place) -> Option<Location> {
-        let path = &scene.files[place.file].path;
-        let open = self.documents.iter().find(|(_, one)| one.path == *path);
-        let uri = open.map_or_else(|| uri::uri(path), |(uri, _)| uri.to_owned());
+        let uri = self.uri_of(&scene.files[place.file].path);
         Some(Location { uri: Uri::from_str(&uri).ok()?, range: range(scene, place) })
+    }
+
+    /// The URI of a file: that of the editor where it is open.
+    pub(super) fn uri_of(&self, path: &Path) -> String {
+        let open = self.documents.iter().find(|(_, one)| one.path == path);
+        open.map_or_else(|| uri::uri(path), |(uri, _)| uri.to_owned())
     }
 }
 

@@ -1,6 +1,7 @@
 //! A file together with all that it has to do with: what every question of an editor is answered from.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -106,18 +107,7 @@ impl Scene {
     /// The fleets that the first file is part of, as a check of the whole folder has them: what the description of the contribution calls deployable is one, and
     /// every other composite that no composite names is one of its own. A file of values is part of those that take values from it.
     pub(super) fn fleets(&self) -> Vec<Fleet> {
-        let (mut names, mut users) = (Vec::new(), vec![Vec::new(); self.files.len()]);
-        for place in 0..self.files.len() {
-            let components = &self.files[place].outline.components;
-            let implementations = components.iter().filter_map(|one| match &one.implementation {
-                Some(Implementation::Composite(name)) => self.composite(place, name),
-                _ => None,
-            });
-            let named: BTreeSet<usize> =
-                self.includes[place].iter().copied().chain(implementations).collect();
-            named.iter().filter(|one| **one != place).for_each(|one| users[*one].push(place));
-            names.push(named);
-        }
+        let (names, users) = self.naming();
         let described = self.files.iter().enumerate().flat_map(|(file, one)| {
             one.outline.deployables.iter().filter_map(move |name| self.composite(file, name))
         });
@@ -141,12 +131,37 @@ impl Scene {
         let alone = reached(start.clone(), |place| users[place].clone()).into_iter().filter(is_alone);
         let mut fleets: Vec<Fleet> = alone.map(|root| Fleet { files: vec![root], may_be_part }).collect();
         let deployed: Vec<usize> = deployed.into_iter().collect();
-        let mut named = reached(deployed.clone(), |place| names[place].iter().copied().collect()).into_iter();
+        let mut named = reached(deployed.clone(), |place| names[place].clone()).into_iter();
         if named.any(|one| start.contains(&one)) {
             fleets.insert(0, Fleet { files: deployed, may_be_part: false });
         }
         // Composites that go around in circles have nothing around them.
         if fleets.is_empty() { vec![Fleet { files: vec![start[0]], may_be_part: false }] } else { fleets }
+    }
+
+    /// The composites that each file names, by includes and implementations, and those that name it.
+    fn naming(&self) -> (Vec<Vec<usize>>, Vec<Vec<usize>>) {
+        let (mut names, mut users) = (Vec::new(), vec![Vec::new(); self.files.len()]);
+        for place in 0..self.files.len() {
+            let components = &self.files[place].outline.components;
+            let implementations = components.iter().filter_map(|one| match &one.implementation {
+                Some(Implementation::Composite(name)) => self.composite(place, name),
+                _ => None,
+            });
+            let named: BTreeSet<usize> =
+                self.includes[place].iter().copied().chain(implementations).collect();
+            named.iter().filter(|one| **one != place).for_each(|one| users[*one].push(place));
+            names.push(named.into_iter().collect());
+        }
+        (names, users)
+    }
+
+    /// The files of the fleets that the first one is part of.
+    pub(super) fn fleet_files(&self) -> Vec<usize> {
+        let (names, users) = self.naming();
+        let start = if self.file().is_beside { self.owners() } else { vec![0] };
+        let around = reached(start, |place| users[place].clone());
+        reached(around, |place| names[place].clone())
     }
 
     /// The composites that take values from the first file.
@@ -258,9 +273,14 @@ impl Scene {
 
     /// The simple value of a property of a file: its attribute `value`, or the text inside.
     pub(super) fn value_of(&self, file: usize, property: usize) -> Option<&str> {
+        Some(&self.files[file].text[self.place_of_value(file, property)?])
+    }
+
+    /// Where it is written.
+    pub(super) fn place_of_value(&self, file: usize, property: usize) -> Option<Range<usize>> {
         let file = &self.files[file];
         let value = file.tree.value(&file.text, property, "value");
-        Some(&file.text[value.or_else(|| file.tree.text(&file.text, property))?])
+        value.or_else(|| file.tree.text(&file.text, property))
     }
 
     /// The class of a component.

@@ -37,6 +37,8 @@ pub(super) enum Symbol {
     Loop { file: usize, component: String, name: String },
     /// A class of components or of loops.
     Class { name: String },
+    /// A topic of the fleet.
+    Topic { name: String },
     /// What the replicas of a component are counted by.
     Index { file: usize, component: String },
 }
@@ -63,8 +65,13 @@ pub(super) fn at(scene: &Scene, at: usize) -> Option<Occurrence> {
 
 /// Every place where a symbol is named, those that define it first.
 pub(super) fn places(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
-    let all = (0..scene.files.len()).flat_map(|file| Found::of(scene, file, None));
-    let mut found: Vec<Occurrence> = all.filter(|one| one.symbol == *symbol).collect();
+    let mut found: Vec<Occurrence> = match symbol {
+        Symbol::Topic { name } => scene.places_of_topic(name),
+        _ => {
+            let all = (0..scene.files.len()).flat_map(|file| Found::of(scene, file, None));
+            all.filter(|one| one.symbol == *symbol).collect()
+        }
+    };
     found.sort_by_key(|one| (!one.is_definition, one.at.clone()));
     found.dedup_by(|one, other| one.at == other.at);
     found

@@ -1,5 +1,7 @@
 //! The parts of a file, for outlines and for going to one by name.
 
+use std::sync::Arc;
+
 use lsp_types::{DocumentSymbol, SymbolKind};
 
 use super::file::File;
@@ -22,6 +24,31 @@ pub(super) fn symbols(file: &File) -> Vec<DocumentSymbol> {
         Some(name) => vec![symbol(file, name, SymbolKind::MODULE, &outline.namespace, parts)],
         None => parts,
     }
+}
+
+/// The composites of files and their components whose names hold the letters of a query, in their order: each with its file, its kind and the composite that it is in.
+pub(super) fn matching<'f>(
+    files: &'f [Arc<File>],
+    query: &str,
+) -> Vec<(&'f File, &'f Named, SymbolKind, &'f str)> {
+    let query = query.to_lowercase();
+    let fits = |name: &str| {
+        let name = name.to_lowercase();
+        let mut letters = name.chars();
+        query.chars().all(|wanted| letters.any(|known| known == wanted))
+    };
+    let mut all = Vec::new();
+    for file in files {
+        let name = file.outline.name.as_ref();
+        let composite = name.map_or("", |name| name.text.as_str());
+        let own = name.map(|name| (&**file, name, SymbolKind::MODULE, file.outline.namespace.as_str()));
+        let components = file.outline.components.iter();
+        let inside = components.map(|one| (&**file, &one.name, SymbolKind::CLASS, composite));
+        all.extend(
+            own.into_iter().chain(inside).filter(|(_, name, ..)| !name.text.is_empty() && fits(&name.text)),
+        );
+    }
+    all
 }
 
 fn component(file: &File, component: &Component) -> DocumentSymbol {

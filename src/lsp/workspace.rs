@@ -104,6 +104,17 @@ impl Workspace {
         all
     }
 
+    /// All composites in these folders, and those around the files that are open.
+    pub(super) fn all(&mut self, folders: &[PathBuf], open: &[PathBuf]) -> Vec<Arc<File>> {
+        let beside = open.iter().filter_map(|path| path.parent()).map(Path::to_owned);
+        let folders: BTreeSet<PathBuf> = folders.iter().map(|path| identity(path)).chain(beside).collect();
+        let mut all: Vec<Arc<File>> =
+            folders.iter().flat_map(|folder| self.composites_in(folder, Path::new(""))).collect();
+        all.sort_by(|one, other| one.path.cmp(&other.path));
+        all.dedup_by(|one, other| one.path == other.path);
+        all
+    }
+
     /// The composites that one in a folder can name, and what describes its contribution, but for one file.
     fn composites_in(&mut self, folder: &Path, but: &Path) -> Vec<Arc<File>> {
         let is_fresh = |(then, _): &(Instant, Listing)| then.elapsed() < FRESH;

@@ -135,6 +135,18 @@ impl Editor {
         }
     }
 
+    /// The diagnostics of a file in this version.
+    pub(crate) fn diagnostics_of(&self, name: &str, version: i32) -> Value {
+        let uri = self.uri(name);
+        loop {
+            let mut message = self.receive();
+            let shown = &mut message["params"];
+            if shown["uri"] == *uri && shown["version"] == version {
+                return shown["diagnostics"].take();
+            }
+        }
+    }
+
     /// Ends the session; the exit code.
     pub(crate) fn end(mut self) -> i32 {
         assert_eq!(self.ask("shutdown", Value::Null)["result"], Value::Null);

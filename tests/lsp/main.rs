@@ -4,6 +4,7 @@
 
 mod beside;
 mod editor;
+mod random;
 
 use std::fs;
 
@@ -149,6 +150,80 @@ fn what_is_wrong_is_mended_and_names_are_changed_in_all_files() {
         editor.ask("textDocument/formatting", json!({ "textDocument": document, "options": options }));
     let laid_out = formatted["result"][0]["newText"].as_str().unwrap();
     assert!(laid_out.contains("\n  <wire source"), "{laid_out}");
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn what_is_no_fault_here_is_allowed_with_a_reason_and_all_is_mended_at_once() {
+    let text = composite(
+        "  <component name=\"A\"><implementation.java class=\"saoms.Robto\"/></component>\n  <component name=\"B\" autowrie=\"true\"><implementation.java class=\"resources.robotEnvironment.GSP\"/></component>",
+    );
+    let mut editor = Editor::started("allow", &[("fleet.composite", &text)]);
+    editor.open("fleet.composite", &text);
+    editor.wait_for("fleet.composite", |all| all.len() == 3);
+    let document = json!({ "uri": editor.uri("fleet.composite") });
+    let mut actions = |line: u32, only: Value| {
+        let range =
+            json!({ "start": { "line": line, "character": 0 }, "end": { "line": line + 1, "character": 0 } });
+        let context = json!({ "diagnostics": [], "only": only });
+        let asked = json!({ "textDocument": document, "range": range, "context": context });
+        let all = editor.ask("textDocument/codeAction", asked);
+        all["result"].as_array().unwrap().clone()
+    };
+    let all = actions(2, json!(["quickfix"]));
+    let titles: Vec<&str> = all.iter().map(|one| one["title"].as_str().unwrap()).collect();
+    assert!(titles.contains(&"Allow S1007 in component `B`, with a reason"), "{titles:?}");
+    assert!(titles.contains(&"Allow S1007 in this composite, with a reason"), "{titles:?}");
+    // What cannot run is no matter of judgement.
+    assert!(titles.iter().all(|title| !title.contains("S3001")), "{titles:?}");
+    assert_eq!(actions(2, json!(["refactor"])), [json!(null); 0]);
+    let all = actions(0, json!(["source"]));
+    assert_eq!(all[0]["kind"], "source.fixAll");
+    let uri = document["uri"].as_str().unwrap();
+    assert_eq!(
+        all[0]["edit"]["changes"][uri].as_array().unwrap().len(),
+        2,
+        "of the third one, several names are near"
+    );
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn composites_and_components_of_all_files_are_found_by_name() {
+    let mut editor = Editor::new("symbols", &[("inner.composite", INNER), ("outer.composite", OUTER)]);
+    let folder = editor.uri("").trim_end_matches('/').to_owned();
+    let folders = json!([{ "uri": folder, "name": "symbols" }]);
+    editor.ask("initialize", json!({ "capabilities": {}, "workspaceFolders": folders }));
+    editor.tell("initialized", json!({}));
+    let mut found = |query: &str| -> Vec<String> {
+        let answer = editor.ask("workspace/symbol", json!({ "query": query }));
+        let all = answer["result"].as_array().unwrap().iter();
+        all.map(|one| {
+            format!("{} in {}", one["name"].as_str().unwrap(), one["containerName"].as_str().unwrap())
+        })
+        .collect()
+    };
+    assert_eq!(found("gps"), ["GPS in inner", "Gps in inner"]);
+    assert_eq!(found("outr"), ["outer in urn:f"]);
+    assert_eq!(found("").len(), 4);
+    assert_eq!(found("nothing"), [""; 0]);
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn both_tags_of_an_element_are_typed_as_one() {
+    let text = composite("<component name=\"A\"></component><wire source=\"A\"/>");
+    let mut editor = Editor::started("linked", &[]);
+    editor.open("fleet.composite", &text);
+    let mut linked = |character: u32| {
+        let at = json!({ "textDocument": { "uri": editor.uri("fleet.composite") }, "position": { "line": 1, "character": character } });
+        editor.ask("textDocument/linkedEditingRange", at)["result"]["ranges"].clone()
+    };
+    let both = linked(3);
+    assert_eq!(both, linked(26));
+    assert_eq!((&both[0]["start"]["character"], &both[1]["start"]["character"]), (&json!(1), &json!(22)));
+    assert_eq!(linked(38), Value::Null, "it has one tag");
+    assert_eq!(linked(15), Value::Null, "no name of a tag");
     assert_eq!(editor.end(), 0);
 }
 

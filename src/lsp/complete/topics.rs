@@ -23,7 +23,7 @@ pub(super) fn complete(scene: &Scene, property: usize, value: Range<usize>, at: 
     let end = behind.find(',').into_iter().chain(behind.find("::")).min().unwrap_or(behind.len());
     let range = start..at + behind[..end].trim_end().len();
     let Some(component) = scene.component_around(property) else { return Vec::new() };
-    let own = of_component(scene, (0, component));
+    let own = own(scene, (0, component));
     let own = own.iter().map(|(name, topic)| item(name, Some(*topic), &range));
     // The old name is one of the class; the new one can be any, as a rule one that others have.
     match comma {
@@ -42,34 +42,22 @@ fn item(name: &str, topic: Option<&TopicDeclaration>, range: &Range<usize>) -> P
     }
 }
 
-/// The topics of a component of a file, those of its loops included, by their own names.
-pub(in crate::lsp) fn of_component<'s>(
-    scene: &'s Scene,
-    of: (usize, &Component),
-) -> BTreeMap<&'s str, &'s TopicDeclaration> {
-    let class = scene.class(of.1).map(|class| class.declaration());
-    let own = class.into_iter().flat_map(|class| class.publishes.iter().chain(&class.subscribes));
-    let of_loops = scene.loops(of).flat_map(|one| {
-        let declaration = one.declaration();
-        declaration.publishes.iter().chain(&declaration.subscribes)
-    });
-    own.chain(of_loops).map(|topic| (topic.name.as_str(), topic)).collect()
+/// The topics of a component of a file by their own names.
+fn own<'s>(scene: &'s Scene, of: (usize, &Component)) -> BTreeMap<&'s str, &'s TopicDeclaration> {
+    let all = scene.topics(of).into_iter();
+    all.map(|topic| (topic.declaration.name.as_str(), topic.declaration)).collect()
 }
 
 /// The topics of all components of the composite, and the names that they are given anew.
 fn all(scene: &Scene) -> BTreeMap<String, Option<&TopicDeclaration>> {
     let mut all = BTreeMap::new();
     for (file, component) in scene.components_of(0) {
-        let own = of_component(scene, (file, component));
-        let renamed = component.properties.iter().find(|one| one.text == "topicRename");
-        let value = renamed.and_then(|one| scene.value_of(file, one.element)).unwrap_or_default();
-        for pair in value.split("::") {
-            if let Some((old, new)) = pair.split_once(',') {
-                all.insert(new.trim().to_owned(), own.get(old.trim()).copied());
-            }
+        let own = own(scene, (file, component));
+        let text = &scene.files[file].text;
+        for [old, new] in scene.renamed(file, component) {
+            all.insert(text[new].to_owned(), own.get(&text[old]).copied());
         }
         all.extend(own.into_iter().map(|(name, topic)| (name.to_owned(), Some(topic))));
     }
-    all.retain(|name, _| !name.is_empty());
     all
 }

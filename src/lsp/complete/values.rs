@@ -10,6 +10,7 @@ use crate::lsp::describe;
 use crate::lsp::scene::Scene;
 use crate::lsp::symbol::Symbol;
 use crate::lsp::syntax::local;
+use crate::lsp::topics::RENAME;
 
 /// The units of durations, as often as they are meant.
 pub(super) const UNITS: &[(&str, &str)] = &[
@@ -27,7 +28,7 @@ pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: 
     let Some(parent) = file.tree.elements[property].parent else { return Vec::new() };
     let Some(name) = file.tree.value(&file.text, property, "name") else { return Vec::new() };
     let name = &file.text[name];
-    if name == "topicRename" {
+    if name == RENAME {
         return topics::complete(scene, property, range, at);
     }
     if scenario::is_one(scene, 0, property) {

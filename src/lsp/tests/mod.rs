@@ -7,3 +7,4 @@ mod hover;
 mod marked;
 mod names;
 mod session;
+mod topics;
