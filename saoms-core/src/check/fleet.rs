@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
+use super::by_name::ByName;
 use super::classes::ClassIndex;
 use super::instance::Instance;
 use super::names::Names;
@@ -21,7 +22,7 @@ pub(super) struct Fleet<'a> {
     pub(super) scopes: Vec<Scope>,
     pub(super) units: Vec<Unit<'a>>,
     pub(super) members: Vec<Member<'a>>,
-    pub(super) by_name: Map<(usize, &'a str), usize>,
+    pub(super) by_name: ByName,
     /// The replicas of each replicated component of a scope, by its name with `*` for each expression.
     pub(super) groups: BTreeMap<(usize, String), Vec<usize>>,
     /// Components that a condition keeps away, where no other has their name: with the condition.
@@ -149,8 +150,7 @@ impl<'a> Unit<'a> {
 impl<'a> Fleet<'a> {
     /// The component of this name in a scope.
     pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
-        let by_name: &Map<(usize, &str), usize> = &self.by_name;
-        by_name.get(&(scope, name)).copied()
+        self.by_name.get(scope, name, &self.members)
     }
 
     /// Whether a component has the name of an earlier one, which is reported.

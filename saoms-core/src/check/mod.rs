@@ -8,6 +8,7 @@ mod absent;
 mod arena;
 mod autowire;
 mod bindings;
+mod by_name;
 mod census;
 mod circle;
 mod classes;

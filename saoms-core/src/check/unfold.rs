@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::arena::{Arena, End};
+use super::by_name::ByName;
 use super::fleet::{Fleet, Kind, Member, Scope, Unit};
 use super::instance::{Instance, Replica};
 use super::once;
@@ -35,7 +36,7 @@ pub(super) fn unfold<'a>(
         scopes: vec![Scope { members: Vec::with_capacity(count), ..Scope::default() }],
         units: Vec::with_capacity(asked_for.len()),
         members: Vec::with_capacity(count),
-        by_name: Map::with_capacity_and_hasher(count, Default::default()),
+        by_name: ByName::with_capacity(count),
         groups: BTreeMap::new(),
         absent: Map::default(),
         absent_wires: HashSet::new(),
@@ -303,14 +304,14 @@ impl<'a> Unfolding<'a> {
         if is_seen {
             self.fleet.scopes[scope].members.push(index);
         }
-        match self.fleet.by_name.get(&(scope, name)) {
+        match self.fleet.find(scope, name) {
             _ if name.is_empty() => {}
-            None if is_seen => _ = self.fleet.by_name.insert((scope, name), index),
+            None if is_seen => self.fleet.by_name.insert(index, &self.fleet.members),
             Some(_) if is_seen && is_partial => {}
-            Some(&first) if is_seen && self.fleet.members[first].is_partial => {
-                self.fleet.by_name.insert((scope, name), index);
+            Some(first) if is_seen && self.fleet.members[first].is_partial => {
+                self.fleet.by_name.insert(index, &self.fleet.members);
             }
-            Some(&first) if is_seen => {
+            Some(first) if is_seen => {
                 report.about(&self.fleet.members[index]);
                 self.repeated(component, first, report);
                 report.about_all();

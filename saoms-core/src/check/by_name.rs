@@ -1,0 +1,127 @@
+//! Components by their names.
+//!
+//! A table of nothing but places: names stay where the components have them. That of a large fleet is small enough for the caches of a
+//! processor, where one with the names in it is not; looking names up would take a tenth of the time of a check otherwise.
+
+use std::hash::BuildHasher;
+
+use super::fleet::Member;
+use crate::hash::Seeded;
+
+/// The components of a fleet by scope and name; of each name one.
+#[derive(Default)]
+pub(super) struct ByName {
+    /// As many as a power of two, at least twice as many as are taken. Where one is taken already, the next one is.
+    slots: Vec<Slot>,
+    taken: usize,
+    hashing: Seeded,
+}
+
+/// The place of a component, and a part of the hash of its name.
+#[derive(Clone, Copy)]
+struct Slot {
+    tag: u32,
+    member: u32,
+}
+
+/// A slot that is not taken.
+const FREE: Slot = Slot { tag: 0, member: u32::MAX };
+
+impl ByName {
+    /// With room for so many.
+    pub(super) fn with_capacity(count: usize) -> Self {
+        let mut all = Self::default();
+        if count > 0 {
+            all.slots = vec![FREE; (2 * count).next_power_of_two()];
+        }
+        all
+    }
+
+    /// The component of this name.
+    pub(super) fn get(&self, scope: usize, name: &str, members: &[Member<'_>]) -> Option<usize> {
+        let slot = self.slots.get(self.slot(scope, name, members)?)?;
+        (slot.member != FREE.member).then_some(slot.member as usize)
+    }
+
+    /// Adds the component at a place, in place of another one of its name.
+    pub(super) fn insert(&mut self, place: usize, members: &[Member<'_>]) {
+        if 2 * (self.taken + 1) > self.slots.len() {
+            let larger = Self { hashing: self.hashing, ..Self::with_capacity(self.taken + 1) };
+            let before = std::mem::replace(self, larger);
+            before.places().for_each(|place| self.insert(place, members));
+        }
+        let (scope, name) = key(&members[place]);
+        let tag = self.hash(scope, name) as u32;
+        if let Some(slot) = self.slot(scope, name, members) {
+            self.taken += usize::from(self.slots[slot].member == FREE.member);
+            // Fleets are limited to fewer.
+            self.slots[slot] = Slot { tag, member: place as u32 };
+        }
+    }
+
+    /// The components that are in it.
+    pub(super) fn places(&self) -> impl Iterator<Item = usize> + use<> {
+        let taken = self.slots.iter().filter(|slot| slot.member != FREE.member);
+        taken.map(|slot| slot.member as usize).collect::<Vec<_>>().into_iter()
+    }
+
+    fn hash(&self, scope: usize, name: &str) -> u64 {
+        self.hashing.hash_one((scope, name))
+    }
+
+    /// The slot of this name: its own, or the free one where it would be. `None` when there are no slots.
+    fn slot(&self, scope: usize, name: &str, members: &[Member<'_>]) -> Option<usize> {
+        let last = self.slots.len().checked_sub(1)?;
+        let hash = self.hash(scope, name);
+        let mut at = (hash >> 32) as usize & last;
+        loop {
+            let slot = self.slots[at];
+            let is_it = || slot.tag == hash as u32 && key(&members[slot.member as usize]) == (scope, name);
+            if slot.member == FREE.member || is_it() {
+                return Some(at);
+            }
+            // At least half of them are free.
+            at = (at + 1) & last;
+        }
+    }
+}
+
+fn key<'m>(member: &'m Member<'_>) -> (usize, &'m str) {
+    (member.scope, &member.component.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::Diagnostics;
+    use crate::load::load_file;
+    use crate::source::Sources;
+
+    #[test]
+    fn the_last_of_each_name_is_found() {
+        let components: String =
+            (0..100).map(|number| format!("<component name='C{}'/>", number % 70)).collect();
+        let text =
+            format!("<composite xmlns='http://www.osoa.org/xmlns/sca/1.0' name='c'>{components}</composite>");
+        let mut sources = Sources::new();
+        let file = sources.add("c.composite", text);
+        let composite = load_file(file, &sources, &mut Diagnostics::new()).unwrap();
+        let scope = |place: usize| place % 2;
+        let all = composite.components.iter().enumerate();
+        let members: Vec<Member<'_>> =
+            all.map(|(place, component)| Member::new(&composite, 0, scope(place), component)).collect();
+        let mut table = ByName::default();
+        assert_eq!(table.get(0, "C0", &members), None, "there are no slots");
+        for place in 0..members.len() {
+            table.insert(place, &members);
+        }
+        for (number, last) in (0..70).map(|number| (number, if number < 30 { number + 70 } else { number })) {
+            let name = format!("C{number}");
+            assert_eq!(table.get(scope(last), &name, &members), Some(last), "{name}");
+            assert_eq!(table.get(1 - scope(last), &name, &members), None, "{name} in the other scope");
+        }
+        let mut places: Vec<usize> = table.places().collect();
+        places.sort_unstable();
+        assert_eq!(places, (30..100).collect::<Vec<_>>());
+    }
+}
