@@ -1,5 +1,6 @@
 //! The wiring report of `saoms check --wiring`: every topic with its writers and readers.
 
+use std::collections::HashMap;
 use std::time::Duration;
 
 use saoms_api::format_duration;
@@ -16,18 +17,15 @@ struct Group<'a> {
 
 fn groups<'a>(ends: &[End], assembly: &'a Assembly) -> Vec<Group<'a>> {
     let mut all: Vec<Group<'a>> = Vec::new();
+    let mut places: HashMap<(&str, Option<Duration>, u32), usize> = HashMap::new();
     for end in ends {
         let component = &assembly.components[end.component];
         let class = component.class.name();
-        let is_alike = |group: &&mut Group<'_>| {
-            (group.class, group.period, group.parts) == (class, end.period, end.parts)
-        };
-        match all.iter_mut().find(is_alike) {
-            Some(group) => group.paths.push(&component.path),
-            None => {
-                all.push(Group { class, period: end.period, parts: end.parts, paths: vec![&component.path] })
-            }
+        let place = *places.entry((class, end.period, end.parts)).or_insert(all.len());
+        if place == all.len() {
+            all.push(Group { class, period: end.period, parts: end.parts, paths: Vec::new() });
         }
+        all[place].paths.push(&component.path);
     }
     all
 }

@@ -11,8 +11,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use saoms_components as _;
-use saoms_core::check::{Options, check};
+use saoms_core::check::{Census, Options, check};
 use saoms_core::diagnostic::{Diagnostics, human, json};
+use saoms_core::graph::{Diagram, dot, mermaid, svg};
 use saoms_core::load::{MAX_SIZE, load_file, read_from};
 use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
@@ -165,6 +166,34 @@ fn lists_as_long_as_they_can_be() {
     const SIZE: usize = 2_100_000;
     let target = "<component name='a'><reference name='b' target='";
     holds("targets", composite(SIZE, target, same("a "), "'/></component>").as_bytes());
+}
+
+/// What a picture shows of a component does not depend on how many others there are of its class.
+#[test]
+fn pictures_by_the_size_of_their_fleet() {
+    const SIZE: usize = 300_000;
+    let robot = |place: usize| {
+        let number = place + 1;
+        format!(
+            "<component name='Robot{number}'><implementation.java class='saoms.Robot'/><property name='ID'>{number}</property><property name='period'>9</property><property name='number'>{number}</property><reference name='world' target='Robot{}/World{place}'/></component>",
+            place / 2
+        )
+    };
+    let text = composite(SIZE, "", robot, "");
+    for (what, draw) in [("svg", svg as fn(&Diagram) -> String), ("mermaid", mermaid), ("dot", dot)] {
+        let taken = peak(|| {
+            REGISTRY.with(|registry| {
+                let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+                let file = sources.add("x.composite", text.clone());
+                let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+                let fleet = Contribution::of(vec![composite]);
+                let options = Options::default();
+                let census = Census::of(&fleet, registry, &options, &sources, &mut diagnostics);
+                drop(draw(&Diagram::of(&fleet, registry, &census)));
+            });
+        });
+        assert!(taken <= 40 * text.len(), "{what}: {taken} bytes for {} of the file", text.len());
+    }
 }
 
 /// What could take the square of its size.

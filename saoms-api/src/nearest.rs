@@ -24,16 +24,23 @@ pub fn nearest_few<'a>(
     limit: usize,
 ) -> Vec<&'a str> {
     let wanted = Folded::new(name);
+    // The most alike so far, in order; of equal ones the first stands first.
     let mut found: Vec<(usize, &str)> = Vec::new();
     for candidate in candidates {
-        if let Some(distance) = wanted.distance(candidate)
-            && !found.iter().any(|(_, known)| *known == candidate)
-        {
-            found.push((distance, candidate));
+        // Only what is more alike than the last of them can still matter.
+        let most = match found.last() {
+            Some((0, _)) if found.len() >= limit => break,
+            Some((last, _)) if found.len() >= limit => last - 1,
+            _ => wanted.cut,
+        };
+        let Some(distance) = wanted.distance(candidate, most) else { continue };
+        if found.iter().any(|(_, known)| *known == candidate) {
+            continue;
         }
+        let place = found.partition_point(|(known, _)| *known <= distance);
+        found.insert(place, (distance, candidate));
+        found.truncate(limit);
     }
-    found.sort_by_key(|(distance, _)| *distance);
-    found.truncate(limit);
     found.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
@@ -50,45 +57,111 @@ impl Folded {
         Self { set: letters(name), cut: (characters.len() / 3).max(1), characters }
     }
 
-    /// How many typing errors lie between; 0 is the same but for case. `None` when it is too far.
-    fn distance(&self, other: &str) -> Option<usize> {
+    /// How many typing errors lie between, at most `most`; 0 is the same but for case. `None` when it is too far.
+    fn distance(&self, other: &str, most: usize) -> Option<usize> {
         let len = self.characters.len();
         // Every error changes at most two letters of the set, and the length by one (four bytes at most).
-        if len > LONGEST || other.len() > 4 * (len + self.cut) || len > other.len() + self.cut {
+        if len > LONGEST || other.len() > 4 * (len + most) || len > other.len() + most {
             return None;
         }
-        if (self.set ^ letters(other)).count_ones() as usize > 2 * self.cut {
+        if (self.set ^ letters(other)).count_ones() as usize > 2 * most {
             return None;
         }
         let other: Vec<char> = other.chars().flat_map(char::to_lowercase).collect();
-        if other.len().abs_diff(len) > self.cut {
+        if other.len().abs_diff(len) > most {
             return None;
         }
-        let distance = typing_errors(&self.characters, &other);
+        let distance = typing_errors(&self.characters, &other, most)?;
         // As many errors as letters would make any short name like any other.
-        (distance <= self.cut && distance < len.max(other.len())).then_some(distance)
+        (distance < len.max(other.len())).then_some(distance)
     }
 }
 
 /// Which letters occur, without case; other characters share bits.
 fn letters(name: &str) -> u64 {
-    name.chars().flat_map(char::to_lowercase).fold(0, |set, letter| set | 1 << (letter as u32 % 64))
+    let bit = |letter: u32| 1 << (letter % 64);
+    if name.is_ascii() {
+        return name.bytes().fold(0, |set, letter| set | bit(u32::from(letter.to_ascii_lowercase())));
+    }
+    name.chars().flat_map(char::to_lowercase).fold(0, |set, letter| set | bit(letter as u32))
 }
 
-/// The optimal string alignment distance: insertions, deletions, replacements and swaps of neighbours.
-fn typing_errors(a: &[char], b: &[char]) -> usize {
-    let mut before: Vec<usize> = Vec::new();
-    let mut last: Vec<usize> = (0..=b.len()).collect();
+/// The optimal string alignment distance (insertions, deletions, replacements and swaps of neighbours), as far as it is at most `most`.
+///
+/// Only what lies within `most` of the diagonal can be part of it (Ukkonen, Algorithms for approximate string matching, 1985).
+fn typing_errors(a: &[char], b: &[char], most: usize) -> Option<usize> {
+    let far = most + 1;
+    let (mut before, mut row) = (vec![far; b.len() + 1], vec![far; b.len() + 1]);
+    let mut last: Vec<usize> = (0..=b.len()).map(|errors| errors.min(far)).collect();
     for i in 1..=a.len() {
-        let mut row = vec![i; b.len() + 1];
-        for j in 1..=b.len() {
+        let (from, to) = (i.saturating_sub(most).max(1), (i + most).min(b.len()));
+        row.fill(far);
+        row[0] = i.min(far);
+        for j in from..=to {
             let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            row[j] = replaced.min(last[j] + 1).min(row[j - 1] + 1);
+            row[j] = replaced.min(last[j] + 1).min(row[j - 1] + 1).min(far);
             if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
                 row[j] = row[j].min(before[j - 2] + 1);
             }
         }
-        before = std::mem::replace(&mut last, row);
+        (before, last, row) = (last, row, before);
+        if last.iter().chain(&before).all(|errors| *errors == far) {
+            return None;
+        }
     }
-    last[b.len()]
+    Some(last[b.len()]).filter(|errors| *errors <= most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The distance as its definition says it.
+    fn all_of_it(a: &[char], b: &[char]) -> usize {
+        let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
+        for i in 1..=a.len() {
+            let mut row = vec![i; b.len() + 1];
+            for j in 1..=b.len() {
+                let replaced = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+                row[j] = replaced.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
+                if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                    row[j] = row[j].min(rows[i - 2][j - 2] + 1);
+                }
+            }
+            rows.push(row);
+        }
+        rows[a.len()][b.len()]
+    }
+
+    #[test]
+    fn a_distance_is_found_whole_or_not_at_all() {
+        // All words of up to four letters out of three.
+        let mut words: Vec<Vec<char>> = vec![Vec::new()];
+        for length in 0..4 {
+            let longer: Vec<Vec<char>> = words
+                .iter()
+                .filter(|word| word.len() == length)
+                .flat_map(|word| ['a', 'b', 'c'].map(|letter| [&word[..], &[letter]].concat()))
+                .collect();
+            words.extend(longer);
+        }
+        for a in &words {
+            for b in &words {
+                let whole = all_of_it(a, b);
+                for most in 0..5 {
+                    let expected = Some(whole).filter(|errors| *errors <= most);
+                    assert_eq!(typing_errors(a, b, most), expected, "{a:?} {b:?} {most}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn of_names_that_are_equally_like_the_first_ones_are_given_each_once() {
+        let names = ["robot3", "robot1", "robot1", "robots", "Robot", "robot2", "Robot"];
+        assert_eq!(nearest_few("robot", names, 3), ["Robot", "robot3", "robot1"]);
+        assert_eq!(nearest_few("robot", names, 1), ["Robot"]);
+        assert_eq!(nearest_few("robot", names, 9), ["Robot", "robot3", "robot1", "robots", "robot2"]);
+        assert_eq!(nearest_few("robot", names, 0), [""; 0]);
+    }
 }

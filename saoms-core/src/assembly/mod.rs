@@ -13,7 +13,7 @@ use saoms_api::{PropertyField, PropertyValue};
 
 pub use expanded::expanded;
 pub use task::{RestartPolicy, TaskProperties};
-pub use traffic::{End, Topic, Traffic};
+pub use traffic::{End, Pace, Topic, Traffic};
 
 use crate::registry::{Class, LoopClass};
 

@@ -71,20 +71,52 @@ impl Topic {
         self.writers.iter().chain(&self.readers)
     }
 
-    /// How many messages come between two executions of a reader if each part of each writer sends one in each execution; `None` for a passive reader.
-    pub fn burst(&self, reader: &End) -> Option<u64> {
-        let period = reader.period?.as_nanos();
-        let messages = self.writers.iter().filter_map(|writer| {
-            let executions = period.div_ceil(writer.period?.as_nanos().max(1));
-            Some(u64::try_from(executions).unwrap_or(u64::MAX).saturating_mul(u64::from(writer.parts)))
-        });
-        Some(messages.fold(0, u64::saturating_add))
+    /// How often its writers send.
+    pub fn pace(&self) -> Pace {
+        let mut parts: BTreeMap<u128, u64> = BTreeMap::new();
+        for writer in &self.writers {
+            if let Some(period) = writer.period {
+                *parts.entry(period.as_nanos().max(1)).or_default() += u64::from(writer.parts);
+            }
+        }
+        Pace { parts: parts.into_iter().collect() }
     }
 
     /// How many messages a second there are if each part of each writer sends one in each execution.
     pub fn rate(&self) -> f64 {
         let rates = self.writers.iter().filter_map(|writer| Some((writer.parts, writer.period?)));
         rates.map(|(parts, period)| f64::from(parts) / period.as_secs_f64()).sum()
+    }
+}
+
+/// How often the writers of a topic send if each part of each sends one message in each execution.
+#[derive(Clone, Debug)]
+pub struct Pace {
+    /// How many parts send in each period, which is in nanoseconds; the shortest first.
+    parts: Vec<(u128, u64)>,
+}
+
+impl Pace {
+    /// How many messages come between two executions of a reader with this period.
+    pub fn burst(&self, period: Duration) -> u64 {
+        self.sums(period).last().unwrap_or(0)
+    }
+
+    /// Whether these are more than so many. Most often a part of the writers says it.
+    pub fn exceeds(&self, period: Duration, room: u64) -> bool {
+        self.sums(period).any(|sum| sum > room)
+    }
+
+    /// The messages of the first writers, of those and the next ones, and so on.
+    fn sums(&self, period: Duration) -> impl Iterator<Item = u64> {
+        let messages = self.parts.iter().map(move |(own, parts)| {
+            let executions = period.as_nanos().div_ceil(*own);
+            u64::try_from(executions).unwrap_or(u64::MAX).saturating_mul(*parts)
+        });
+        messages.scan(0, |sum: &mut u64, more| {
+            *sum = sum.saturating_add(more);
+            Some(*sum)
+        })
     }
 }
 

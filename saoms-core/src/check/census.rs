@@ -1,8 +1,11 @@
 //! What of the composites is in the fleet, how many times, and with which topics, for pictures of them.
 
-use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use super::arena::Arena;
+use super::classes::ClassIndex;
 use super::fleet::{Fleet, Kind};
 use super::options::Options;
 use super::parameters::Parameters;
@@ -21,7 +24,8 @@ pub struct Census {
     counts: HashMap<(FileId, ElementId), usize>,
     /// The fewest and the most in one of the composites around them.
     ranges: HashMap<Way, (usize, usize)>,
-    topics: HashMap<Way, Vec<TopicUse>>,
+    /// Components of one class with the same renames share a list.
+    topics: HashMap<Way, Rc<[TopicUse]>>,
 }
 
 /// A component, with those around it that composites implement before it, the outermost first.
@@ -33,7 +37,7 @@ pub struct TopicUse {
     /// Its name, after renaming.
     pub name: String,
     /// What the component's part says of it.
-    pub declared: TopicDeclaration,
+    pub declared: Rc<TopicDeclaration>,
     /// Whether it is published; it is subscribed to otherwise.
     pub is_published: bool,
 }
@@ -105,7 +109,7 @@ impl Census {
 
     /// The topics that a component in the composites that implement `around` and its loops use, those of all its replicas.
     pub fn topics(&self, around: &[Origin], origin: Origin) -> &[TopicUse] {
-        self.topics.get(&way(around, origin)).map_or(&[], Vec::as_slice)
+        self.topics.get(&way(around, origin)).map_or(&[], |uses| &**uses)
     }
 }
 
@@ -143,14 +147,15 @@ fn topics<'a>(
     mut parameters: Parameters<'a>,
     registry: &'a Registry,
     sources: &Sources,
-) -> HashMap<Way, Vec<TopicUse>> {
+) -> HashMap<Way, Rc<[TopicUse]>> {
     let mut unheard = Diagnostics::new();
     let report = &mut Report::new(sources, &mut unheard);
     report.assumes = true;
     let mut classes = classes::resolve(fleet, fleet.contribution, registry, true, report);
     let checked = super::properties(fleet, &classes, &mut parameters, report);
     loops::resolve(fleet, &mut classes, &checked, registry, &mut parameters, report);
-    let mut all: HashMap<_, Vec<TopicUse>> = HashMap::new();
+    let mut lists = Lists::default();
+    let mut all: HashMap<Way, Used> = HashMap::new();
     let mut before = task::Before::default();
     for (member, checked) in fleet.members.iter().zip(&checked).filter(|(member, _)| !member.is_absent) {
         let (Kind::Class(index), Some(checked)) = (member.kind, checked) else { continue };
@@ -160,17 +165,71 @@ fn topics<'a>(
             true => task::check(member.component, (index, class), checked, &mut before, report).renames,
             false => Vec::new(),
         };
-        let way = within(&ways[member.scope], place(member.component.origin));
-        let uses = all.entry(way).or_default();
-        let published = class.publishes.iter().map(|topic| (*topic, true));
-        for (declared, is_published) in published.chain(class.subscribes.iter().map(|topic| (*topic, false)))
-        {
-            let renamed = renames.iter().find(|(old, _)| *old == declared.name);
-            let name = renamed.map_or(&declared.name, |(_, new)| new);
-            if !uses.iter().any(|one| one.name == *name && one.is_published == is_published) {
-                uses.push(TopicUse { name: name.clone(), declared: declared.clone(), is_published });
-            }
+        let list = lists.of((index, class), renames);
+        let used = all.entry(within(&ways[member.scope], place(member.component.origin))).or_default();
+        if used.seen.insert(list.as_ptr()) {
+            used.lists.push(list);
         }
     }
-    all
+    all.into_iter().map(|(way, used)| (way, used.joined())).collect()
+}
+
+/// Lists of topics, each made once.
+#[derive(Default)]
+struct Lists {
+    /// By the place of the class and what is renamed.
+    known: HashMap<(usize, Vec<(String, String)>), Rc<[TopicUse]>>,
+    declared: HashMap<*const TopicDeclaration, Rc<TopicDeclaration>>,
+}
+
+impl Lists {
+    /// The topics of a component of this class.
+    fn of(
+        &mut self,
+        (index, class): (usize, &ClassIndex<'_>),
+        renames: Vec<(String, String)>,
+    ) -> Rc<[TopicUse]> {
+        let Self { known, declared } = self;
+        let list = known.entry((index, renames));
+        if let Entry::Occupied(list) = list {
+            return Rc::clone(list.get());
+        }
+        let renames = &list.key().1;
+        let published = class.publishes.iter().map(|topic| (*topic, true));
+        let topics = published.chain(class.subscribes.iter().map(|topic| (*topic, false)));
+        let uses = topics.map(|(topic, is_published)| {
+            let renamed = renames.iter().find(|(old, _)| *old == topic.name);
+            let name = renamed.map_or(&topic.name, |(_, new)| new).clone();
+            let declared = declared.entry(std::ptr::from_ref(topic));
+            TopicUse {
+                name,
+                declared: Rc::clone(declared.or_insert_with(|| Rc::new(topic.clone()))),
+                is_published,
+            }
+        });
+        let uses = once(uses).collect();
+        Rc::clone(list.or_insert(uses))
+    }
+}
+
+/// The different lists of a component: its replicas may have several.
+#[derive(Default)]
+struct Used {
+    lists: Vec<Rc<[TopicUse]>>,
+    seen: HashSet<*const TopicUse>,
+}
+
+impl Used {
+    fn joined(mut self) -> Rc<[TopicUse]> {
+        match self.lists.len() {
+            1 => self.lists.swap_remove(0),
+            _ => once(self.lists.iter().flat_map(|list| list.iter().cloned())).collect(),
+        }
+    }
+}
+
+/// Each topic once for its writer, once for its reader.
+fn once(uses: impl Iterator<Item = TopicUse>) -> impl Iterator<Item = TopicUse> {
+    let mut seen: HashSet<(String, bool)> = HashSet::new();
+    uses.filter(move |one| seen.insert((one.name.clone(), one.is_published)))
 }

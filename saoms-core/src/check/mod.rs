@@ -43,6 +43,7 @@ mod room;
 mod rules;
 mod setting;
 mod severities;
+mod similar;
 mod slots;
 mod target;
 mod task;

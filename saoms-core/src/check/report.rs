@@ -12,9 +12,9 @@ use crate::xml::Writing;
 
 /// How many right names are looked at for all wrong ones together: in a large file full of wrong names every search goes
 /// through all right ones.
-const CANDIDATES: usize = 1_000_000;
+pub(super) const CANDIDATES: usize = 1_000_000;
 /// Lists that are not longer are searched in any case.
-const FEW: usize = 100;
+pub(super) const FEW: usize = 100;
 
 /// Collects diagnostics, and knows the texts they are about.
 pub(super) struct Report<'a> {

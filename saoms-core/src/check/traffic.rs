@@ -6,8 +6,9 @@ use std::time::Duration;
 use saoms_api::{TopicKind, format_duration};
 
 use super::report::Report;
+use super::similar::{Name, Similar};
 use crate::assembly::{Assembly, End, Loss, Topic, Traffic};
-use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
 
 /// Where a component stands, and where its topics got their names.
@@ -22,13 +23,14 @@ pub(super) struct Place {
 pub(super) fn check(assembly: &Assembly, places: &[Place], report: &mut Report<'_>) {
     let traffic = Traffic::of(assembly);
     let all = All { assembly, places };
+    let similar = Similar::of(&traffic, |topic| topic.ends().all(|end| all.is_renamed(end, topic)));
     let is_lone = |topic: &&Topic| topic.writers.is_empty() || topic.readers.is_empty();
     let mut lone: HashMap<&str, &Topic> =
         traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
     let mut told: HashSet<&str> = HashSet::new();
     for topic in &traffic.topics {
         if lone.contains_key(topic.name.as_str())
-            && let Some(meant) = all.meant(topic, &traffic)
+            && let Some(meant) = meant(topic, &similar)
         {
             for name in [topic.name.as_str(), meant.name.as_str()] {
                 lone.remove(name);
@@ -39,7 +41,7 @@ pub(super) fn check(assembly: &Assembly, places: &[Place], report: &mut Report<'
     }
     for topic in &traffic.topics {
         if !told.contains(topic.name.as_str())
-            && let Some(meant) = all.left(topic, &traffic).or_else(|| all.missed(topic, &traffic))
+            && let Some(meant) = left(topic, &similar).or_else(|| all.missed(topic, &similar))
         {
             all.alone(topic, meant, report);
         }
@@ -86,56 +88,17 @@ impl All<'_> {
         format!("{} {does}", self.who(ends))
     }
 
-    /// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one lacks.
-    fn meant<'t>(&self, lone: &Topic, traffic: &'t Traffic) -> Option<&'t Topic> {
-        let fits = |other: &&Topic| {
-            let has_end =
-                if lone.writers.is_empty() { !other.writers.is_empty() } else { !other.readers.is_empty() };
-            has_end && other.name != lone.name && other.message == lone.message && other.kind == lone.kind
-        };
-        let candidates: Vec<&Topic> = traffic.topics.iter().filter(fits).collect();
-        let name = nearest(&lone.name, candidates.iter().map(|other| other.name.as_str()))?;
-        candidates.into_iter().find(|other| other.name == name)
-    }
-
-    /// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with nearly its name,
-    /// and used by several others.
-    fn left<'t>(&self, topic: &Topic, traffic: &'t Traffic) -> Option<&'t Topic> {
-        let only = topic.writers.first()?.component;
-        let is_alone = !topic.readers.is_empty() && topic.ends().all(|end| end.component == only);
-        let fits = |other: &&Topic| {
-            let mut others = other.ends().map(|end| end.component).filter(|other| *other != only);
-            let first = others.next();
-            let is_shared = others.any(|other| Some(other) != first);
-            is_shared
-                && other.name != topic.name
-                && other.message == topic.message
-                && other.kind == topic.kind
-        };
-        let candidates: Vec<&Topic> = traffic.topics.iter().filter(|_| is_alone).filter(fits).collect();
-        let name = nearest(&topic.name, candidates.iter().map(|other| other.name.as_str()))?;
-        candidates.into_iter().find(|other| other.name == name)
-    }
-
     /// The topic that those who use this one meant by a `topicRename`: of the same messages, with nearly its name, which is the one that it has
     /// without renaming. Names that only add something to another one, or differ in their numbers, keep parts of a fleet apart.
-    fn missed<'t>(&self, topic: &Topic, traffic: &'t Traffic) -> Option<&'t Topic> {
+    fn missed<'t>(&self, topic: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
         if topic.writers.is_empty()
             || topic.readers.is_empty()
             || !topic.ends().all(|end| self.is_renamed(end, topic))
         {
             return None;
         }
-        let fits = |other: &&Topic| {
-            other.name != topic.name
-                && other.message == topic.message
-                && other.kind == topic.kind
-                && other.ends().any(|end| !self.is_renamed(end, other))
-                && !is_apart(&topic.name, &other.name)
-        };
-        let candidates: Vec<&Topic> = traffic.topics.iter().filter(fits).collect();
-        let name = nearest(&topic.name, candidates.iter().map(|other| other.name.as_str()))?;
-        candidates.into_iter().find(|other| other.name == name)
+        let name = Name::of(&topic.name);
+        similar.nearest(topic, |other| !other.is_renamed && !other.is_apart(&name))
     }
 
     fn is_renamed(&self, end: &End, topic: &Topic) -> bool {
@@ -205,29 +168,40 @@ impl All<'_> {
     /// Compares how often a topic is written and read.
     fn rates(&self, topic: &Topic, report: &mut Report<'_>) {
         let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
+        let pace = topic.pace();
+        let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
+        let mut alike: HashMap<Duration, Vec<End>> = HashMap::new();
+        for reader in &topic.readers {
+            if let Some(period) = reader.period {
+                alike.entry(period).or_default().push(*reader);
+            }
+        }
         // One for each pair of periods: a fleet of robots says the same.
-        let mut told: Vec<(&'static str, Option<Duration>)> = Vec::new();
+        let mut told: HashSet<(&'static str, Duration)> = HashSet::new();
         for reader in &topic.readers {
             let Some(task) = &self.assembly.components[reader.component].task else { continue };
-            let alike = |one: &&End| one.period == reader.period;
-            let readers: Vec<End> = topic.readers.iter().filter(alike).copied().collect();
-            let Some(burst) = topic.burst(reader) else { continue };
-            let overflows = topic.kind == TopicKind::Event && burst > task.queue as u64;
-            if overflows && task.loss == Loss::Fail && !told.contains(&("queue", reader.period)) {
-                told.push(("queue", reader.period));
+            let Some(period) = reader.period else { continue };
+            let readers = &alike[&period];
+            let counts = topic.kind == TopicKind::Event && task.loss == Loss::Fail;
+            let at = self.places[reader.component].queue.unwrap_or(self.at(reader, topic));
+            if counts
+                && !told.contains(&("queue", period))
+                && pace.exceeds(period, task.queue as u64)
+                && told.insert(("queue", period))
+                && !report.diagnostics().skip(&codes::QUEUE, codes::QUEUE.severity, at)
+            {
+                let burst = pace.burst(period);
                 let message = format!(
                     "up to {burst} messages of topic {} can come between two executions of {}, and {} find room",
                     quoted(&topic.name),
-                    self.who(&readers),
+                    self.who(readers),
                     task.queue
                 );
-                let parts: u32 = topic.writers.iter().map(|writer| writer.parts).sum();
-                let in_all = match parts as usize == topic.writers.len() {
+                let in_all = match parts == topic.writers.len() as u64 {
                     true => String::new(),
                     false => format!(", {parts} components and loops in all"),
                 };
                 let writers = self.who_does(&topic.writers, "publishes");
-                let at = self.places[reader.component].queue.unwrap_or(self.at(reader, topic));
                 let one = Diagnostic::new(&codes::QUEUE, at, message);
                 report.push(
                     one.help(format!(
@@ -238,14 +212,13 @@ impl All<'_> {
                     )),
                 );
             }
-            if let (Some(fastest), Some(period)) = (fastest, reader.period)
+            if let Some(fastest) = fastest
                 && period < fastest
-                && !told.contains(&("rate", reader.period))
+                && told.insert(("rate", period))
             {
-                told.push(("rate", reader.period));
                 let message = format!(
                     "{} topic {} every {}, and nobody publishes it more often than every {}",
-                    self.who_does(&readers, "reads"),
+                    self.who_does(readers, "reads"),
                     quoted(&topic.name),
                     format_duration(period),
                     format_duration(fastest)
@@ -257,14 +230,26 @@ impl All<'_> {
     }
 }
 
-/// Whether two names are different on purpose: one adds something to the other, or they differ in their numbers.
-fn is_apart(one: &str, other: &str) -> bool {
-    let (one, other) = (one.to_lowercase(), other.to_lowercase());
-    let without_numbers = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
-    let adds = |long: &str, short: &str| long != short && (long.starts_with(short) || long.ends_with(short));
-    adds(&one, &other)
-        || adds(&other, &one)
-        || one != other && without_numbers(&one) == without_numbers(&other)
+/// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one lacks.
+fn meant<'t>(lone: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+    similar.nearest(lone, |other| match lone.writers.is_empty() {
+        true => !other.topic.writers.is_empty(),
+        false => !other.topic.readers.is_empty(),
+    })
+}
+
+/// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with nearly its name,
+/// and used by several others.
+fn left<'t>(topic: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+    let only = topic.writers.first()?.component;
+    if topic.readers.is_empty() || topic.ends().any(|end| end.component != only) {
+        return None;
+    }
+    similar.nearest(topic, |other| {
+        let mut others = other.topic.ends().map(|end| end.component).filter(|other| *other != only);
+        let first = others.next();
+        others.any(|other| Some(other) != first)
+    })
 }
 
 fn article(word: &str) -> &'static str {

@@ -21,6 +21,8 @@ pub struct Diagram {
     pub links: Vec<Link>,
     /// The topics of its components, in the order of their first use.
     pub topics: Vec<Topic>,
+    /// How many wires that autowire makes are left out: there can be as many as the product of all ends.
+    pub left_out: usize,
 }
 
 /// A component.
@@ -56,6 +58,12 @@ impl Component {
 }
 
 impl Diagram {
+    /// How many wires are left out of it and of what is inside.
+    pub fn all_left_out(&self) -> usize {
+        let inside = self.components.iter().filter_map(|component| component.inside.as_deref());
+        self.left_out + inside.map(Self::all_left_out).sum::<usize>()
+    }
+
     /// Whether this is so of it, or of what is inside one of its components.
     pub(super) fn any(&self, is_so: &dyn Fn(&Self) -> bool) -> bool {
         let mut inside = self.components.iter().filter_map(|component| component.inside.as_deref());
@@ -90,6 +98,17 @@ pub struct Port {
     pub name: String,
     /// Its interface, where that is known.
     pub interface: Option<String>,
+    /// Whether a reference takes several targets, where that is said.
+    pub many: Option<bool>,
+    /// Where a composite implements its component: the place among the services or references of that with its name.
+    pub inside: Option<usize>,
+}
+
+impl Port {
+    /// A port of which nothing else is known.
+    pub(super) fn named(name: &str) -> Self {
+        Self { name: name.to_owned(), interface: None, many: None, inside: None }
+    }
 }
 
 /// A wire or a promotion.

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::diagram::{Component, Diagram, End, LinkKind, Port, State};
+use super::text::left_out;
 
 /// Draws a diagram in the language of Graphviz: components are records with services on the left and references on the
 /// right, topics ellipses, composites clusters.
@@ -13,6 +14,9 @@ pub fn dot(diagram: &Diagram) -> String {
     );
     open("composite", &diagram.name, &mut out);
     composite(diagram, "", &mut out);
+    if let Some(note) = left_out(diagram) {
+        let _ = writeln!(out, "  // {note}");
+    }
     out.push_str("}\n");
     out
 }
@@ -41,7 +45,7 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut String) {
         let about = [component.label(), component.class.clone()];
         open(&id, about.join(" ").trim_end(), out);
         // Wires lead to what the composite inside promotes; for the rest there is a node.
-        if !is_all_inside(component, inside) {
+        if component.services.iter().chain(&component.references).any(|port| port.inside.is_none()) {
             out.push_str(&node);
         }
         composite(inside, &format!("{id}_"), out);
@@ -71,24 +75,11 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut String) {
     edges(diagram, prefix, out);
 }
 
-/// What a composite promotes under a name, which stands for that of its component.
-fn named(ports: &[Port], name: &str) -> Option<usize> {
-    ports.iter().position(|port| port.name == name)
-}
-
-/// Whether all services and references of a component are promoted by the composite inside it.
-fn is_all_inside(component: &Component, inside: &Diagram) -> bool {
-    let are = |outer: &[Port], inner: &[Port]| outer.iter().all(|port| named(inner, &port.name).is_some());
-    are(&component.services, &inside.services) && are(&component.references, &inside.references)
-}
-
 fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
     for link in &diagram.links {
         let from = match link.from {
             End::Component { component, port } => {
-                let one = &diagram.components[component];
-                let inside = one.inside.as_deref();
-                match inside.and_then(|inside| named(&inside.references, &one.references[port].name)) {
+                match diagram.components[component].references[port].inside {
                     Some(place) => format!("{prefix}c{component}_r{place}"),
                     None => format!("{prefix}c{component}:r{port}:e"),
                 }
@@ -96,14 +87,10 @@ fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
             End::Composite(place) => format!("{prefix}s{place}"),
         };
         let to = match link.to {
-            End::Component { component, port } => {
-                let one = &diagram.components[component];
-                let inside = one.inside.as_deref();
-                match inside.and_then(|inside| named(&inside.services, &one.services[port].name)) {
-                    Some(place) => format!("{prefix}c{component}_s{place}"),
-                    None => format!("{prefix}c{component}:s{port}:w"),
-                }
-            }
+            End::Component { component, port } => match diagram.components[component].services[port].inside {
+                Some(place) => format!("{prefix}c{component}_s{place}"),
+                None => format!("{prefix}c{component}:s{port}:w"),
+            },
             End::Composite(place) => format!("{prefix}r{place}"),
         };
         let style = if link.kind == LinkKind::Promotion { " [style=dashed]" } else { "" };

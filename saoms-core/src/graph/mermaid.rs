@@ -2,12 +2,16 @@
 
 use std::fmt::Write as _;
 
-use super::diagram::{Diagram, End, LinkKind, Port, State};
+use super::diagram::{Diagram, End, LinkKind, State};
+use super::text::left_out;
 
 /// Draws a diagram as a flowchart of Mermaid.
 pub fn mermaid(diagram: &Diagram) -> String {
     let mut out = "flowchart LR\n".to_owned();
     composite(diagram, "", "composite", &escaped(&diagram.name), &mut out);
+    if let Some(note) = left_out(diagram) {
+        let _ = writeln!(out, "  %% {note}");
+    }
     out.push_str("  classDef component fill:#d8e6f5,stroke:#46617e\n");
     out.push_str("  classDef unknown fill:#d8e6f5,stroke:#c0392b,stroke-dasharray:5 3\n");
     out.push_str("  classDef missing fill:#fff,stroke:#c0392b,stroke-dasharray:5 3\n");
@@ -55,31 +59,28 @@ fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut S
 }
 
 fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
-    let name = |ports: &[Port], place: usize| ports.get(place).map_or("", |port| &port.name).to_owned();
     for link in &diagram.links {
         let (from, source) = match link.from {
             End::Component { component, port } => {
-                let one = &diagram.components[component];
-                let name = name(&one.references, port);
-                let inside = one.inside.as_deref().and_then(|inside| named(&inside.references, &name));
-                (format!("c{component}{}", inside.map_or(String::new(), |place| format!("_r{place}"))), name)
+                let port = &diagram.components[component].references[port];
+                let inside = port.inside.map_or(String::new(), |place| format!("_r{place}"));
+                (format!("c{component}{inside}"), &*port.name)
             }
-            End::Composite(place) => (format!("s{place}"), String::new()),
+            End::Composite(place) => (format!("s{place}"), ""),
         };
         let (to, target) = match link.to {
             End::Component { component, port } => {
-                let one = &diagram.components[component];
-                let name = name(&one.services, port);
-                let inside = one.inside.as_deref().and_then(|inside| named(&inside.services, &name));
-                (format!("c{component}{}", inside.map_or(String::new(), |place| format!("_s{place}"))), name)
+                let port = &diagram.components[component].services[port];
+                let inside = port.inside.map_or(String::new(), |place| format!("_s{place}"));
+                (format!("c{component}{inside}"), &*port.name)
             }
-            End::Composite(place) => (format!("r{place}"), String::new()),
+            End::Composite(place) => (format!("r{place}"), ""),
         };
         let arrow = match link.kind {
             LinkKind::Wire => "-->",
             LinkKind::Promotion => "-.->",
         };
-        let names: Vec<&str> = [&*source, &*target].into_iter().filter(|name| !name.is_empty()).collect();
+        let names: Vec<&str> = [source, target].into_iter().filter(|name| !name.is_empty()).collect();
         let label =
             if names.is_empty() { String::new() } else { format!("|{}|", quoted(&names.join(" → "))) };
         let _ = writeln!(out, "  {prefix}{from} {arrow}{label} {prefix}{to}");
@@ -96,11 +97,6 @@ fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
             }
         }
     }
-}
-
-/// What a composite promotes under a name, which stands for that of its component.
-fn named(ports: &[Port], name: &str) -> Option<usize> {
-    ports.iter().position(|port| port.name == name)
 }
 
 fn quoted(text: &str) -> String {

@@ -6,8 +6,10 @@
 
 mod diagram;
 mod dot;
+mod groups;
 mod layout;
 mod mermaid;
+mod ports;
 mod read;
 mod svg;
 #[cfg(test)]

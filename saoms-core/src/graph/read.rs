@@ -1,5 +1,7 @@
 //! From the model to a diagram.
 
+use std::collections::{HashMap, HashSet};
+
 use super::diagram::{Component, Diagram, Port, Setting, State};
 use super::{topics, wiring};
 use crate::check::{Census, TopicUse};
@@ -39,7 +41,8 @@ impl Diagram {
 
 /// Composites together with all that they include.
 pub(super) struct View<'c> {
-    composites: Vec<&'c Composite>,
+    /// Each with what it says of autowire, or else the one that includes it.
+    composites: Vec<(&'c Composite, bool)>,
     census: &'c Census,
     /// The components around them.
     around: Vec<Origin>,
@@ -50,23 +53,27 @@ impl<'c> View<'c> {
         contribution: &'c Contribution,
         census: &'c Census,
         around: Vec<Origin>,
-        mut places: Vec<usize>,
+        places: Vec<usize>,
     ) -> Self {
+        let all = contribution.composites();
+        let autowire = |place: usize, around: bool| all[place].autowire.map_or(around, |one| one.value);
+        let mut seen: HashSet<usize> = places.iter().copied().collect();
+        let mut places: Vec<(usize, bool)> =
+            places.into_iter().map(|place| (place, autowire(place, false))).collect();
         let mut at = 0;
-        while let Some(place) = places.get(at) {
-            let includes = contribution.composites()[*place].includes.iter();
+        while let Some(&(place, around)) = places.get(at) {
+            let includes = all[place].includes.iter();
             let includes = includes.filter(|include| census.is_there(include.origin));
-            let links = includes.filter_map(|include| contribution.link(include.origin));
-            for link in links {
+            for link in includes.filter_map(|include| contribution.link(include.origin)) {
                 if let Link::To(found) = link
-                    && !places.contains(found)
+                    && seen.insert(*found)
                 {
-                    places.push(*found);
+                    places.push((*found, autowire(*found, around)));
                 }
             }
             at += 1;
         }
-        let composites = places.into_iter().map(|place| &contribution.composites()[place]).collect();
+        let composites = places.into_iter().map(|(place, autowire)| (&all[place], autowire)).collect();
         Self { composites, census, around }
     }
 
@@ -76,14 +83,15 @@ impl<'c> View<'c> {
     }
 
     pub(super) fn composites(&self) -> impl Iterator<Item = &'c Composite> {
-        self.composites.iter().copied()
+        self.composites.iter().map(|(composite, _)| *composite)
     }
 
-    /// All components, each with the composite that it is written in.
-    pub(super) fn components(&self) -> impl Iterator<Item = (&'c Composite, &'c model::Component)> {
+    /// All components, each with whether its composite asks for autowire.
+    pub(super) fn components(&self) -> impl Iterator<Item = (bool, &'c model::Component)> {
         let all = self
-            .composites()
-            .flat_map(|composite| composite.components.iter().map(move |one| (composite, one)));
+            .composites
+            .iter()
+            .flat_map(|(composite, autowire)| composite.components.iter().map(move |one| (*autowire, one)));
         all.filter(|(_, component)| {
             self.census.range(&self.around, component.origin).is_none_or(|(_, most)| most > 0)
         })
@@ -133,14 +141,15 @@ impl Reader<'_> {
             namespace,
             properties: view.composites().flat_map(|one| &one.properties).map(setting).collect(),
             services: view.services().map(|one| port(&one.name, one.interface())).collect(),
-            references: view.references().map(|one| port(&one.name, one.interface())).collect(),
+            references: view.references().map(reference).collect(),
             components: view.components().map(|(_, one)| self.component(one)).collect(),
             links: Vec::new(),
             topics: topics::of(&view),
+            left_out: 0,
         };
         topics::join(&mut diagram, self.times > 1);
         self.open.truncate(outside);
-        wiring::link(&view, &mut diagram);
+        wiring::link(&view, &mut diagram, outside > 0);
         diagram
     }
 
@@ -170,17 +179,18 @@ impl Reader<'_> {
                 let inside = self.diagram(vec![*place]);
                 self.around.pop();
                 self.times = times;
-                declared(pairs(&inside.services), &mut component.services);
-                declared(pairs(&inside.references), &mut component.references);
+                let ports = |ports: &[Port]| {
+                    let all = ports.iter().enumerate();
+                    let all = all.map(|(place, one)| Port { inside: Some(place), ..one.clone() });
+                    all.collect::<Vec<_>>()
+                };
+                declared(ports(&inside.services), &mut component.services);
+                declared(ports(&inside.references), &mut component.references);
                 component.inside = Some(Box::new(inside));
             }
         }
         component
     }
-}
-
-fn pairs(ports: &[Port]) -> impl Iterator<Item = (&str, &str)> {
-    ports.iter().map(|port| (&*port.name, port.interface.as_deref().unwrap_or_default()))
 }
 
 /// The registered class of a component.
@@ -192,14 +202,20 @@ fn component(component: &model::Component, registry: &Registry) -> Component {
     let class = class_of(component, registry);
     let mut services: Vec<Port> =
         component.services.iter().map(|one| port(&one.name, one.interface())).collect();
-    let mut references: Vec<Port> =
-        component.references.iter().map(|one| port(&one.name, one.interface())).collect();
+    let mut references: Vec<Port> = component.references.iter().map(reference).collect();
     if let Some(class) = class {
         // What the host serves for every component is drawn where it is named.
+        let interface = |name: &str| Some(name.to_owned()).filter(|name| !name.is_empty());
         let own = class.declaration().services.iter();
-        declared(own.map(|one| (&*one.name, &*one.interface.name)), &mut services);
+        let own = own.map(|one| Port { interface: interface(&one.interface.name), ..Port::named(&one.name) });
+        declared(own, &mut services);
         let own = class.declaration().references.iter();
-        declared(own.map(|one| (&*one.name, &*one.interface.name)), &mut references);
+        let own = own.map(|one| Port {
+            interface: interface(&one.interface.name),
+            many: Some(one.many),
+            ..Port::named(&one.name)
+        });
+        declared(own, &mut references);
     }
     let is_unknown = class.is_none() && component.class().is_some();
     Component {
@@ -217,13 +233,22 @@ fn component(component: &model::Component, registry: &Registry) -> Component {
     }
 }
 
-/// Adds what the class declares beyond what the file says.
-fn declared<'c>(all: impl Iterator<Item = (&'c str, &'c str)>, ports: &mut Vec<Port>) {
-    for (name, interface) in all {
-        let interface = Some(interface.to_owned()).filter(|interface| !interface.is_empty());
-        match ports.iter_mut().find(|port| port.name == name) {
-            Some(port) => port.interface = port.interface.take().or(interface),
-            None => ports.push(Port { name: name.to_owned(), interface }),
+/// Adds what the class or the composite inside declares beyond what the file says.
+fn declared(all: impl IntoIterator<Item = Port>, ports: &mut Vec<Port>) {
+    let names = ports.iter().enumerate().rev();
+    let mut places: HashMap<String, usize> = names.map(|(place, one)| (one.name.clone(), place)).collect();
+    for one in all {
+        match places.get(&one.name) {
+            Some(&place) => {
+                let port = &mut ports[place];
+                port.interface = port.interface.take().or(one.interface);
+                port.many = port.many.or(one.many);
+                port.inside = port.inside.or(one.inside);
+            }
+            None => {
+                places.insert(one.name.clone(), ports.len());
+                ports.push(one);
+            }
         }
     }
 }
@@ -244,7 +269,12 @@ fn label(component: &model::Component) -> String {
 
 fn port(name: &str, interface: Option<&Interface>) -> Port {
     let interface = interface.and_then(|one| one.interface.as_ref()).map(ToString::to_string);
-    Port { name: name.to_owned(), interface }
+    Port { interface, ..Port::named(name) }
+}
+
+fn reference(one: &Reference) -> Port {
+    let many = one.multiplicity().map(|one| one.value.is_many());
+    Port { many, ..port(&one.name, one.interface()) }
 }
 
 fn setting(property: &model::Property) -> Setting {

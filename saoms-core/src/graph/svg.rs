@@ -5,8 +5,10 @@ use std::fmt::Write as _;
 
 use super::diagram::{Component, Diagram, LinkKind, Port, Setting, State, Topic};
 use super::layout::measure::{CHEVRON, CHIP_HEIGHT, CHIP_SIZE, Chip, LABEL, NAME_SIZE, SMALL_SIZE};
-use super::layout::{LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, layout};
-use super::text::{width, xml};
+use super::layout::{
+    LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, border, heading, layout,
+};
+use super::text::{left_out, width, xml};
 
 /// The colours of topics, dark enough for lines on white (Okabe, Ito: Color universal design, 2008; yellow left out).
 const TOPICS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#555555"];
@@ -64,14 +66,11 @@ impl Out {
     fn draw(&mut self, diagram: &Diagram, layout: &Layout) {
         self.composite(diagram, layout);
         layout.lines.iter().for_each(|line| self.line(line));
-        for (rail, topic) in layout.rails.iter().zip(&diagram.topics) {
-            let color = self.color(&topic.name);
+        let colors: Vec<_> = diagram.topics.iter().map(|topic| self.color(&topic.name)).collect();
+        for ((rail, topic), color) in layout.rails.iter().zip(&diagram.topics).zip(&colors) {
             self.rail(rail, topic, color);
         }
-        for mark in &layout.marks {
-            let color = self.color(&diagram.topics[mark.topic].name);
-            self.mark(mark, color);
-        }
+        self.marks(&layout.marks, &colors);
         for (placed, component) in layout.components.iter().zip(&diagram.components) {
             self.component(placed, component);
         }
@@ -113,8 +112,9 @@ impl Out {
         let Rect { x, y, .. } = layout.frame;
         let name = Point { x: x + 16, y: y + 23 + layout.name };
         let _ = write!(self.text, "<g>");
-        self.title(diagram.namespace.as_deref());
-        self.label("name", name, &diagram.name, NAME_SIZE + 2, "start");
+        let about = [Some(diagram.name.as_str()), diagram.namespace.as_deref()];
+        self.title(Some(&about.into_iter().flatten().collect::<Vec<_>>().join("\n")));
+        self.label("name", name, &heading(&diagram.name), NAME_SIZE + 2, "start");
         self.text.push_str("</g>\n");
         self.chips(&layout.chips, &diagram.properties, Point { x: 0, y: 0 });
     }
@@ -149,8 +149,8 @@ impl Out {
         }
         self.chips(&plan.chips, &component.properties, Point { x: rect.x, y: rect.y });
         // Behind the chevrons that it joins.
-        if let (Some((picture, at)), Some(inside)) = (&plan.inside, &component.inside) {
-            self.ties(placed, component, inside, picture, Point { x: rect.x + at.x, y: rect.y + at.y });
+        if let Some((picture, at)) = &plan.inside {
+            self.ties(placed, component, picture, Point { x: rect.x + at.x, y: rect.y + at.y });
         }
         for (place, port) in component.services.iter().enumerate() {
             let at = Point { x: rect.x, y: rect.y + plan.port(place) };
@@ -172,28 +172,21 @@ impl Out {
     }
 
     /// Joins what a composite promotes to the parts of its component of the same names: on each side by one line, as the names say which belong together.
-    fn ties(
-        &mut self,
-        placed: &Placed,
-        component: &Component,
-        inside: &Diagram,
-        picture: &Layout,
-        at: Point,
-    ) {
+    fn ties(&mut self, placed: &Placed, component: &Component, picture: &Layout, at: Point) {
         let Placed { rect, plan } = placed;
         let (left, right) = (rect.x + TIE, rect.x + rect.width - TIE);
         let sides = [
-            (left, 1, &component.services, &inside.services, &picture.services),
-            (right, -1, &component.references, &inside.references, &picture.references),
+            (left, 1, &component.services, &picture.services),
+            (right, -1, &component.references, &picture.references),
         ];
-        for (x, inwards, outer, inner, places) in sides {
+        for (x, inwards, outer, places) in sides {
             let mut path = String::new();
             let (mut top, mut bottom) = (i32::MAX, i32::MIN);
-            for (place, port) in inner.iter().enumerate() {
-                let Some(outer) = outer.iter().position(|one| one.name == port.name) else { continue };
+            for (outer, port) in outer.iter().enumerate() {
+                let Some(place) = port.inside else { continue };
                 let end = Point { x: at.x + places[place].x, y: at.y + places[place].y };
                 // Up to its name, which stands outside of the frame.
-                let room = LABEL + width(&port.name, SMALL_SIZE, false) + 2;
+                let room = LABEL + width(&border(&port.name), SMALL_SIZE, false) + 2;
                 let _ = write!(path, "M{x},{}H{}", end.y, end.x - inwards * room);
                 (top, bottom) = (top.min(rect.y + plan.port(outer)), bottom.max(end.y));
             }
@@ -204,7 +197,7 @@ impl Out {
     }
 
     fn port(&mut self, class: &str, at: Point, port: &Port, label: Point, anchor: &str) {
-        self.port_as(class, at, port, &port.name, label, anchor);
+        self.port_as(class, at, port, &border(&port.name), label, anchor);
     }
 
     /// A port with its name as it is shown; the whole name is in the tooltip.
@@ -268,27 +261,32 @@ impl Out {
         self.text.push_str("</g>\n");
     }
 
-    fn mark(&mut self, mark: &Mark, color: &str) {
-        let Point { x, y } = mark.at;
-        let mut base = y - 2;
-        if mark.publishes {
-            self.triangle(x, base - 7, base, color, true);
-            base -= 8;
+    /// What components do with topics: all of one topic in one path, as a fleet has very many.
+    fn marks(&mut self, marks: &[Mark], colors: &[&str]) {
+        let mut paths = vec![(String::new(), String::new()); colors.len()];
+        for mark in marks {
+            let (published, read) = &mut paths[mark.topic];
+            let Point { x, y } = mark.at;
+            let mut base = y - 2;
+            if mark.publishes {
+                triangle(published, x, base - 7, base);
+                base -= 8;
+            }
+            if mark.reads {
+                triangle(read, x, base, base - 7);
+            }
         }
-        if mark.reads {
-            self.triangle(x, base, base - 7, color, false);
+        for ((published, read), color) in paths.iter().zip(colors) {
+            self.triangles(published, color, true);
+            self.triangles(read, color, false);
         }
     }
 
-    /// A triangle with its tip at `tip`.
-    fn triangle(&mut self, x: i32, base: i32, tip: i32, color: &str, is_full: bool) {
+    fn triangles(&mut self, path: &str, color: &str, is_full: bool) {
         let fill = if is_full { color } else { "#fff" };
-        let _ = writeln!(
-            self.text,
-            "<path fill=\"{fill}\" stroke=\"{color}\" d=\"M{},{base}H{}L{x},{tip}Z\"/>",
-            x - 3,
-            x + 3
-        );
+        if !path.is_empty() {
+            let _ = writeln!(self.text, "<path fill=\"{fill}\" stroke=\"{color}\" d=\"{path}\"/>");
+        }
     }
 
     fn legend(&mut self, diagram: &Diagram, layout: &Layout) {
@@ -324,10 +322,21 @@ impl Out {
             });
         }
         if diagram.any(&|one| one.topics.iter().any(|topic| !topic.publishers.is_empty())) {
-            entry(self, "publishes a topic", &|out, x| out.triangle(x + 9, y - 4, y + 4, TOPICS[0], true));
+            entry(self, "publishes a topic", &|out, x| {
+                let mut path = String::new();
+                triangle(&mut path, x + 9, y - 4, y + 4);
+                out.triangles(&path, TOPICS[0], true);
+            });
         }
         if diagram.any(&|one| one.topics.iter().any(|topic| !topic.subscribers.is_empty())) {
-            entry(self, "reads a topic", &|out, x| out.triangle(x + 9, y + 4, y - 4, TOPICS[0], false));
+            entry(self, "reads a topic", &|out, x| {
+                let mut path = String::new();
+                triangle(&mut path, x + 9, y + 4, y - 4);
+                out.triangles(&path, TOPICS[0], false);
+            });
+        }
+        if let Some(note) = left_out(diagram) {
+            entry(self, &note, &|_, _| ());
         }
         self.text.push('\n');
     }
@@ -354,4 +363,9 @@ impl Out {
             xml(text)
         );
     }
+}
+
+/// Adds a triangle with its tip at `tip`.
+fn triangle(path: &mut String, x: i32, base: i32, tip: i32) {
+    let _ = write!(path, "M{},{base}h6L{x},{tip}z", x - 3);
 }

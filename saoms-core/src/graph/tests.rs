@@ -18,6 +18,19 @@ fn diagram(content: &str) -> Diagram {
     Diagram::of(&Contribution::of(vec![composite]), &Registry::new(), &Census::default())
 }
 
+/// The diagram of the first of some composites that name each other.
+fn together(texts: impl IntoIterator<Item = String>) -> Diagram {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let load = |text: String| {
+        let file = sources.add("c.composite", text);
+        load_file(file, &sources, &mut diagnostics).unwrap()
+    };
+    let mut asked_for: Vec<_> = texts.into_iter().map(load).collect();
+    let others = asked_for.split_off(1);
+    let contribution = Contribution::with(asked_for, others);
+    Diagram::of(&contribution, &Registry::new(), &Census::default())
+}
+
 /// The edges of the flowchart, each a line.
 fn edges(content: &str, expected: Expect) {
     let chart = mermaid(&diagram(content));
@@ -76,6 +89,53 @@ fn autowire_finds_services_of_the_same_interface() {
     );
 }
 
+/// What composites promote has the interface of what it stands for, so that autowire finds it, and is wired around them alone.
+#[test]
+fn autowire_finds_what_composites_promote() {
+    let interface = "<interface.java interface='a.I'/>";
+    let texts = [
+        "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='outer' targetNamespace='urn:c' xmlns:c='urn:c' autowire='true'>
+            <component name='Caller'><implementation.composite name='c:calls'/></component>
+            <component name='Hall'><implementation.composite name='c:serves'/></component>
+            <component name='Plain'><implementation.java class='a.A'/><service name='t'>{interface}</service></component>
+        </composite>",
+        "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='calls' targetNamespace='urn:c' autowire='true'>
+            <reference name='many' promote='A/r' multiplicity='0..n'/><reference name='one' promote='B'/>
+            <component name='A'><implementation.java class='a.A'/><reference name='r' multiplicity='0..n'>{interface}</reference></component>
+            <component name='B'><implementation.java class='a.A'/><reference name='r'>{interface}</reference></component>
+            <component name='C'><implementation.java class='a.A'/><service name='inside'>{interface}</service></component>
+        </composite>",
+        "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='serves' targetNamespace='urn:c'>
+            <service name='in' promote='S/s'/>
+            <component name='S'><implementation.java class='a.A'/><service name='s'>{interface}</service></component>
+        </composite>",
+    ];
+    let drawn = mermaid(&together(texts.map(|text| text.replace("{interface}", interface))));
+    let wires = drawn.lines().map(str::trim).filter(|line| line.contains("-->"));
+    expect![[r#"
+        c0_r0 -->|"many → in"| c1_s0
+        c0_r0 -->|"many → t"| c2
+        c0_r1 -->|"one → in"| c1_s0
+    "#]]
+    .assert_eq(&wires.map(|line| format!("{line}\n")).collect::<String>());
+}
+
+/// Each of many that may call each of many would be the square of what the file has.
+#[test]
+fn a_picture_has_a_part_of_very_many_wires_of_autowire_and_says_so() {
+    let interface = "<interface.java interface='a.I'/>";
+    let component = |place: usize| {
+        format!(
+            "<component name='c{place}'><service name='s'>{interface}</service><reference name='r' multiplicity='0..n'>{interface}</reference></component>"
+        )
+    };
+    let diagram = diagram(&format!(" autowire='true'>{}", (0..200).map(component).collect::<String>()));
+    assert_eq!((diagram.links.len(), diagram.left_out), (20_000, 200 * 199 - 20_000));
+    for drawn in [svg(&diagram), mermaid(&diagram), dot(&diagram)] {
+        assert!(drawn.contains("19800 wires of autowire are not drawn"));
+    }
+}
+
 /// Whatever names hold, the texts stay what they are.
 #[test]
 fn names_are_escaped() {
@@ -109,15 +169,7 @@ fn composites_are_drawn_inside_the_components_that_they_implement() {
             <component name='Again'><implementation.composite name='c:inner'/></component>"),
         composite("more", "<component name='Bell'><implementation.java class='a.Bell'/></component>"),
     ];
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let load = |text: String| {
-        let file = sources.add("c.composite", text);
-        load_file(file, &sources, &mut diagnostics).unwrap()
-    };
-    let mut asked_for: Vec<_> = texts.into_iter().map(load).collect();
-    let others = asked_for.split_off(1);
-    let contribution = Contribution::with(asked_for, others);
-    let diagram = Diagram::of(&contribution, &Registry::new(), &Census::default());
+    let diagram = together(texts);
     expect![[r#"
         flowchart LR
           subgraph composite ["outer"]

@@ -1,5 +1,7 @@
 //! How wide texts are, and what of them is shown.
 
+use super::diagram::Diagram;
+
 /// Widths of the printable characters of ASCII in thousandths of the size, as the metrics of DejaVu Sans have them: of the
 /// fonts that viewers usually take for sans-serif it is the widest, so that labels fit in all of them.
 const WIDTHS: [u16; 95] = [
@@ -12,9 +14,10 @@ const WIDTHS: [u16; 95] = [
 
 /// The width of a text in pixels.
 pub(super) fn width(text: &str, size: i32, bold: bool) -> i32 {
-    let thousandths: i32 = text.chars().map(|one| i32::from(thousandths(one))).sum();
+    let thousandths: i64 = text.chars().map(|one| i64::from(thousandths(one))).sum();
     let bold = if bold { 115 } else { 100 };
-    (thousandths * size / 1000 * bold / 100).max(1) + 1
+    let width = thousandths * i64::from(size) / 1000 * bold / 100;
+    i32::try_from(width.max(1) + 1).unwrap_or(i32::MAX / 4)
 }
 
 fn thousandths(character: char) -> u16 {
@@ -48,6 +51,15 @@ pub(super) fn end(text: &str, most: usize) -> String {
     }
     let rest: String = text.chars().skip(count + 1 - most).collect();
     format!("…{}", rest.trim_start_matches('.'))
+}
+
+/// What a picture says of the wires that it does not have.
+pub(super) fn left_out(diagram: &Diagram) -> Option<String> {
+    match diagram.all_left_out() {
+        0 => None,
+        1 => Some("1 wire of autowire is not drawn".to_owned()),
+        count => Some(format!("{count} wires of autowire are not drawn")),
+    }
 }
 
 /// Control characters would break lines and documents.

@@ -2,31 +2,48 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::diagram::{Component, Diagram, End, Link, LinkKind, Port, State};
+use super::diagram::{Component, Diagram, End, Link, LinkKind, State};
+use super::groups::Groups;
+use super::ports::{Ports, Side};
 use super::read::View;
 use crate::expression::{has_expression, pattern};
 
-/// The service that periodic components have without naming it.
-const TASK_SERVICE: &str = "TaskInterface";
+/// Wires of autowire that are drawn of one composite: each reference that takes several has one to each service of its interface.
+const MOST_AUTOWIRED: usize = 20_000;
 
 /// Adds the links of a composite to `diagram`, and what they lead to where that is missing.
-pub(super) fn link(view: &View<'_>, diagram: &mut Diagram) {
+pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
     let names = diagram.components.iter().enumerate().rev();
     let places = names.map(|(place, component)| (component.name.clone(), place)).collect();
-    let mut linker = Linker { diagram, places, seen: HashSet::new(), linked: HashSet::new() };
+    let groups = Groups::of(diagram.components.iter().map(|component| component.name.as_str()));
+    let mut linker = Linker {
+        diagram,
+        places,
+        groups,
+        ports: Ports::default(),
+        seen: HashSet::new(),
+        linked: HashSet::new(),
+    };
     linker.targets(view);
     for wire in view.wires() {
         let (Some(source), Some(target)) = (&wire.source, &wire.target) else { continue };
         let from = linker.reference(source);
         linker.wire(from, target);
     }
-    linker.autowire(view);
+    // What is promoted is wired around the composite, where there is something around it.
+    let wired = linker.linked.clone();
     linker.promotions(view);
+    if !is_inside {
+        linker.linked = wired;
+    }
+    linker.autowire(view);
 }
 
 struct Linker<'d> {
     diagram: &'d mut Diagram,
     places: HashMap<String, usize>,
+    groups: Groups,
+    ports: Ports,
     seen: HashSet<Link>,
     /// What has a link already.
     linked: HashSet<End>,
@@ -43,16 +60,26 @@ impl Linker<'_> {
         }
     }
 
+    /// Links what the composite promotes to what it stands for, and gives it the interface of that.
     fn promotions(&mut self, view: &View<'_>) {
         for (place, service) in view.services().enumerate() {
             let Some(promote) = &service.promote else { continue };
             let interface = self.diagram.services[place].interface.clone();
             let to = self.service(promote, interface.as_deref());
+            if let End::Component { component, port } = to {
+                let inner = &self.diagram.components[component].services[port];
+                self.diagram.services[place].interface = interface.or_else(|| inner.interface.clone());
+            }
             self.add(LinkKind::Promotion, End::Composite(place), to);
         }
         for (place, reference) in view.references().enumerate() {
             for promote in reference.promote() {
                 let from = self.reference(promote);
+                if let End::Component { component, port } = from {
+                    let inner = &self.diagram.components[component].references[port];
+                    let outer = &mut self.diagram.references[place].interface;
+                    *outer = outer.take().or_else(|| inner.interface.clone());
+                }
                 self.add(LinkKind::Promotion, from, End::Composite(place));
             }
         }
@@ -60,39 +87,56 @@ impl Linker<'_> {
 
     /// Wires references without a target to the services of their interface, where the file asks for that.
     fn autowire(&mut self, view: &View<'_>) {
-        let count = view.components().count();
-        for (component, (composite, model)) in view.components().enumerate() {
-            let by_default = composite.autowire.is_some_and(|one| one.value);
-            let by_default = model.autowire().map_or(by_default, |one| one.value);
+        let mut offers: Option<HashMap<String, Vec<(usize, usize)>>> = None;
+        let mut left = MOST_AUTOWIRED;
+        for (component, (is_default, model)) in view.components().enumerate() {
+            let is_default = model.autowire().map_or(is_default, |one| one.value);
             for port in 0..self.diagram.components[component].references.len() {
                 let from = End::Component { component, port };
                 let written = model.references.get(port);
-                let asked = written.and_then(|one| one.autowire()).map_or(by_default, |one| one.value);
-                if !asked || self.linked.contains(&from) {
+                let is_asked = written.and_then(|one| one.autowire()).map_or(is_default, |one| one.value);
+                if !is_asked || self.linked.contains(&from) {
                     continue;
                 }
-                let many = written.and_then(|one| one.multiplicity()).is_some_and(|one| one.value.is_many());
-                let Some(interface) = self.diagram.components[component].references[port].interface.clone()
-                else {
+                let offers = offers.get_or_insert_with(|| self.offers(view.components().count()));
+                let one = &self.diagram.components[component].references[port];
+                let Some(all) = one.interface.as_ref().and_then(|interface| offers.get(interface)) else {
                     continue;
                 };
-                let found = self.offering(&interface, component, count);
-                for to in found.into_iter().take(if many { usize::MAX } else { 1 }) {
-                    self.add(LinkKind::Wire, from, to);
+                let own = all.binary_search_by_key(&component, |(component, _)| *component);
+                let others = all.len() - usize::from(own.is_ok());
+                let most = if one.many == Some(true) { others } else { others.min(1) };
+                let drawn = most.min(left);
+                let offered = all.iter().filter(|(offering, _)| *offering != component);
+                for &(component, port) in offered.take(drawn) {
+                    let link = Link { kind: LinkKind::Wire, from, to: End::Component { component, port } };
+                    if self.seen.insert(link) {
+                        self.diagram.links.push(link);
+                    }
                 }
+                left -= drawn;
+                self.diagram.left_out += most - drawn;
             }
         }
     }
 
-    /// The services of this interface of the first `count` components, those that are there, apart from those of `except`.
-    fn offering(&self, interface: &str, except: usize, count: usize) -> Vec<End> {
-        let all = (0..count).filter(|component| *component != except);
-        all.filter_map(|component| {
-            let services = &self.diagram.components[component].services;
-            let port = services.iter().position(|one| one.interface.as_deref() == Some(interface))?;
-            Some(End::Component { component, port })
-        })
-        .collect()
+    /// The components among the first `count`, those that are there, that offer each interface, in order, each with the place of its
+    /// first such service.
+    fn offers(&self, count: usize) -> HashMap<String, Vec<(usize, usize)>> {
+        let mut all: HashMap<String, Vec<(usize, usize)>> = HashMap::new();
+        for (component, one) in self.diagram.components[..count].iter().enumerate() {
+            for (port, service) in one.services.iter().enumerate() {
+                let Some(interface) = &service.interface else { continue };
+                let offers = match all.get_mut(interface) {
+                    Some(offers) => offers,
+                    None => all.entry(interface.clone()).or_default(),
+                };
+                if offers.last().is_none_or(|(last, _)| *last != component) {
+                    offers.push((component, port));
+                }
+            }
+        }
+        all
     }
 
     fn wire(&mut self, from: End, target: &str) {
@@ -117,15 +161,9 @@ impl Linker<'_> {
     /// The service that `component`, `component/service` or `component/service/binding` names.
     fn service(&mut self, uri: &str, interface: Option<&str>) -> End {
         let (component, name) = self.split(uri);
-        let services = &mut self.diagram.components[component].services;
         let port = match &name {
-            Some(name) => named(services, name),
-            None => {
-                let fits = |one: &Port| interface.is_some() && one.interface.as_deref() == interface;
-                let place = services.iter().position(fits);
-                let place = place.or_else(|| services.iter().position(|one| one.name != TASK_SERVICE));
-                place.unwrap_or_else(|| named(services, ""))
-            }
+            Some(name) => self.ports.named(self.diagram, component, Side::Services, name),
+            None => self.ports.meant(self.diagram, component, interface),
         };
         End::Component { component, port }
     }
@@ -133,22 +171,13 @@ impl Linker<'_> {
     /// The reference that `component` or `component/reference` names.
     fn reference(&mut self, uri: &str) -> End {
         let (component, name) = self.split(uri);
-        let references = &mut self.diagram.components[component].references;
-        let port = match (name, references.len()) {
+        let port = match (name, self.diagram.components[component].references.len()) {
             (None, 1..) => 0,
-            (name, _) => named(references, &name.unwrap_or_default()),
+            (name, _) => {
+                self.ports.named(self.diagram, component, Side::References, &name.unwrap_or_default())
+            }
         };
         End::Component { component, port }
-    }
-
-    /// The component of a name: also that of replicas for the name of one of them.
-    fn place(&self, name: &str) -> Option<usize> {
-        if let Some(place) = self.places.get(name) {
-            return Some(*place);
-        }
-        let mut groups = self.diagram.components.iter().enumerate();
-        let found = groups.find(|(_, one)| one.name.contains('*') && is_of(name, &one.name));
-        found.map(|(place, _)| place)
     }
 
     /// The component of a URI, drawn as missing when there is none, and what follows it.
@@ -156,7 +185,8 @@ impl Linker<'_> {
         let uri = if has_expression(uri) { pattern(uri) } else { uri.to_owned() };
         let mut parts = uri.trim_start_matches('/').split('/');
         let name = parts.next().unwrap_or_default();
-        let place = match self.place(name) {
+        // Replicas are one component, also under the name of one of them.
+        let place = match self.places.get(name).copied().or_else(|| self.groups.find(name)) {
             Some(place) => place,
             None => {
                 self.diagram.components.push(Component {
@@ -175,28 +205,4 @@ impl Linker<'_> {
         };
         (place, parts.next().filter(|part| !part.is_empty()).map(str::to_owned))
     }
-}
-
-/// Whether a name is that of a replica of a group, such as `Robot*`: a number for each `*`.
-fn is_of(name: &str, group: &str) -> bool {
-    let mut parts = group.split('*');
-    let Some(mut rest) = name.strip_prefix(parts.next().unwrap_or_default()) else { return false };
-    for part in parts {
-        let number = rest.trim_start_matches('-');
-        let number = number.trim_start_matches(|c: char| c.is_ascii_digit());
-        if number.len() == rest.len() {
-            return false;
-        }
-        let Some(behind) = number.strip_prefix(part) else { return false };
-        rest = behind;
-    }
-    rest.is_empty()
-}
-
-/// The place of the port of this name, which is there from now on.
-fn named(ports: &mut Vec<Port>, name: &str) -> usize {
-    ports.iter().position(|port| port.name == name).unwrap_or_else(|| {
-        ports.push(Port { name: name.to_owned(), interface: None });
-        ports.len() - 1
-    })
 }

@@ -27,7 +27,7 @@ pub(super) struct Item {
 }
 
 /// A point of an item where a line ends, from the item's upper end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Pin {
     pub(super) item: usize,
     pub(super) offset: i32,
@@ -41,12 +41,17 @@ pub(super) struct Joint {
     pub(super) right: Pin,
 }
 
-/// A wire that leads to the same column, or back to an earlier one.
-#[derive(Clone, Copy, Debug)]
+/// Wires to one place that lead to the same column or back to an earlier one, or too far: they go above all columns.
+#[derive(Clone, Debug)]
 pub(super) struct Back {
-    pub(super) from: Pin,
+    pub(super) kind: LinkKind,
+    pub(super) from: Vec<Pin>,
     pub(super) to: Pin,
 }
+
+/// Lines that pass by columns, for each link and component and for any picture: long ways of wires could have as many as the product
+/// of both.
+const PASSES: (usize, usize) = (2, 1_000);
 
 /// Columns with their items from top to bottom; the first and the last hold what the composite promotes.
 #[derive(Debug, Default)]
@@ -85,23 +90,32 @@ impl Items {
             (End::Composite(place), true) => Pin { item: references[place], offset: GRID },
             (End::Composite(place), false) => Pin { item: services[place], offset: GRID },
         };
-        let mut nets: HashMap<(LinkKind, End), Vec<Pin>> = HashMap::new();
+        let mut nets: HashMap<(LinkKind, End, bool), Vec<Pin>> = HashMap::new();
         let mut order = Vec::new();
         for link in &diagram.links {
             let (from, to) = (pin(&all, link.from, false), pin(&all, link.to, true));
-            if all.items[from.item].column < all.items[to.item].column {
-                let sources = nets.entry((link.kind, link.to)).or_default();
-                if sources.is_empty() {
-                    order.push((link.kind, link.to));
-                }
-                sources.push(from);
-            } else {
-                all.backs.push(Back { from, to });
+            let leads_on = all.items[from.item].column < all.items[to.item].column;
+            let key = (link.kind, link.to, leads_on);
+            let sources = nets.entry(key).or_default();
+            if sources.is_empty() {
+                order.push(key);
             }
+            sources.push(from);
         }
-        for key in order {
-            let to = pin(&all, key.1, true);
-            all.net(key.0, &nets[&key], to);
+        let mut passes = PASSES.0 * (plans.len() + diagram.links.len()) + PASSES.1;
+        for key @ (kind, to, leads_on) in order {
+            let mut sources = nets.remove(&key).unwrap_or_default();
+            let to = pin(&all, to, true);
+            let column = |pin: &Pin| all.items[pin.item].column;
+            let first = sources.iter().map(column).min().unwrap_or_default();
+            let between = column(&to).saturating_sub(first + 1);
+            if leads_on && between <= passes {
+                passes -= between;
+                sources.sort_by_key(column);
+                all.net(kind, &sources, to);
+            } else {
+                all.backs.push(Back { kind, from: sources, to });
+            }
         }
         all
     }
@@ -112,13 +126,14 @@ impl Items {
         self.items.len() - 1
     }
 
-    /// Joins sources to their target through all columns between.
+    /// Joins sources to their target through all columns between. They are in the order of their columns.
     fn net(&mut self, kind: LinkKind, sources: &[Pin], to: Pin) {
         let net = self.nets.len();
         self.nets.push(kind);
         let column = |all: &Self, pin: &Pin| all.items[pin.item].column;
         let target = column(self, &to);
-        let Some(first) = sources.iter().map(|pin| column(self, pin)).min() else { return };
+        let Some(first) = sources.first().map(|pin| column(self, pin)) else { return };
+        let mut sources = sources.iter().copied().peekable();
         let mut passing: Option<Pin> = None;
         for at in first..target {
             let right = if at + 1 == target {
@@ -126,10 +141,10 @@ impl Items {
             } else {
                 Pin { item: self.add(Kind::Pass, at + 1, GRID), offset: 0 }
             };
-            let here: Vec<Pin> = sources.iter().filter(|pin| column(self, pin) == at).copied().collect();
-            for left in here.into_iter().chain(passing) {
+            while let Some(left) = sources.next_if(|pin| column(self, pin) == at) {
                 self.joints.push(Joint { net, left, right });
             }
+            self.joints.extend(passing.map(|left| Joint { net, left, right }));
             passing = Some(right);
         }
     }

@@ -1,6 +1,8 @@
 //! In which column each component stands: what calls to the left of what is called (Sugiyama, Tagawa, Toda: Methods for
 //! visual understanding of hierarchical system structures, 1981), columns cut where they would become too high.
 
+use std::collections::BTreeSet;
+
 /// The columns of `count` components with these wires, each with at most `rows` components.
 pub(super) fn columns(count: usize, wires: &[(usize, usize)], rows: usize) -> Vec<Vec<usize>> {
     let layers = layers(count, wires);
@@ -17,11 +19,20 @@ pub(super) fn columns(count: usize, wires: &[(usize, usize)], rows: usize) -> Ve
         let parts = layer.len().div_ceil(rows).max(1);
         columns.extend(layer.chunks(layer.len().div_ceil(parts).max(1)).map(<[usize]>::to_vec));
     }
-    // What has no wires stands wherever there is room.
+    // What has no wires stands wherever there is room: in the shortest column.
+    let room = columns.iter().enumerate().filter(|(_, column)| column.len() < rows);
+    let mut room: BTreeSet<(usize, usize)> = room.map(|(place, column)| (column.len(), place)).collect();
     for component in (0..count).filter(|component| layers[*component].is_none()) {
-        match columns.iter_mut().filter(|column| column.len() < rows).min_by_key(|column| column.len()) {
-            Some(column) => column.push(component),
-            None => columns.push(vec![component]),
+        let place = match room.pop_first() {
+            Some((_, place)) => place,
+            None => {
+                columns.push(Vec::new());
+                columns.len() - 1
+            }
+        };
+        columns[place].push(component);
+        if columns[place].len() < rows {
+            room.insert((columns[place].len(), place));
         }
     }
     columns
@@ -54,6 +65,7 @@ fn layers(count: usize, wires: &[(usize, usize)]) -> Vec<Option<usize>> {
 
 /// Takes out the wires that close a circle. Gives the components so that all wires lead on.
 fn without_circles(targets: &mut [Vec<usize>]) -> Vec<usize> {
+    const NONE: usize = usize::MAX;
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
         New,
@@ -77,7 +89,10 @@ fn without_circles(targets: &mut [Vec<usize>]) -> Vec<usize> {
                     path.pop();
                 }
                 Some(target) => match marks[target] {
-                    Mark::Open => _ = targets[component].remove(*next),
+                    Mark::Open => {
+                        targets[component][*next] = NONE;
+                        *next += 1;
+                    }
                     Mark::Done => *next += 1,
                     Mark::New => {
                         *next += 1;
@@ -87,6 +102,9 @@ fn without_circles(targets: &mut [Vec<usize>]) -> Vec<usize> {
                 },
             }
         }
+    }
+    for targets in targets {
+        targets.retain(|target| *target != NONE);
     }
     order.reverse();
     order

@@ -34,7 +34,8 @@ pub(super) struct Route {
 pub(super) struct Routes {
     pub(super) channels: Vec<Vec<Route>>,
     tracks: Vec<usize>,
-    backs: usize,
+    /// The kind of each line above the columns.
+    backs: Vec<LinkKind>,
 }
 
 impl Routes {
@@ -58,9 +59,15 @@ impl Routes {
         }
         for (place, back) in items.backs.iter().enumerate() {
             let lane = Some(-GRID * (place as i32 + 1));
-            let column = |pin: Pin| items.items[pin.item].column;
-            let (from, to) = (column(back.from), column(back.to) - 1);
-            channels[from].push(route(Owner::BackFrom(place), vec![back.from], Vec::new(), lane));
+            let column = |pin: &Pin| items.items[pin.item].column;
+            let mut starts: BTreeMap<usize, Vec<Pin>> = BTreeMap::new();
+            for pin in &back.from {
+                starts.entry(column(pin)).or_default().push(*pin);
+            }
+            for (from, pins) in starts {
+                channels[from].push(route(Owner::BackFrom(place), pins, Vec::new(), lane));
+            }
+            let to = column(&back.to) - 1;
             channels[to].push(route(Owner::BackTo(place), Vec::new(), vec![back.to], lane));
         }
         let below = items.height() + GRID * (diagram.topics.len() as i32 + 1);
@@ -83,12 +90,12 @@ impl Routes {
             count
         });
         let tracks = tracks.collect();
-        Self { channels, tracks, backs: items.backs.len() }
+        Self { channels, tracks, backs: items.backs.iter().map(|back| back.kind).collect() }
     }
 
     /// How many lanes there are above the columns.
     pub(super) fn lanes(&self) -> i32 {
-        self.backs as i32
+        self.backs.len() as i32
     }
 
     /// Where columns and channels start, and where the last column ends.
@@ -116,34 +123,33 @@ impl Routes {
     pub(super) fn draw(&self, sides: &Sides<'_>, channels: &[i32], ceiling: i32) -> Vec<Line> {
         let origin = sides.origin;
         let mut lines = Vec::new();
-        let mut lanes: HashMap<usize, (i32, i32)> = HashMap::new();
+        let mut lanes: BTreeMap<usize, Vec<i32>> = BTreeMap::new();
         for (channel, routes) in self.channels.iter().enumerate() {
+            let furthest = furthest(routes);
             for route in routes {
                 let x = self.track(route, channel, channels, origin);
                 let kind = match route.owner {
                     Owner::Net(kind) => kind.into(),
-                    Owner::BackFrom(place) => {
-                        lanes.entry(place).or_default().0 = x;
-                        LineKind::Wire
-                    }
-                    Owner::BackTo(place) => {
-                        lanes.entry(place).or_default().1 = x;
-                        LineKind::Wire
+                    Owner::BackFrom(place) | Owner::BackTo(place) => {
+                        lanes.entry(place).or_default().push(x);
+                        self.backs[place].into()
                     }
                     Owner::Topics(_) => continue,
                 };
                 let mut line = parts(route, x, sides, kind);
-                line.dots.extend(forks(route, routes, x, origin));
+                line.dots.extend(forks(route, &furthest, x, origin));
                 lines.push(line);
             }
         }
-        let mut lanes: Vec<_> = lanes.into_iter().collect();
-        lanes.sort_unstable();
-        for (place, (from, to)) in lanes {
+        for (place, mut ends) in lanes {
             let y = origin.y - GRID * (place as i32 + 1);
             debug_assert!(y >= ceiling, "lanes are below the title");
-            let parts = vec![(Point { x: from, y }, Point { x: to, y })];
-            lines.push(Line { kind: LineKind::Wire, parts, dots: Vec::new() });
+            ends.sort_unstable();
+            if let [from, between @ .., to] = &ends[..] {
+                let parts = vec![(Point { x: *from, y }, Point { x: *to, y })];
+                let dots = between.iter().map(|x| Point { x: *x, y }).collect();
+                lines.push(Line { kind: self.backs[place].into(), parts, dots });
+            }
         }
         lines
     }
@@ -171,7 +177,7 @@ fn parts(route: &Route, x: i32, sides: &Sides<'_>, kind: LineKind) -> Line {
     for (from, y) in lefts.chain(rights.clone()) {
         line.parts.push((at(from, y), at(x, y)));
         // Where a line meets the middle of another, or both its sides, they join.
-        let is_both = strand.left.contains(&y) && rights.clone().any(|(_, other)| other == y);
+        let is_both = strand.left.binary_search(&y).is_ok() && rights.clone().any(|(_, other)| other == y);
         if y != top && y != bottom || is_both {
             line.dots.push(at(x, y));
         }
@@ -180,17 +186,23 @@ fn parts(route: &Route, x: i32, sides: &Sides<'_>, kind: LineKind) -> Line {
     line
 }
 
+/// How far the lines from each start go: to which track, or past all of them.
+fn furthest(routes: &[Route]) -> HashMap<Pin, usize> {
+    let mut all: HashMap<Pin, usize> = HashMap::new();
+    for route in routes {
+        let track = route.strand.track.unwrap_or(usize::MAX);
+        for pin in &route.left {
+            let known = all.entry(*pin).or_default();
+            *known = track.max(*known);
+        }
+    }
+    all
+}
+
 /// Where another line of the same reference goes on.
-fn forks(route: &Route, routes: &[Route], x: i32, origin: Point) -> Vec<Point> {
-    let track = route.strand.track;
-    let goes_on = |pin: &Pin| {
-        routes.iter().any(|other| {
-            !std::ptr::eq(other, route)
-                && other.left.contains(pin)
-                && (other.strand.track.is_none() || other.strand.track > track)
-        })
-    };
-    let Some(_) = track else { return Vec::new() };
+fn forks(route: &Route, furthest: &HashMap<Pin, usize>, x: i32, origin: Point) -> Vec<Point> {
+    let Some(track) = route.strand.track else { return Vec::new() };
     let lines = route.left.iter().zip(&route.strand.left);
-    lines.filter(|(pin, _)| goes_on(pin)).map(|(_, y)| Point { x, y: origin.y + y }).collect()
+    let goes_on = lines.filter(|(pin, _)| furthest.get(pin).is_some_and(|furthest| *furthest > track));
+    goes_on.map(|(_, y)| Point { x, y: origin.y + y }).collect()
 }

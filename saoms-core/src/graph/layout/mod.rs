@@ -19,7 +19,7 @@ use lines::Routes;
 use measure::{CHEVRON, Chip, GRID, NAME_SIZE, Plan, SMALL_SIZE, chips, on_grid};
 
 use super::diagram::{Diagram, End, LinkKind};
-use super::text::width;
+use super::text::{short, width};
 
 /// A place in pixels, from the upper left corner of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -172,7 +172,8 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> La
     // The first row of properties sticks out of the frame, the others are in it.
     let name = (chips_height - 2 * GRID).max(0);
     let title = name + TITLE.max(GRID * routes.lanes() + TITLE);
-    let longest = |names: Vec<&str>| names.into_iter().map(|name| width(name, SMALL_SIZE, false)).max();
+    let longest =
+        |names: Vec<&str>| names.into_iter().map(|name| width(&border(name), SMALL_SIZE, false)).max();
     let outside = |names: Vec<&str>| longest(names).map_or(0, |width| width + CHEVRON + 4);
     let left_labels = outside(diagram.services.iter().map(|port| &*port.name).collect());
     let right_labels = outside(diagram.references.iter().map(|port| &*port.name).collect());
@@ -180,7 +181,7 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> La
         Point { x: around + left_labels, y: around + if chips.is_empty() { 0 } else { GRID } + GRID + title };
 
     let bottom = items.height();
-    let title_width = width(&diagram.name, NAME_SIZE + 2, true) + 4 * GRID;
+    let title_width = width(&heading(&diagram.name), NAME_SIZE + 2, true) + 4 * GRID;
     let chips_end = chips.iter().map(|chip| chip.x + chip.width + GRID).max().unwrap_or(0);
     let inside = on_grid(right.max(title_width).max(chips_end));
     let frame = Rect {
@@ -228,6 +229,16 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> La
     lines.extend(routes.draw(&sides, &channels, frame.y + name + TITLE));
     (layout.rails, layout.marks, layout.lines) = (rails, marks, lines);
     layout
+}
+
+/// The name of a composite as it is shown.
+pub(super) fn heading(name: &str) -> String {
+    short(name, 80)
+}
+
+/// The name of a service or reference of a composite as it is shown.
+pub(super) fn border(name: &str) -> String {
+    short(name, 40)
 }
 
 /// Where items start and end.

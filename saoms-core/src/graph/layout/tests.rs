@@ -16,7 +16,7 @@ fn names(kind: &str, count: usize) -> impl Iterator<Item = String> {
 }
 
 fn ports(kind: &str, count: usize) -> Vec<Port> {
-    names(kind, count).map(|name| Port { name, interface: None }).collect()
+    names(kind, count).map(|name| Port::named(&name)).collect()
 }
 
 /// `wires` are pairs of numbers, each of a reference or service, counted through all components.
@@ -74,6 +74,7 @@ fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], p
         components: parts.iter().enumerate().map(component).collect(),
         links,
         topics: topics.iter().enumerate().map(topic).collect(),
+        left_out: 0,
     }
 }
 
@@ -211,6 +212,21 @@ fn a_very_large_composite_has_a_picture() {
     let wires: Vec<(usize, usize)> = (0..count).map(|from| (from, from / 3)).collect();
     let layout = layout(&diagram(&vec![(2, 1, 1); count], &wires, &[(0, 1)], 0), true);
     assert_eq!(layout.components.len(), count);
+}
+
+/// Wires over many columns would come to the product of both.
+#[test]
+fn very_long_wires_go_above_the_columns() {
+    let count = 400;
+    let next = (0..count - 1).map(|place| (2 * place, place + 1));
+    // One from each component to its counterpart at the other end.
+    let across = (0..count / 2).map(|place| (2 * place + 1, count - 1 - place));
+    let wires: Vec<(usize, usize)> = next.chain(across).collect();
+    let diagram = diagram(&vec![(0, 1, 2); count], &wires, &[], 0);
+    let layout = layout(&diagram, true);
+    assert_eq!(layout.components.len(), count);
+    let parts: usize = layout.lines.iter().map(|line| line.parts.len()).sum();
+    assert!(parts <= 12 * wires.len(), "{parts} parts of {} wires", wires.len());
 }
 
 #[test]

@@ -1,0 +1,76 @@
+//! The topic that is probably meant by the name of another one: of the same messages, with nearly its name.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use super::report::{CANDIDATES, FEW};
+use crate::assembly::{Topic, Traffic};
+use crate::diagnostic::nearest;
+
+/// The topics of a fleet, to be found by what they are like.
+pub(super) struct Similar<'t> {
+    /// Those of one kind with one type of messages, in the order of their names.
+    groups: HashMap<(&'static str, &'t str), Vec<Known<'t>>>,
+    /// How many more names are looked at for all topics together: in a fleet in which each robot has topics of its own every search
+    /// goes through those of all others.
+    left: Cell<usize>,
+}
+
+/// A topic with what is asked of it.
+pub(super) struct Known<'t> {
+    pub(super) topic: &'t Topic,
+    /// Whether all who use it gave it its name.
+    pub(super) is_renamed: bool,
+    name: Name,
+}
+
+impl<'t> Similar<'t> {
+    pub(super) fn of(traffic: &'t Traffic, is_renamed: impl Fn(&Topic) -> bool) -> Self {
+        let mut groups: HashMap<_, Vec<Known<'t>>> = HashMap::new();
+        for topic in &traffic.topics {
+            let known = Known { topic, is_renamed: is_renamed(topic), name: Name::of(&topic.name) };
+            groups.entry(key(topic)).or_default().push(known);
+        }
+        Self { groups, left: Cell::new(CANDIDATES) }
+    }
+
+    /// The topic with the most similar name among those that fit.
+    pub(super) fn nearest(&self, topic: &Topic, fits: impl Fn(&Known<'t>) -> bool) -> Option<&'t Topic> {
+        let group = self.groups.get(&key(topic))?;
+        if group.len() > FEW {
+            self.left.set(self.left.get().checked_sub(group.len())?);
+        }
+        let fitting = group.iter().filter(|other| other.topic.name != topic.name && fits(other));
+        let name = nearest(&topic.name, fitting.map(|other| other.topic.name.as_str()))?;
+        let place = group.binary_search_by_key(&name, |other| other.topic.name.as_str()).ok()?;
+        Some(group[place].topic)
+    }
+}
+
+impl Known<'_> {
+    /// Whether its name and another one are different on purpose: one adds something to the other, or they differ in their numbers.
+    pub(super) fn is_apart(&self, name: &Name) -> bool {
+        let adds =
+            |long: &str, short: &str| long != short && (long.starts_with(short) || long.ends_with(short));
+        adds(&self.name.lower, &name.lower)
+            || adds(&name.lower, &self.name.lower)
+            || self.name.lower != name.lower && self.name.without_numbers == name.without_numbers
+    }
+}
+
+/// A name without case, and without its numbers as well.
+pub(super) struct Name {
+    lower: String,
+    without_numbers: String,
+}
+
+impl Name {
+    pub(super) fn of(name: &str) -> Self {
+        let lower = name.to_lowercase();
+        Self { without_numbers: lower.replace(|c: char| c.is_ascii_digit(), ""), lower }
+    }
+}
+
+fn key(topic: &Topic) -> (&'static str, &str) {
+    (topic.kind.name(), &topic.message)
+}
