@@ -26,7 +26,7 @@ async function start() {
     await client.start();
   } catch (error) {
     window.showErrorMessage(
-      `\`${server.command} lsp\` cannot be started: ${error.message ?? error}. The setting \`saoms.path\` says where the program is.`,
+      `\`${server.command} lsp\` cannot be started: ${error instanceof Error ? error.message : error}. The setting \`saoms.path\` says where the program is.`,
     );
   }
 }

@@ -10,10 +10,10 @@ use std::sync::mpsc::{Receiver, Sender};
 
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
 use lsp_types::notification::{
-    self as notice, DidChangeTextDocument, DidChangeWatchedFiles, DidCloseTextDocument, DidOpenTextDocument,
-    DidSaveTextDocument, Notification as _, PublishDiagnostics,
+    self as notice, DidChangeTextDocument, DidChangeWatchedFiles, DidChangeWorkspaceFolders,
+    DidCloseTextDocument, DidOpenTextDocument, DidSaveTextDocument, Notification as _, PublishDiagnostics,
 };
-use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri};
+use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri, WorkspaceFolder};
 use saoms_api::contain::contained;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -213,6 +213,14 @@ impl<W: Write> Server<W> {
             }
             DidSaveTextDocument::METHOD | DidChangeWatchedFiles::METHOD => {
                 self.changed(true);
+            }
+            DidChangeWorkspaceFolders::METHOD => {
+                if let Some(one) = read::<notice::DidChangeWorkspaceFolders>(told) {
+                    let path = |folder: &WorkspaceFolder| uri::path(folder.uri.as_str());
+                    let gone: Vec<PathBuf> = one.event.removed.iter().filter_map(path).collect();
+                    self.client.folders.retain(|folder| !gone.contains(folder));
+                    self.client.folders.extend(one.event.added.iter().filter_map(path));
+                }
             }
             // Others need not be understood.
             _ => {}

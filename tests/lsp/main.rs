@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
 
 mod beside;
+mod disk;
 mod editor;
 mod random;
 
