@@ -19,7 +19,7 @@ fn root() -> &'static Path {
 #[test]
 fn every_rule_is_documented_with_an_example() {
     let registry = Registry::linked().unwrap();
-    let mut part = String::new();
+    let (mut part, mut rows) = (String::new(), String::new());
     for rule in registry.rules() {
         let (id, name, meaning) = (rule.code().id, rule.code().name, rule.code().meaning);
         assert!(id.len() == 5 && id.starts_with("S50") && meaning.ends_with('.'), "{id}");
@@ -30,15 +30,39 @@ fn every_rule_is_documented_with_an_example() {
         let severity = rule.code().severity.name();
         assert!(shown.starts_with(&format!("{severity}[{id}]")), "{file} does not have its fault:\n{shown}");
         let _ = write!(part, "\n## {id} {name}\n\n*{severity}.* {meaning}\n\n```text\n{shown}```\n");
+        let _ = writeln!(rows, "| {id} | {name} | {meaning} |  |  |");
     }
-    let path = root().join("docs/diagnostics.md");
-    let page = fs::read_to_string(&path).unwrap();
-    let (before, present) = page.find("\n## S5").map_or((page.as_str(), ""), |start| page.split_at(start));
-    if env::var_os("UPDATE_EXPECT").is_some() {
-        fs::write(path, format!("{before}{part}")).unwrap();
-    } else {
-        assert_eq!(present, part, "docs/diagnostics.md is out of date: run with UPDATE_EXPECT=1");
+    let is_kept = [("docs/diagnostics.md", part, "\n## S5"), ("docs/rules.md", rows, "| S5")].map(
+        |(page, part, start)| {
+            let path = root().join(page);
+            let text = fs::read_to_string(&path).unwrap();
+            let (before, behind) = around(&text, start);
+            let right = format!("{before}{part}{behind}");
+            if env::var_os("UPDATE_EXPECT").is_some() {
+                fs::write(path, &right).unwrap();
+            }
+            text == right || env::var_os("UPDATE_EXPECT").is_some()
+        },
+    );
+    assert_eq!(
+        is_kept,
+        [true, true],
+        "docs/diagnostics.md or docs/rules.md is out of date: run with UPDATE_EXPECT=1"
+    );
+}
+
+/// What a page has before the part about rules over whole fleets, and behind it.
+fn around<'t>(text: &'t str, start: &str) -> (&'t str, &'t str) {
+    if start.starts_with('\n') {
+        return text.find(start).map_or((text, ""), |at| (&text[..at], ""));
     }
+    // The rows of a table, behind the last of the codes of the core.
+    let rows = text.split_inclusive('\n').filter(|line| line.starts_with("| S") && !line.starts_with(start));
+    let last = rows.last().unwrap();
+    let begin = text.find(last).unwrap() + last.len();
+    let of_part = text[begin..].split_inclusive('\n').take_while(|line| line.starts_with(start));
+    let end = begin + of_part.map(str::len).sum::<usize>();
+    (&text[..begin], &text[end..])
 }
 
 #[test]

@@ -132,7 +132,7 @@ fn unknown<'n>(
 }
 
 /// Whether the interface that a file names is that of the class.
-fn interface(
+pub(super) fn interface(
     given: Option<&Interface>,
     declared: &InterfaceDeclaration,
     of: &str,

@@ -9,12 +9,13 @@ use super::contracts::{narrows, of_class as of_class_reference};
 use super::fleet::{Fleet, Member};
 use super::given;
 use super::global;
+use super::parameters::Found;
 use super::properties::Given;
 use super::report::Report;
 use super::value_type;
 use super::written::type_and_element;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
-use crate::model::{Component, ComponentType, Multiplicity, Part, Reference, Version};
+use crate::model::{Component, ComponentType, Multiplicity, Part, Property, Reference, Version};
 use crate::source::{Location, Text};
 
 impl<'a> Fleet<'a> {
@@ -182,6 +183,37 @@ pub(super) fn supplied(component: &Component, described: &ComponentType, report:
                     .help(format!("add `<property name=\"{}\">...</property>`", property.name)),
             );
         }
+    }
+}
+
+/// Reports a property that has to be supplied, and is written without a value; and one that says that it need not be.
+pub(super) fn lacks_value(
+    (property, version): (&Property, Version),
+    found: &Found<'_>,
+    described: &ComponentType,
+    report: &mut Report<'_>,
+) {
+    let declared = described.properties.iter().find(|declared| declared.name == *property.name.value);
+    let Some(declared) = declared else { return };
+    let Some(must) = declared.must_supply().filter(|must| must.value) else { return };
+    // In SCA 1.1 a component has no such attribute.
+    if let Some(said) = property.must_supply().filter(|said| !said.value && !version.is_1_1()) {
+        let message =
+            format!("the property {} has to be supplied, whatever a component says", quoted(&property.name));
+        let one = Diagnostic::new(&codes::MUST_SUPPLY_DIFFERS, said.location, message);
+        report.push(one.label(must.location, "said here").help("remove `mustSupply`"));
+    }
+    if found.raw.0.is_empty() && !declared.has_value() {
+        let why = if property.source().is_some() { ": its source has none" } else { "" };
+        let message = format!("the property {} has no value{why}", quoted(&property.name));
+        let at = property.source().map_or(property.name.location, |source| source.location);
+        let severity = if described.version.is_1_1() { Severity::Error } else { Severity::Warning };
+        report.push(
+            Diagnostic::new(&codes::PROPERTY_MISSING, at, message)
+                .severity(severity)
+                .label(declared.name.location, "it has to be supplied by this description")
+                .help("give it a value"),
+        );
     }
 }
 

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use super::described;
-use super::fleet::{Fleet, Kind, Member, Unit};
+use super::fleet::{Fleet, Kind, Member};
+use super::global;
 use super::offer::Side;
 use super::parameters::{Found, Parameters, Place};
 use super::raw::Piece;
@@ -32,6 +33,22 @@ impl<'a> Fleet<'a> {
         let is_whole =
             matches!(kind, ImplementationKind::Other { kind, .. } if kind == "script" || kind == "osgi");
         Some(Known { described: self.component_type(member)?, is_whole })
+    }
+
+    /// The names of the services or references of such a component that are written anywhere: it may have more.
+    pub(super) fn written_names(&self, member: usize, side: Side) -> Vec<&'a str> {
+        let component = self.members[member].component;
+        let described = self.known(member).into_iter().flat_map(|known| known.names(side));
+        let (services, references) = match side {
+            Side::Service => (&component.services[..], &[][..]),
+            Side::Reference => (&[][..], &component.references[..]),
+        };
+        let own = services.iter().map(|one| one.name.as_str());
+        let own = own.chain(references.iter().map(|one: &Reference| one.name.as_str()));
+        let mut names: Vec<&str> = own.chain(described).filter(|name| !name.is_empty()).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
     }
 
     /// Reports the name of a service or reference that such a component does not have, as far as anybody knows.
@@ -67,8 +84,8 @@ impl<'a> Known<'a> {
         services.chain(references.iter().map(|one| &one.name)).map(|name| name.as_str())
     }
 
-    /// Reports a name that is not among those that the file has: where the class may have it all the same as a warning, or a note if nothing is
-    /// near it. A file that has nothing of the kind says nothing about a class.
+    /// Reports a name that is not among those that the file has: where the class may have it all the same as a warning. A file that has nothing
+    /// of the kind says nothing about a class.
     fn lacks(
         &self,
         (code, rule): (&'static Code, Option<&'static str>),
@@ -86,9 +103,8 @@ impl<'a> Known<'a> {
         let mut one = report.unknown(code, at, message, name, known);
         one = one.label(self.described.tag(), "what it has is described here");
         if !self.is_whole {
-            let severity = if one.suggestions.is_empty() { Severity::Note } else { Severity::Warning };
             one = one
-                .severity(severity)
+                .severity(Severity::Warning)
                 .help(format!("if its class has it, add the {what} to the description"));
         }
         if let Some(rule) = rule {
@@ -114,58 +130,77 @@ pub(super) fn contracts(component: &Component, known: Known<'_>, report: &mut Re
     }
 }
 
-/// The components whose references composites promote, by their scopes, where there are any that this is asked of.
-pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> HashSet<(usize, &'a str)> {
-    if fleet.contribution.component_types().is_empty() {
-        return HashSet::new();
+/// The references that composites promote, by their scopes and components; without a name where a component is promoted as a whole.
+pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> HashSet<(usize, &'a str, Option<&'a str>)> {
+    let mut all = HashSet::new();
+    if fleet.members.iter().all(|member| member.kind != Kind::Given) {
+        return all;
     }
-    let of_unit = |unit: &Unit<'a>| {
-        let scope = unit.scope;
-        let all = unit.references().flat_map(Reference::promote);
-        all.map(|uri| (scope, parts(uri).0)).collect::<Vec<_>>()
-    };
-    fleet.units.iter().flat_map(of_unit).collect()
+    for unit in &fleet.units {
+        for (component, name) in unit.references().flat_map(Reference::promote).map(|uri| parts(uri)) {
+            all.insert((unit.scope, component, name));
+            for replica in fleet.group(unit.scope, component).into_iter().flatten() {
+                all.insert((unit.scope, &fleet.members[*replica].component.name, name));
+            }
+        }
+    }
+    all
 }
 
-/// Reports the references that a file says need a target, and have none: whoever runs the component may still find one.
+/// Reports the references that the component or a file says need a target, and have none: whoever runs the component may still find one.
 pub(super) fn unwired<'f>(
     place: usize,
     fleet: &'f Fleet<'_>,
-    promoted: &HashSet<(usize, &str)>,
+    promoted: &HashSet<(usize, &str, Option<&str>)>,
     is_wired: impl Fn(&'f str) -> bool,
     report: &mut Report<'_>,
 ) {
-    let Some(known) = fleet.known(place) else { return };
     let member = &fleet.members[place];
     let component = member.component;
-    if promoted.contains(&(member.scope, component.name.as_str())) || is_wired("") {
+    let is_promoted = |name| promoted.contains(&(member.scope, component.name.as_str(), name));
+    if member.kind != Kind::Given || is_promoted(None) || is_wired("") {
         return;
     }
     let default = component.autowire().map_or(member.autowire, |said| said.value);
-    for declared in
-        known.described.references.iter().filter(|one| !one.name.is_empty() && !is_wired(&one.name))
-    {
-        let own = component.reference(&declared.name);
-        let both = [own, Some(declared)];
-        let mut both = both.into_iter().flatten();
+    let described = fleet.known(place).map_or(&[][..], |known| &known.described.references);
+    let is_described = |name: &Text| described.iter().any(|one| one.name == *name.value);
+    let own = component.references.iter().filter(|own| !is_described(&own.name));
+    let described = described.iter().map(|declared| (component.reference(&declared.name), Some(declared)));
+    for (own, declared) in described.chain(own.map(|own| (Some(own), None))) {
+        let mut both = [own, declared].into_iter().flatten();
+        let Some(name) = both.clone().next().map(|one| &one.name).filter(|name| !name.is_empty()) else {
+            continue;
+        };
         let has_end = both.clone().any(|one| {
             !one.targets.is_empty()
                 || !one.bindings().is_empty()
                 || one.wired_by_impl().is_some_and(|wired| wired.value)
         });
         let autowire = both.clone().find_map(Reference::autowire).map_or(default, |said| said.value);
-        let multiplicity =
-            both.find_map(|one| one.multiplicity()).map_or(Multiplicity::One, |given| given.value);
-        if has_end || autowire || !multiplicity.is_required() {
+        // Where nobody says it, a class may.
+        let unsaid = if declared.is_some() { Multiplicity::One } else { Multiplicity::Any };
+        let given = both.find_map(Reference::multiplicity);
+        let multiplicity = given.map_or(unsaid, |given| given.value);
+        if has_end || autowire || !multiplicity.is_required() || is_promoted(Some(name)) || is_wired(name) {
             continue;
         }
-        let (name, of) = (quoted(&declared.name), quoted(&component.name));
-        let message = format!("reference {name} of component {of} leads to no service");
+        let message = format!(
+            "reference {} of component {} leads to no service",
+            quoted(name),
+            quoted(&component.name)
+        );
         let at = own.map_or(component.name.location, |own| own.name.location);
         let rule = if multiplicity.is_many() { "ASM50041" } else { "ASM50040" };
         let one = Diagnostic::new(&codes::UNWIRED, at, message).severity(Severity::Warning).rule(rule);
-        let one = one.label(declared.name.location, "it needs a target by this description");
-        report.push(one.help(format!("add `<reference name=\"{}\" target=\"...\"/>`", declared.name)));
+        let one = match (declared, given) {
+            (Some(declared), _) => one.label(declared.name.location, "it needs a target by this description"),
+            (None, Some(given)) => one.label(given.location, "it needs a target by this"),
+            (None, None) => one,
+        };
+        report.push(match own {
+            Some(_) => one.help("give it a `target`"),
+            None => one.help(format!("add `<reference name=\"{name}\" target=\"...\"/>`")),
+        });
     }
 }
 
@@ -184,6 +219,9 @@ pub(super) fn properties<'a>(
             continue;
         }
         let found = parameters.taken(place, property, report);
+        if let (Some(known), Ok(found)) = (known, &found) {
+            described::lacks_value((property, member.composite.version), found, known.described, report);
+        }
         let source = property.source().filter(|_| property.r#type().is_none());
         let source = source.and_then(|source| Some((source, parameters.declaration(member.unit, source)?)));
         let own = Typed { property, document: &member.composite.document };
@@ -214,11 +252,16 @@ pub(super) fn properties<'a>(
 /// Whether what a component gives for a property is what it is declared to be.
 fn fits(own: Typed<'_>, declared: Option<Typed<'_>>, found: &Result<Found<'_>, ()>, report: &mut Report<'_>) {
     let Ok(found) = found else { return };
-    if let Some(declared) = declared
-        && !(many(own.property, declared.property, found, report)
-            && value_type::matches(own, declared, Match::Declaration, report))
-    {
+    if !many(own.property, declared.map(|declared| declared.property), found, report) {
         return;
+    }
+    if let Some(declared) = declared {
+        if !value_type::matches(own, declared, Match::Declaration, report) {
+            return;
+        }
+        if found.source.is_none() && own.property.element().is_none() && own.property.r#type().is_none() {
+            global::given(declared, own, report);
+        }
     }
     let typed: Vec<&Property> = [Some(own), declared].into_iter().flatten().map(|one| one.property).collect();
     for piece in &found.raw.0 {
@@ -247,12 +290,13 @@ fn fits(own: Typed<'_>, declared: Option<Typed<'_>>, found: &Result<Found<'_>, (
 }
 
 /// Whether a component gives as many values as it can.
-fn many(own: &Property, declared: &Property, found: &Found<'_>, report: &mut Report<'_>) -> bool {
-    if declared.many().is_some_and(|many| many.value) {
+fn many(own: &Property, declared: Option<&Property>, found: &Found<'_>, report: &mut Report<'_>) -> bool {
+    if declared.and_then(Property::many).is_some_and(|many| many.value) {
         return true;
     }
     let name = quoted(&own.name);
-    if let Some(many) = own.many().filter(|many| many.value) {
+    let said = own.many();
+    if let (Some(declared), Some(many)) = (declared, said.filter(|many| many.value)) {
         let message = format!("the property {name} takes one value, and is said here to take several");
         let one = Diagnostic::new(&codes::MANY_VALUES, many.location, message);
         report.push(one.label(declared.name.location, "declared here, without `many=\"true\"`"));
@@ -262,6 +306,12 @@ fn many(own: &Property, declared: &Property, found: &Found<'_>, report: &mut Rep
     let message = format!("the property {name} takes one value, and here are {}", found.raw.0.len());
     let one = Diagnostic::new(&codes::MANY_VALUES, second.location(), message);
     let one = one.label(first.location(), "the first");
-    report.push(one.label(declared.name.location, "declared here, without `many=\"true\"`"));
+    // Where nobody says how many it takes, a class may.
+    let one = match (declared, said) {
+        (Some(declared), _) => one.label(declared.name.location, "declared here, without `many=\"true\"`"),
+        (None, Some(said)) if !said.value => one.label(said.location, "it takes one"),
+        _ => return true,
+    };
+    report.push(one);
     false
 }

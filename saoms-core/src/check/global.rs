@@ -2,6 +2,7 @@
 
 use super::raw::{Piece, Raw};
 use super::report::{Report, list};
+use super::value_type::Typed;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::Property;
 use crate::source::Text;
@@ -34,7 +35,25 @@ pub(super) fn check(property: &Property, document: &Document, code: &'static Cod
     let Some(of) = property.element().filter(|of| !of.is_empty() && property.r#type().is_none()) else {
         return;
     };
-    let expected = Expected::of(of, property.origin.element(document));
+    holds((property, document), of, &Expected::of(of, property.origin.element(document)), code, report);
+}
+
+/// Checks that what a component gives for a property that is declared with an `element` are such elements.
+pub(super) fn given(declared: Typed<'_>, own: Typed<'_>, report: &mut Report<'_>) {
+    let Some(of) = declared.property.element().filter(|of| !of.is_empty()) else { return };
+    if declared.property.r#type().is_none() {
+        let expected = Expected::of(of, declared.property.origin.element(declared.document));
+        holds((own.property, own.document), of, &expected, &codes::VALUE_TYPE, report);
+    }
+}
+
+fn holds(
+    (property, document): (&Property, &Document),
+    of: &Text,
+    expected: &Expected<'_>,
+    code: &'static Code,
+    report: &mut Report<'_>,
+) {
     let wrong = |found: String| {
         let message = format!(
             "the property {} holds elements {}{}: found {found}",

@@ -5,8 +5,10 @@
 //! is not looked at: one mistake gives one diagnostic.
 
 mod absent;
+mod agree;
 mod arena;
 mod autowire;
+mod binding;
 mod bindings;
 mod by_name;
 mod census;

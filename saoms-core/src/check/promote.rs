@@ -1,10 +1,11 @@
 //! What composites promote.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
+use super::agree::{self, Found};
 use super::classes::ClassIndex;
 use super::contracts::of_class;
-use super::fleet::{Fleet, Unit};
+use super::fleet::{Fleet, Kind, Unit};
 use super::offer::Side;
 use super::report::{Report, list};
 use super::target::{Uri, spread};
@@ -23,6 +24,8 @@ pub(super) struct Promoted<'f> {
     pub(super) outermost: HashMap<Place<'f>, Vec<&'f Text>>,
     /// By composites that implement components: to these references of theirs.
     pub(super) to: Map<Place<'f>, Vec<Place<'f>>>,
+    /// Those of which one composite's reference promotes several with different interfaces, which is reported.
+    pub(super) differing: HashSet<Place<'f>>,
 }
 
 /// Checks that what composites promote exists, and that their services and references have names of their own.
@@ -39,18 +42,31 @@ pub(super) fn check<'f>(
         let known = report.diagnostics().len();
         repeated(unit.services().map(|service| &service.name), Side::Service, "ASM60003", report);
         repeated(unit.references().map(|reference| &reference.name), Side::Reference, "ASM60006", report);
-        for promote in unit.services().filter_map(|service| service.promote.as_ref()) {
-            find(promote, Side::Service, unit, fleet, classes, report);
+        for (service, promote) in unit.services().filter_map(|one| Some((one, one.promote.as_ref()?))) {
+            if let Some(found) = find(promote, Side::Service, unit, fleet, classes, report) {
+                agree::service(service, found, fleet, classes, report);
+            }
         }
         let owner = fleet.scopes[unit.scope].owner;
         for reference in unit.references() {
-            let found = reference
-                .promote()
-                .iter()
-                .flat_map(|promote| spread(promote, unit.scope, fleet))
-                .filter_map(|(promote, _)| find(&promote, Side::Reference, unit, fleet, classes, report));
-            let found: Vec<Place<'f>> = found.collect();
-            found.iter().for_each(|inner| may_be_promoted(*inner, reference, fleet, classes, report));
+            let found =
+                reference.promote().iter().flat_map(|promote| spread(promote, unit.scope, fleet)).filter_map(
+                    |(promote, _)| {
+                        let found = find(&promote, Side::Reference, unit, fleet, classes, report)?;
+                        Some((found, promote.location))
+                    },
+                );
+            let found: Vec<Found<'f>> = found.collect();
+            found.iter().for_each(|(inner, _)| may_be_promoted(*inner, reference, fleet, classes, report));
+            agree::wired(reference, &found, unit.main().version, fleet, report);
+            let is_one = agree::reference(reference, &found, fleet, classes, report);
+            // What is taken as given wires itself.
+            let found = found.into_iter().map(|(inner, _)| inner);
+            let found: Vec<Place<'f>> =
+                found.filter(|(member, _)| fleet.members[*member].kind != Kind::Given).collect();
+            if !is_one {
+                promoted.differing.extend(&found);
+            }
             match owner {
                 Some(owner) => {
                     for inner in found {
@@ -89,9 +105,16 @@ fn may_be_promoted(
     let declared = class.and_then(|class| class.references.iter().find(|declared| declared.name == name));
     let given = own.and_then(|own| own.multiplicity()).map(|given| given.value);
     let inner = match declared {
-        Some(declared) => given.unwrap_or(of_class(declared)),
-        None => fleet.multiplicity_of((member, name)),
+        Some(declared) => Some(given.unwrap_or(of_class(declared))),
+        // That of a class that nobody here knows is in the class.
+        None if fleet.members[member].kind == Kind::Given => given.or_else(|| {
+            let mut described = fleet.component_type(member)?.references.iter();
+            let described = described.find(|one| one.name == *name)?;
+            Some(described.multiplicity().map_or(Multiplicity::One, |given| given.value))
+        }),
+        None => Some(fleet.multiplicity_of((member, name))),
     };
+    let Some(inner) = inner else { return };
     let component = quoted(&fleet.members[member].component.name);
     if let Some(fixed) =
         own.and_then(|own| own.non_overridable()).filter(|fixed| fixed.value && !inner.is_many())
@@ -151,6 +174,36 @@ fn repeated<'a>(
     }
 }
 
+/// The name of what a URI promotes of a component that is taken as given, as far as it is written anywhere. Faults are reported.
+fn find_given<'f>(
+    text: &Text,
+    uri: &Uri<'_>,
+    member: usize,
+    side: Side,
+    fleet: &'f Fleet<'_>,
+    report: &mut Report<'_>,
+) -> Option<&'f str> {
+    let known = fleet.written_names(member, side);
+    if let Some((name, at)) = &uri.part {
+        let at = report.part(text, at.clone());
+        let code = (&codes::UNKNOWN_PROMOTED, Some(side.rule()));
+        fleet.unknown_name(member, side, code, (name, at), report);
+        return known.into_iter().find(|known| known == name);
+    }
+    if let [only] = known[..] {
+        return Some(only);
+    }
+    if !known.is_empty() {
+        let (what, component) = (side.name(), quoted(uri.component));
+        let message = format!("component {component} has several {what}s: say which is promoted");
+        let is_1_1 = fleet.members[member].composite.version.is_1_1();
+        let severity = if is_1_1 { Severity::Error } else { Severity::Warning };
+        let one = Diagnostic::new(&codes::UNKNOWN_PROMOTED, text.location, message).rule(side.rule());
+        report.push(one.severity(severity).help(format!("write `{text}/` and one of {}", list(known))));
+    }
+    None
+}
+
 /// What a URI promotes. Faults are reported.
 fn find<'f>(
     text: &Text,
@@ -167,12 +220,7 @@ fn find<'f>(
         Side::Reference => fleet.reference_names(member, classes),
     };
     let Some(names) = names else {
-        if let Some((name, at)) = uri.part {
-            let at = report.part(text, at);
-            let code = (&codes::UNKNOWN_PROMOTED, Some(side.rule()));
-            fleet.unknown_name(member, side, code, (name, at), report);
-        }
-        return None;
+        return find_given(text, &uri, member, side, fleet, report).map(|name| (member, name));
     };
     let (what, component) = (side.name(), quoted(uri.component));
     let only = match side {

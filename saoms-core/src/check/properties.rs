@@ -15,7 +15,7 @@ use super::values::{Path, Use, Values};
 use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::expression::has_expression;
-use crate::model::{Component, ComponentType, Loop, Origin, Part, Property};
+use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
 use crate::xml::Document;
@@ -186,6 +186,16 @@ pub(super) fn check<'a>(
         }
         first[place] = Some(property);
         let slot = &slots.all[place];
+        if let Some(many) =
+            property.many().filter(|many| many.value && slot.main().is_some_and(|one| !one.many))
+        {
+            let message = format!(
+                "the property {} takes one value, and is said here to take several",
+                quoted(&property.name)
+            );
+            let one = Diagnostic::new(&codes::MANY_VALUES, many.location, message);
+            report.push(one.help("remove `many`"));
+        }
         match value(member, property, (place, slot), parameters, values, report) {
             Ok(None) => unset.push(&property.name),
             Ok(Some(value)) => {
@@ -371,6 +381,10 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
     for property in member.component.properties.iter().filter(|property| !property.name.is_empty()) {
         if let Some((declared, document)) = declared().find(|(one, _)| one.name == *property.name.value) {
             let own = Typed { property, document: &member.composite.document };
+            let is_many = declared.many().is_some_and(|many| many.value);
+            if let (false, [first, second, ..]) = (is_many, property.values()) {
+                several((property, first, second), declared, report);
+            }
             let declared = Typed { property: declared, document };
             value_type::matches(own, declared, Match::Declaration, report);
             continue;
@@ -388,6 +402,33 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
 
 /// Up to here each property is compared with those before it.
 const FEW: usize = 16;
+
+/// Says that a property that its declaration says takes one value is given several.
+fn several(
+    (property, first, second): (&Property, &Value, &Value),
+    declared: &Property,
+    report: &mut Report<'_>,
+) {
+    let (name, count) = (quoted(&property.name), property.values().len());
+    let message = format!("the property {name} takes one value, and here are {count}");
+    let one = Diagnostic::new(&codes::MANY_VALUES, second.tag(), message).label(first.tag(), "the first");
+    let one = if std::ptr::eq(property, declared) {
+        one
+    } else {
+        one.label(declared.name.location, "declared here, without `many=\"true\"`")
+    };
+    report.push(one.help("keep one of them, or write `many=\"true\"` where the property is declared"));
+}
+
+/// Checks that a composite gives its property one value, where it takes one.
+pub(super) fn one_value(property: &Property, version: Version, report: &mut Report<'_>) {
+    // In SCA 1.0 elements of this name may be parts of a complex value.
+    if let (true, [first, second, ..]) = (version.is_1_1(), property.values())
+        && property.many().is_none_or(|many| !many.value)
+    {
+        several((property, first, second), property, report);
+    }
+}
 
 /// Reports properties that one component gives twice.
 pub(super) fn repeated(component: &Component, report: &mut Report<'_>) {

@@ -4,11 +4,12 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::classes::{ClassIndex, Fitting};
-use super::fleet::Fleet;
+use super::fleet::{Fleet, Kind};
 use super::offer::{Offer, Side};
 use super::report::{Report, escaped, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
+use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
 
@@ -190,7 +191,10 @@ pub(super) fn target(
     let Some((name, at)) = uri.part.clone() else {
         return match interface {
             Some(interface) => only_service(text, member, interface, fleet, classes, report),
-            None => Target::Open,
+            None => {
+                several(text, member, fleet, classes, report);
+                Target::Open
+            }
         };
     };
     let provider = match fleet.offer(member, name, classes) {
@@ -199,6 +203,10 @@ pub(super) fn target(
             let at = report.part(text, at);
             let code = (&codes::UNKNOWN_TARGET_SERVICE, None);
             fleet.unknown_name(member, Side::Service, code, (name, at), report);
+            // The bindings that a component writes are all that its service has.
+            if component.service(name).is_some_and(|service| !service.bindings().is_empty()) {
+                bound(text, &uri, (member, name), fleet, report);
+            }
             return Target::Open;
         }
         Offer::Missing => {
@@ -230,29 +238,90 @@ pub(super) fn target(
         });
         return Target::Wrong;
     }
-    if let Some((binding, at)) = &uri.binding {
-        let declared = component.service(name).map_or(&[][..], |service| service.bindings());
-        // A binding without a name has that of its service, and a service without bindings has one of SCA.
-        let named = |known: &crate::model::Binding| {
-            known.name.as_ref().map_or(name, |name| name.as_str()) == *binding
-        };
-        if !(declared.iter().any(named) || declared.is_empty() && *binding == name) {
-            let at = report.part(text, at.clone());
-            let message = format!(
-                "service {} of component {} has no binding {}",
-                quoted(name),
-                quoted(&component.name),
-                quoted(binding)
-            );
-            let known = declared.iter().map(|known| known.name.as_ref().map_or(name, |name| name.as_str()));
-            let known: Vec<&str> = if declared.is_empty() { vec![name] } else { known.collect() };
-            let known = ("its bindings are", known.iter().copied());
-            let one = report.unknown(&codes::UNKNOWN_BINDING, at, message, binding, known);
-            report.push(one);
-            return Target::Wrong;
-        }
+    if !bound(text, &uri, (member, name), fleet, report) {
+        return Target::Wrong;
     }
     Target::Service(provider)
+}
+
+/// Whether the service of a component has the binding that a URI names.
+fn bound(
+    text: &Text,
+    uri: &Uri<'_>,
+    (member, name): (usize, &str),
+    fleet: &Fleet<'_>,
+    report: &mut Report<'_>,
+) -> bool {
+    let Some((binding, at)) = &uri.binding else { return true };
+    let component = fleet.members[member].component;
+    let declared = component.service(name).map_or(&[][..], |service| service.bindings());
+    // A binding without a name has that of its service, and a service without bindings has one of SCA.
+    let called = |known: &'_ Binding| known.name.as_ref().map_or(name, |name| name.as_str()) == *binding;
+    if declared.iter().any(called) || declared.is_empty() && *binding == name {
+        return true;
+    }
+    let at = report.part(text, at.clone());
+    let message = format!(
+        "service {} of component {} has no binding {}",
+        quoted(name),
+        quoted(&component.name),
+        quoted(binding)
+    );
+    let known = declared.iter().map(|known| known.name.as_ref().map_or(name, |name| name.as_str()));
+    let known: Vec<&str> = if declared.is_empty() { vec![name] } else { known.collect() };
+    let known = ("its bindings are", known.iter().copied());
+    let one = report.unknown(&codes::UNKNOWN_BINDING, at, message, binding, known);
+    report.push(one);
+    false
+}
+
+/// Whether a component that is taken as given, or that a composite implements, has several services: of those of classes the interface decides.
+pub(super) fn has_several(member: usize, fleet: &Fleet<'_>) -> bool {
+    match fleet.members[member].kind {
+        Kind::Class(_) | Kind::Nothing => false,
+        Kind::Composite(_) => fleet.inner(member).is_some_and(|inner| inner.services().nth(1).is_some()),
+        Kind::Given => {
+            let written = fleet.members[member].component.services.len();
+            written > 1 || fleet.component_type(member).is_some_and(|one| !one.services.is_empty())
+        }
+    }
+}
+
+/// Says that a target of a reference without a known interface may mean several services: only the interface could tell which.
+fn several(
+    text: &Text,
+    member: usize,
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
+    report: &mut Report<'_>,
+) {
+    if !has_several(member, fleet) {
+        return;
+    }
+    let component = fleet.members[member].component;
+    let names = match fleet.service_names(member, classes) {
+        Some(names) if fleet.offers(member, classes).iter().all(|(_, offer)| *offer == Offer::Open) => names,
+        Some(_) => return,
+        None => fleet.written_names(member, Side::Service),
+    };
+    if names.len() < 2 {
+        return;
+    }
+    let said = |name: &&str| {
+        let inner = fleet.inner(member).and_then(|inner| inner.services().find(|one| one.name == **name));
+        let described = fleet.component_type(member);
+        let described = described.and_then(|one| one.services.iter().find(|one| one.name == **name));
+        let mut all = [component.service(name), inner, described].into_iter().flatten();
+        all.find_map(|one| one.interface()?.interface.clone()).map(|interface| interface.value)
+    };
+    let mut interfaces = names.iter().map(said);
+    let first = interfaces.next();
+    if interfaces.any(|interface| Some(interface) != first) {
+        return;
+    }
+    let message = format!("component {} has several services", quoted(text));
+    let one = Diagnostic::new(&codes::TARGET_AMBIGUOUS, text.location, message).severity(Severity::Warning);
+    report.push(one.help(format!("name one of {}: `{text}/...`", list(names.iter().copied()))));
 }
 
 /// Whether a target is an address on a network rather than a component.

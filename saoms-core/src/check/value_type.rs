@@ -147,11 +147,17 @@ pub(super) enum Match {
 /// Whether two properties of which one gives the other its values can have one type: the same, or one that is made of the other. Where they cannot,
 /// that is reported.
 pub(super) fn matches(own: Typed<'_>, other: Typed<'_>, how: Match, report: &mut Report<'_>) -> bool {
-    let of = |typed: &Typed<'_>| typed.property.r#type().filter(|of| !of.is_empty()).cloned();
-    let (Some(here), Some(there)) = (of(&own), of(&other)) else { return true };
+    let of = |typed: &Typed<'_>| {
+        let (of, element) = (typed.property.r#type(), typed.property.element());
+        let of = of.map(|of| (of, true)).or_else(|| Some((element?, false)));
+        of.filter(|(of, _)| !of.is_empty()).map(|(of, is_type)| (of.clone(), is_type))
+    };
+    let (Some((here, is_type)), Some((there, is_type_there))) = (of(&own), of(&other)) else { return true };
     let (here, there) = (&here, &there);
     let (name, meant) = (local(here), local(there));
     let is_same = match (own.namespace(here).as_deref(), other.namespace(there).as_deref()) {
+        // Whether an element is of a type is in the schemas of users.
+        _ if is_type != is_type_there => return true,
         (Some(XML_SCHEMA), Some(XML_SCHEMA)) => derives(name, meant) || derives(meant, name),
         // What types of users are made of is in their schemas.
         (Some(one), Some(another)) if one != another => [one, another].contains(&XML_SCHEMA),
@@ -160,20 +166,27 @@ pub(super) fn matches(own: Typed<'_>, other: Typed<'_>, how: Match, report: &mut
     if !is_same {
         let (at, what, help, rule) = match how {
             Match::Declaration => {
-                let help = "leave `type` out: that of the declaration holds";
+                let help = match is_type {
+                    true => "leave `type` out: that of the declaration holds",
+                    false => "leave `element` out: that of the declaration holds",
+                };
                 (here.location, "where it is declared", help, "ASM50036")
             }
-            Match::Source(at) => (at, "where its value comes from", "give both one type", "ASM50038"),
+            Match::Source(at) => {
+                let help = if is_type { "give both one type" } else { "give both one element" };
+                (at, "where its value comes from", help, "ASM50038")
+            }
         };
+        let kind = if is_type { "is of the type" } else { "is of the element" };
         let message = format!(
-            "the property {} is of the type {}, and of {} {what}",
+            "the property {} {kind} {}, and of {} {what}",
             quoted(&own.property.name),
             quoted(here),
             quoted(there)
         );
         let mut one = Diagnostic::new(&codes::VALUE_TYPE, at, message).rule(rule);
         if at != here.location {
-            one = one.label(here.location, "its type");
+            one = one.label(here.location, if is_type { "its type" } else { "its element" });
         }
         report.push(one.label(there.location, what).help(help));
     }

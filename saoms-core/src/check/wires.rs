@@ -15,7 +15,7 @@ use super::multiplicity::keeps_own;
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
 use super::room::Room;
-use super::target::{Provider, Target, parts, spread, target};
+use super::target::{Provider, Target, has_several, parts, spread, target};
 use super::wire::{Wire, wires};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
@@ -204,8 +204,10 @@ impl<'f, 'a> Wires<'f, 'a> {
             && !self.fleet.multiplicity_of(place).is_many();
         let (fleet, promoted) = (self.fleet, self.promoted);
         let outer = promoted.to.get(&place).map_or(&[][..], Vec::as_slice);
-        let mut around = Ends::default();
-        for outer in outer {
+        // No target serves references of several interfaces.
+        let is_differing = self.promoted.differing.contains(&place);
+        let mut around = Ends { is_unknown: is_differing, ..Ends::default() };
+        for outer in outer.iter().filter(|_| !is_differing) {
             let more = self.ends(*outer, interface, report);
             around.all.extend(more.all);
             around.is_unknown |= more.is_unknown;
@@ -316,10 +318,11 @@ impl<'f, 'a> Wires<'f, 'a> {
         }
     }
 
-    /// Whether a text is nothing but the name of a component: what most targets are.
+    /// Whether a text is nothing but the name of a component that has one service as far as anybody knows: what most targets are.
     fn is_component(&self, text: &str, scope: usize) -> bool {
         let is_odd = |byte: u8| matches!(byte, b'/' | b':' | b'*' | b'$');
-        !text.bytes().fold(false, |odd, byte| odd | is_odd(byte)) && self.fleet.find(scope, text).is_some()
+        let is_plain = !text.bytes().fold(false, |odd, byte| odd | is_odd(byte));
+        is_plain && self.fleet.find(scope, text).is_some_and(|found| !has_several(found, self.fleet))
     }
 
     /// Whether targets are to be found by interface: said by the reference, its component, or the composite.

@@ -1,13 +1,13 @@
 //! Rules on what is written, whatever implements the components: nothing here asks a class.
 
-use std::collections::HashMap;
-
+use super::binding;
 use super::fleet::Fleet;
 use super::global;
+use super::properties;
 use super::report::Report;
 use super::value_type;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Binding, Part, Property, Reference, Service, Version};
+use crate::model::{Part, Property, Reference, Service, Version};
 use crate::source::{Location, Text};
 
 /// Checks the properties, services and references of every composite and component.
@@ -18,13 +18,11 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             global::check(property, &composite.document, &codes::COMPOSITE_VALUE_TYPE, report);
             value_type::named(property, &composite.document, report);
             value_type::own(property, report);
+            properties::one_value(property, composite.version, report);
         }
-        composite
-            .services
-            .iter()
-            .for_each(|service| bindings("service", &service.name, service.bindings(), report));
-        for reference in &composite.references {
-            bindings("reference", &reference.name, reference.bindings(), report);
+        composite.services.iter().for_each(|one| binding::of_service(one, report));
+        for one in &composite.references {
+            binding::of_reference(one, composite.version, &composite.document, report);
         }
     }
     for member in &fleet.members {
@@ -36,13 +34,16 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             value_type::named(property, &member.composite.document, report);
         }
         component.services.iter().for_each(|one| service(one, member.composite.version, report));
-        component.references.iter().for_each(|one| reference(one, member.composite.version, report));
+        for one in &component.references {
+            binding::of_reference(one, member.composite.version, &member.composite.document, report);
+            reference(one, member.composite.version, report);
+        }
     }
     report.about_all();
 }
 
 fn service(service: &Service, version: Version, report: &mut Report<'_>) {
-    bindings("service", &service.name, service.bindings(), report);
+    binding::of_service(service, report);
     // In SCA 1.0 it is where the service can be reached from outside.
     let of_sca = service.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
     for binding in of_sca.filter(|_| version.is_1_1()) {
@@ -55,7 +56,6 @@ fn service(service: &Service, version: Version, report: &mut Report<'_>) {
 }
 
 fn reference(reference: &Reference, version: Version, report: &mut Report<'_>) {
-    bindings("reference", &reference.name, reference.bindings(), report);
     if reference.wired_by_impl().is_some_and(|wired| wired.value)
         && let Some(target) = reference.targets.first()
     {
@@ -75,19 +75,6 @@ fn reference(reference: &Reference, version: Version, report: &mut Report<'_>) {
 /// A place for a text that may be empty.
 fn at(text: &Text, otherwise: Location) -> Location {
     if text.is_empty() { otherwise } else { text.location }
-}
-
-fn bindings(what: &str, name: &Text, bindings: &[Binding], report: &mut Report<'_>) {
-    if bindings.len() < 2 {
-        return;
-    }
-    let mut first: HashMap<&str, Location> = HashMap::new();
-    for given in bindings.iter().filter_map(|binding| binding.name.as_deref()) {
-        let Some(earlier) = first.insert(given, given.location) else { continue };
-        let message = format!("{what} {} has two bindings {}", quoted(name), quoted(given));
-        let one = Diagnostic::new(&codes::BINDING_REPEATED, at(given, earlier), message);
-        report.push(one.label(earlier, "the first").help("give each its own name"));
-    }
 }
 
 pub(super) fn type_and_element(property: &Property, rule: &'static str, report: &mut Report<'_>) {

@@ -21,7 +21,7 @@ const DESCRIPTION: &str = "<property name='speed' type='xsd:int'>5</property>
 <reference name='lamps' multiplicity='0..n'/>";
 
 /// What is wrong with a composite that has files beside it, where classes are taken as given or not.
-fn found(inside: &str, types: &[(&str, &str)], assume_classes: bool) -> String {
+pub(crate) fn found(inside: &str, types: &[(&str, &str)], assume_classes: bool) -> String {
     let folder = tempfile::tempdir().unwrap();
     for (name, inside) in types {
         let text = format!(
@@ -144,7 +144,7 @@ fn a_class_may_have_more_than_its_file_says() {
           run.componentType:1:2-15 what it has is described here
           help: if its class has it, add the property to the description
           fix: replace `sped` with `speed` [4:17-21 "speed"]
-        5:16-23 note S2005: component `S` has no service `another`
+        5:16-23 warning S2005: component `S` has no service `another`
           run.componentType:1:2-15 what it has is described here
           help: its services are `tick`
           help: if its class has it, add the service to the description
@@ -236,4 +236,45 @@ fn references_that_the_file_says_need_a_target_are_told() {
     assert_eq!(wired("<wire source='S/clock' target='S/tick'/>", ""), "");
     assert_eq!(wired("<reference name='r' promote='S/clock'/>", ""), "");
     assert_eq!(wired("", "autowire='true'"), "");
+}
+
+#[test]
+fn elements_are_those_of_the_file() {
+    let types = "<property name='a' element='t:bar'/><property name='b' element='t:bar'/><property name='c' element='t:bar'/><property name='d' type='xsd:int'/>";
+    let wrong = "<component name='S'><implementation.java class='a.Run'/>
+<property name='a'><t:foo/></property>
+<property name='b' element='t:foo'><t:foo/></property>
+<property name='c'><t:bar/></property>
+<property name='d' element='t:foo'><t:foo/></property></component>";
+    let types = types.replacen("<property", "<property xmlns:t='urn:t'", 1);
+    let types = types.replace("<property name", "<property xmlns:t='urn:t' name");
+    expect![[r#"
+        3:21-26 error S3007: the property `a` holds elements `t:bar` in the namespace `urn:t`: found `foo`
+          Run.componentType:2:45-50 the element
+          help: put what is inside into `<t:bar>...</t:bar>`, or give the property a `type`
+        4:29-34 error S3007: the property `b` is of the element `t:foo`, and of `t:bar` where it is declared
+          Run.componentType:2:97-102 where it is declared
+          help: leave `element` out: that of the declaration holds
+    "#]]
+    .assert_eq(&found(wrong, &[("Run.componentType", &types)], true));
+}
+
+#[test]
+fn what_has_to_be_supplied_has_a_value() {
+    let types = "<property name='a' type='xsd:int' mustSupply='true'/>\n<property name='b' mustSupply='true'>1</property>";
+    let wrong = "<property name='q' type='xsd:int'/>
+<component name='S'><implementation.java class='a.Run'/><property name='a'/></component>
+<component name='T'><implementation.java class='a.Run'/><property name='a' source='$q'/></component>
+<component name='U'><implementation.java class='a.Run'/><property name='a' mustSupply='false'>1</property><property name='b'/></component>";
+    expect![[r#"
+        3:73-74 error S3006: the property `a` has no value
+          Run.componentType:2:17-18 it has to be supplied by this description
+          help: give it a value
+        4:84-86 error S3006: the property `a` has no value: its source has none
+          Run.componentType:2:17-18 it has to be supplied by this description
+          help: give it a value
+        5:76-86 error S1007: `property` has no attribute `mustSupply`
+          help: it is one of SCA 1.0 alone: remove it
+    "#]]
+    .assert_eq(&found(wrong, &[("Run.componentType", types)], true));
 }

@@ -66,18 +66,18 @@ fn each_of_several_values_has_its_own_place() {
 #[test]
 fn values_from_elsewhere_are_shown_there() {
     let inside = format!(
-        "<property name=\"book\"><value>a bad</value><value>b&amp;</value></property>{}",
+        "<property name=\"book\" many=\"true\"><value>a bad</value><value>b&amp;</value></property>{}",
         reader("<property name=\"words\" source=\"$book\"/>")
     );
     expect![[r#"
-        2:32-35 error S3014: component `R`: property `words`: cannot read `bad`
+        2:44-47 error S3014: component `R`: property `words`: cannot read `bad`
           3:32-37 used here as `words`
           help: `saoms components example.Reader` says what its properties mean
-        2:50-56 error S3014: component `R`: property `words`: cannot read `b&`
-          2:32-35 the first
+        2:62-68 error S3014: component `R`: property `words`: cannot read `b&`
+          2:44-47 the first
           3:32-37 used here as `words`
           help: begin at the begin
-          fix: replace `b&` with `a&` [2:50-56 "a&amp;"]
+          fix: replace `b&` with `a&` [2:62-68 "a&amp;"]
     "#]]
     .assert_eq(&faults(&inside));
     expect![[r#"

@@ -105,6 +105,9 @@ fn promotions_have_to_exist() {
           help: write `T/` and one of `left` and `right`
         7:18-19 warning S2022: reference `r` of the composite is wired to nothing: calls through it fail
           help: the composite runs by itself, and nothing around it can wire its references
+        7:38-46 error S2007: reference `r` of the composite promotes references with the interfaces `example.Positions` and `example.Wheels`
+          7:30-37 the first
+          help: promote each by a reference of its own: no service has both interfaces
         7:49-54 error S2021: component `N` has no reference `whels`
           fix: replace `whels` with `wheels` [7:49-54 "wheels"]
         8:30-31 error S2021: component `T` has no references to promote

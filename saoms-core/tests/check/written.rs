@@ -1,0 +1,113 @@
+//! Rules that need no class: bindings, targets and values as they are written.
+
+use expect_test::expect;
+
+use crate::component_types::found;
+use crate::support::faults;
+
+/// What is wrong with a component of a class that nobody here knows.
+fn given(inside: &str) -> String {
+    let inside = format!("<component name='A'><implementation.java class='x.A'/>\n{inside}</component>");
+    found(&inside, &[], true)
+}
+
+#[test]
+fn references_that_say_that_they_need_a_target_have_one() {
+    let wrong = "<reference name='a' multiplicity='1..1'/>
+<reference name='b' multiplicity='1..n'/>
+<reference name='c' multiplicity='0..1'/><reference name='d'/>
+<reference name='e' multiplicity='1..1' target='A'/><reference name='f' multiplicity='1..1'><binding.ws/></reference>
+<reference name='g' multiplicity='1..1' autowire='true'/><reference name='h' multiplicity='1..1' wiredByImpl='true'/>
+<reference name='i' multiplicity='1..1'/><reference name='j' multiplicity='1..1'/></component>
+<wire source='A/i' target='A'/><reference name='k' promote='A/j'/>
+<component name='B'><implementation.java class='x.B'/>";
+    expect![[r#"
+        3:18-19 warning S2018: reference `a` of component `A` leads to no service
+          3:35-39 it needs a target by this
+          help: give it a `target`
+        4:18-19 warning S2018: reference `b` of component `A` leads to no service
+          4:35-39 it needs a target by this
+          help: give it a `target`
+    "#]]
+    .assert_eq(&given(wrong));
+}
+
+#[test]
+fn a_target_and_an_address_exclude_each_other() {
+    let wrong = "<reference name='a' target='A'><binding.ws uri='http://a'/></reference>
+<reference name='b' target='A'><binding.ws/></reference><reference name='c'><binding.ws uri='http://a'/></reference>
+<reference name='d'><binding.ws uri='http://a' wsdlElement='http://x#wsdl.port(S/P)'/></reference>
+<reference name='e'><binding.ws uri='http://a' wsdlElement='http://x#wsdl.binding(B)'/></reference>
+<reference name='f' multiplicity='0..1'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>
+<reference name='g' multiplicity='0..n'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>";
+    expect![[r#"
+        3:49-57 error S2054: reference `a` has a target, and a binding that leads to `http://a`
+          3:29-30 the target
+          help: keep one of them
+        5:38-46 warning S2054: binding.ws of reference `d` has a `uri`, and a `wsdlElement` that says where the service is
+          5:61-84 the other one
+          help: keep one of them
+        7:96-101 error S2017: reference `f` takes one target, and its bindings lead to 2
+          7:58-66 the first
+          help: keep one of them
+    "#]].assert_eq(&given(wrong));
+}
+
+#[test]
+fn bindings_without_a_name_are_called_as_what_they_bind() {
+    let wrong = "<service name='a'><binding.ws/><binding.jms/></service>
+<service name='b'><binding.ws/><binding.sca name='b'/></service>
+<service name='c'><binding.ws/><binding.sca name='d'/></service>
+<service name='e'><binding.ws name='f'/><callback><binding.ws name='f'/><binding.jms name='f'/></callback></service>";
+    expect![[r#"
+        3:33-44 warning S2040: service `a` has two bindings `a`: `binding.jms` without a name is called so
+          3:20-30 the first
+          help: give each its own name
+        4:51-52 warning S2040: service `b` has two bindings `b`: `binding.ws` without a name is called so
+          4:20-30 the first
+          help: give each its own name
+        6:92-93 error S2040: the callback of `e` has two bindings `f`
+          6:69-70 the first
+          help: give each its own name
+    "#]]
+    .assert_eq(&given(wrong));
+}
+
+#[test]
+fn targets_name_bindings_that_are_written() {
+    let wrong = "<service name='s'><binding.ws name='q'/></service><service name='t'/>
+<reference name='a' target='A/s/zz A/s/q A/t/zz'/>";
+    expect![[r#"
+        4:33-35 error S2013: service `s` of component `A` has no binding `zz`
+          help: its bindings are `q`
+    "#]]
+    .assert_eq(&given(wrong));
+}
+
+#[test]
+fn a_property_for_one_value_has_one() {
+    let wrong = "<property name='a' many='false'><value>1</value><value>2</value></property>
+<property name='b'><value>1</value><value>2</value></property>
+<property name='c' many='false' source='$two'/></component>
+<property name='two' many='true'><value>1</value><value>2</value></property>
+<property name='one'><value>1</value><value>2</value></property>
+<component name='B'><implementation.java class='x.B'/><property name='c' source='$one'/>";
+    expect![[r#"
+        3:56-57 error S3011: the property `a` takes one value, and here are 2
+          3:40-41 the first
+          3:26-31 it takes one
+        6:57-58 error S3011: the property `c` takes one value, and here are 2
+          6:41-42 the first
+          5:26-31 it takes one
+        7:39-44 error S3011: the property `one` takes one value, and here are 2
+          7:23-28 the first
+          help: keep one of them, or write `many="true"` where the property is declared
+    "#]]
+    .assert_eq(&given(wrong));
+    let inner = "<component name='R'><implementation.java class='example.Robot001'/><property name='ID'>R</property><property name='period' many='true'>1</property></component>";
+    expect![[r#"
+        2:130-134 error S3011: the property `period` takes one value, and is said here to take several
+          help: remove `many`
+    "#]]
+    .assert_eq(&faults(inner));
+}
