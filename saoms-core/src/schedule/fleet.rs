@@ -198,7 +198,7 @@ impl Fleet {
     /// Lets the last events be told.
     fn finish(&mut self) {
         self.finish_journal();
-        self.handle.shared.line.close();
+        self.handle.shared.close_line();
         if let Some(teller) = self.teller.take() {
             // A program that panics over an event has been told so on standard error.
             let _ = teller.join();

@@ -1,4 +1,4 @@
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use saoms_api::Time;
@@ -39,6 +39,8 @@ pub(super) struct Shared {
     /// Records of the journal.
     pub(super) records: AtomicU64,
     executions: Arc<AtomicU64>,
+    /// How many threads have freed the engine and not told yet what was new.
+    telling: AtomicUsize,
 }
 
 impl Shared {
@@ -67,6 +69,7 @@ impl Shared {
             stop: AtomicBool::new(false),
             ended: AtomicBool::new(false),
             records: AtomicU64::new(0),
+            telling: AtomicUsize::new(0),
         }
     }
 
@@ -80,13 +83,30 @@ impl Shared {
     pub(super) fn release(&self, mut engine: MutexGuard<'_, Engine>) {
         let wake = std::mem::take(&mut engine.wake);
         let news = std::mem::take(&mut engine.news);
+        let is_telling = !news.is_empty();
+        if is_telling {
+            self.telling.fetch_add(1, Ordering::Relaxed);
+        }
         drop(engine);
         for event in news {
             self.line.put(event);
         }
+        if is_telling {
+            self.telling.fetch_sub(1, Ordering::Release);
+        }
         if wake {
             self.timer.wake();
         }
+    }
+
+    /// Lets everything be told that was new when the run ended, and closes the line behind it.
+    pub(super) fn close_line(&self) {
+        // Whoever has something to tell took the engine before it was seen to have ended, and needs but a moment more.
+        drop(self.lock());
+        while self.telling.load(Ordering::Acquire) > 0 {
+            std::thread::yield_now();
+        }
+        self.line.close();
     }
 
     pub(super) fn sections(&self) -> MutexGuard<'_, Sections> {

@@ -105,3 +105,12 @@ proptest! {
         prop_assert_eq!(report.periods, report.components.iter().map(|component| component.executions).sum::<u64>());
     }
 }
+
+/// The thread that runs the fleet tells how it ended after everybody can see that it has.
+#[test]
+fn the_last_event_is_told_however_often_a_fleet_ends() {
+    for run in 0..300 {
+        let (_, told) = run_once("C0 actor period=15");
+        assert!(told.contains("has shut down"), "run {run}: {told}");
+    }
+}

@@ -171,6 +171,8 @@ impl Line {
         if std::mem::take(&mut waiting.writers_sleep) {
             self.emptied.notify_all();
         }
-        (std::mem::take(&mut waiting.lost), waiting.closed)
+        // Behind an event over which the program panicked there may be more than the batch.
+        let is_last = waiting.closed && waiting.news.is_empty();
+        (std::mem::take(&mut waiting.lost), is_last)
     }
 }
