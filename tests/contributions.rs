@@ -156,3 +156,19 @@ fn a_composite_beside_one_that_is_named_from_outside_is_one_file() {
         assert_eq!((code, wrong.as_str()), (0, ""), "{said}");
     }
 }
+
+#[test]
+fn what_fleets_share_is_told_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let renamed = "<property name=\"topicRename\" source=\"$topics\"/>";
+    let part = "<property name=\"topics\">NOWHERE,a</property>".to_owned() + &robot(1, renamed);
+    fs::write(folder.path().join("part.composite"), composite("part", &part)).unwrap();
+    let world = format!(
+        "<component name=\"World\"><implementation.rust class=\"saoms.World\"/><property name=\"ID\">W</property><property name=\"period\">100</property>{renamed}</component>"
+    );
+    let include = "<include name=\"a:part\"/>";
+    fs::write(folder.path().join("one.composite"), composite("one", include)).unwrap();
+    fs::write(folder.path().join("two.composite"), composite("two", &(include.to_owned() + &world))).unwrap();
+    let (_, _, told) = saoms(folder.path(), &["check", "."], "");
+    assert_eq!(told.matches("S4003").count(), 1, "{told}");
+}

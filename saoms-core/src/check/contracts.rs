@@ -7,10 +7,11 @@ use super::classes::ClassIndex;
 use super::fleet::Fleet;
 use super::offer::Offer;
 use super::report::{Report, escaped, replacing};
-use crate::diagnostic::{Code, Diagnostic, codes, quoted};
-use crate::model::{Binding, Component, Interface, InterfaceKind, Multiplicity, Part, Reference};
+use crate::diagnostic::{Code, Diagnostic, Edit, codes, quoted};
+use crate::model::{Binding, Component, Interface, InterfaceKind, Multiplicity, Part, Reference, Service};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
+use crate::xml::Document;
 
 /// Checks the services and references of every component.
 pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
@@ -63,6 +64,13 @@ fn services(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report
             }
             Offer::Open => {}
             Offer::Missing => {
+                let is_reference = fleet
+                    .reference_names(member, classes)
+                    .is_some_and(|names| names.contains(&name.as_str()));
+                if is_reference {
+                    swapped(service, &whose, &fleet.members[member].composite.document, report);
+                    continue;
+                }
                 let names = fleet.service_names(member, classes).unwrap_or_default();
                 unknown(&codes::UNKNOWN_SERVICE, "service", name, &whose, names.iter().copied(), report);
             }
@@ -91,6 +99,16 @@ fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], repo
             narrows(reference, own, &whose, report);
         } else {
             let names = fleet.reference_names(member, classes).unwrap_or_default();
+            let inner = fleet.inner(member).filter(|_| names.is_empty() && !name.is_empty());
+            if let Some(inner) = inner {
+                let message = format!("{whose} has no reference {}", quoted(name));
+                let one = Diagnostic::new(&codes::UNKNOWN_REFERENCE, name.location, message);
+                let promoting = format!("`<reference name=\"{name}\" promote=\"COMPONENT/reference\"/>`");
+                let help =
+                    format!("it has those of its components that it promotes: write {promoting} in it");
+                report.push(one.label(inner.main().name.location, "this one").help(help));
+                continue;
+            }
             unknown(&codes::UNKNOWN_REFERENCE, "reference", name, &whose, names.iter().copied(), report);
         }
     }
@@ -113,6 +131,23 @@ fn repeated<'a>(
             seen.insert(name, name.location);
         }
     }
+}
+
+/// Reports a service that is a reference, for which its `target` is no further mistake.
+fn swapped(service: &Service, whose: &Whose<'_>, document: &Document, report: &mut Report<'_>) {
+    let element = service.origin.element(document);
+    if let Some(target) = element.attribute("target") {
+        report.withdraw(&codes::UNKNOWN_ATTRIBUTE, target.name_span().in_file(document.file()));
+    }
+    let tag = match element.prefix() {
+        Some(prefix) => format!("{prefix}:reference"),
+        None => "reference".to_owned(),
+    };
+    let spans = [Some(element.name_span()), element.end_name_span()].into_iter().flatten();
+    let edits = spans.map(|span| Edit { location: span.in_file(document.file()), replacement: tag.clone() });
+    let message = format!("{} of {whose} is a reference, and no service", quoted(&service.name));
+    let one = Diagnostic::new(&codes::UNKNOWN_SERVICE, service.name.location, message);
+    report.push(one.suggest_edits(replacing(element.name(), &tag), edits.collect()));
 }
 
 fn unknown<'n>(

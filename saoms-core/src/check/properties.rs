@@ -18,7 +18,7 @@ use crate::expression::has_expression;
 use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::Document;
+use crate::xml::{Document, Element};
 
 /// What a component gives for one property of its class.
 pub(super) struct Given {
@@ -351,10 +351,15 @@ fn report_missing(
     let is_meant = |given: &Property| {
         given.name.is_empty() || slots.place(&given.name).is_none() && nearest(&given.name, [name]).is_some()
     };
-    let is_property = |child: &str| child != "property" && nearest(child, ["property"]).is_some();
-    if giver.properties.iter().any(is_meant)
-        || element.children().any(|child| is_property(child.local_name()))
-    {
+    let is_property = |child: Element<'_>| match child.local_name() {
+        "property" => false,
+        // As other languages call it.
+        "param" | "parameter" | "arg" | "argument" => {
+            child.attribute("name").is_some_and(|given| given.value() == name)
+        }
+        other => nearest(other, ["property"]).is_some(),
+    };
+    if giver.properties.iter().any(is_meant) || element.children().any(is_property) {
         // It is there, misspelt, and that is reported.
         return;
     }

@@ -215,7 +215,16 @@ pub(super) fn target(
             let names = fleet.service_names(member, classes).unwrap_or_default();
             let known = ("its services are", names.iter().copied());
             let one = report.unknown(&codes::UNKNOWN_TARGET_SERVICE, at, message, name, known);
-            report.push(one);
+            let offers = fleet.offers(member, classes);
+            let is_fitting =
+                |offer: Offer| interface.is_some_and(|interface| fits(offer, interface, fleet, classes));
+            let mut fitting = offers.iter().filter(|(_, offer)| is_fitting(*offer));
+            report.push(match (fitting.next(), fitting.next()) {
+                (Some((fitting, _)), None) if one.suggestions.is_empty() => {
+                    one.suggest(replacing(name, fitting), at, escaped(fitting))
+                }
+                _ => one,
+            });
             return Target::Wrong;
         }
     };

@@ -315,12 +315,21 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
         }
         (PropertyKind::Integer | PropertyKind::Float, _) => {
             let unit = declaration.unit.as_deref().unwrap_or_default();
-            text.strip_suffix(unit).unwrap_or(text).trim().replace(',', ".")
+            let text = text.strip_suffix(unit).unwrap_or(text).trim();
+            without_unit(text).unwrap_or(text).replace(',', ".")
         }
-        (PropertyKind::Duration, _) => duration(&lower).unwrap_or(lower),
+        (PropertyKind::Duration, _) => duration(&lower).unwrap_or_else(|| lower.replace(',', ".")),
         _ => lower,
     };
     (said != text && declaration.check(&said).is_ok()).then_some(said)
+}
+
+/// A number without the unit that people write behind numbers of its kind.
+fn without_unit(text: &str) -> Option<&str> {
+    const UNITS: [&str; 9] = ["%", "percent", "m", "cm", "mm", "ms", "s", "block", "blocks"];
+    let number = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let unit = text[number.len()..].trim();
+    UNITS.iter().any(|known| known.eq_ignore_ascii_case(unit)).then_some(number)
 }
 
 /// A duration whose unit is written out, or how often a second.

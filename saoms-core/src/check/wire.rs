@@ -39,7 +39,7 @@ pub(super) fn wires<'f>(
             let is_replacing = wire.replace().is_some_and(|replace| replace.value);
             if let Some((member, name)) = backwards((source, to), scope, fleet, classes) {
                 let message = format!(
-                    "this wire goes backwards: {} is a service, and {} a reference",
+                    "this wire goes backwards: {} offers a service, and {} is a reference",
                     quoted(source),
                     quoted(to)
                 );
@@ -78,16 +78,18 @@ fn backwards<'f>(
     fleet: &'f Fleet<'_>,
     classes: &'f [ClassIndex<'_>],
 ) -> Option<(usize, &'f str)> {
-    let (Some(service), Some(reference)) = (parts(source).1, parts(to).1) else { return None };
+    let reference = parts(to).1?;
     let ends = [source, to].map(|end| fleet.find(scope, parts(end).0));
     let [Some(from), Some(member)] = ends else { return None };
     let is_reference =
         |member, name| fleet.reference_names(member, classes).is_some_and(|names| names.contains(&name));
     let is_service = |member, name| matches!(fleet.offer(member, name, classes), Offer::Service(_));
-    let is_backwards = !is_reference(from, service)
-        && is_service(from, service)
-        && is_reference(member, reference)
-        && !is_service(member, reference);
+    let starts_at_service = match parts(source).1 {
+        Some(service) => !is_reference(from, service) && is_service(from, service),
+        // It could mean the only reference, and there is none.
+        None => fleet.reference_names(from, classes).is_some_and(|names| names.is_empty()),
+    };
+    let is_backwards = starts_at_service && is_reference(member, reference) && !is_service(member, reference);
     is_backwards.then_some((member, reference))
 }
 

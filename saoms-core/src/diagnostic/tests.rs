@@ -269,3 +269,35 @@ fn of_many_kinds_in_one_file_each_is_told_and_all_are_counted() {
         assert!(kept > 0 && all.iter().any(|one| one.message == more), "{more}");
     }
 }
+
+#[test]
+fn people_see_one_of_many_that_are_alike() {
+    let mut sources = Sources::new();
+    let text: String = (1..=14).map(|number| format!("<r{number:02}/>\n")).collect();
+    let file = sources.add("many.composite", text);
+    let at = |number: u32| Span::new((number - 1) * 7 + 1, (number - 1) * 7 + 4).in_file(file);
+    let one = |number: u32| {
+        Diagnostic::new(&codes::UNUSED_PROPERTY, at(number), format!("robot {number} is wrong"))
+    };
+    let other = Diagnostic::new(&codes::UNUSED_PROPERTY, at(2), "robot 2 is right");
+    let shown = |numbers: &[u32]| {
+        let all: Vec<Diagnostic> = numbers.iter().map(|number| one(*number)).chain([other.clone()]).collect();
+        let shown = human(&all, &sources, false);
+        let told = shown.lines().filter(|line| line.contains("robot") || line.contains("more"));
+        told.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let others = "warning[S2026]: robot 2 is right".to_owned();
+    assert_eq!(shown(&[3, 4, 5, 6]).len(), 5, "few are shown one by one");
+    assert_eq!(
+        shown(&[3, 4, 5, 6, 14]),
+        [
+            "warning[S2026]: robot 3 is wrong",
+            "  = note: and 4 more like it, in lines 4, 5, 6 and 14",
+            &others
+        ]
+    );
+    let all: Vec<u32> = (1..=14).collect();
+    let lines = "  = note: and 13 more like it, in lines 2, 3, 4, 5, 6, 7, 8, 9, 10, 11 and 3 others";
+    assert_eq!(shown(&all), ["warning[S2026]: robot 1 is wrong", lines, &others]);
+    assert_eq!(shown(&[2; 5])[1], "  = note: and 4 more like it, in line 2");
+}

@@ -96,6 +96,7 @@ impl Loader<'_> {
             return self.unknown_own(element, attribute, kind);
         }
         let meant = nearest(name, free.iter().copied()).or_else(|| nearest(name, kind.names(self.version)));
+        let meant = meant.or_else(|| free.iter().copied().find(|known| is_word_for(name, known, element)));
         // The schema of SCA 1.0 lets any attribute pass; tools put some of their own there.
         let passes = meant.is_none()
             && attribute.namespace().is_empty()
@@ -198,8 +199,10 @@ impl Loader<'_> {
 
     fn missing(&mut self, element: Element<'_>, name: &str) {
         let location = element.name_location();
-        // A misspelt one is reported already, with the right name as suggestion.
-        if has_near_miss(element, name)
+        // A misspelt one is reported already, with the right name as suggestion; so is a class that is written inside.
+        let is_inside = name == "class" && element.has_text();
+        if is_inside
+            || has_near_miss(element, name)
             || self.diagnostics.skip(&codes::MISSING_ATTRIBUTE, Severity::Error, location)
         {
             return;
@@ -329,5 +332,20 @@ fn without_expressions(text: &str) -> Cow<'_, str> {
 /// Whether an attribute of the element could be a misspelt `name`.
 fn has_near_miss(element: Element<'_>, name: &str) -> bool {
     let mut own = element.attributes().filter(|attribute| attribute.namespace().is_empty());
-    own.any(|attribute| nearest(attribute.name(), [name]).is_some())
+    own.any(|attribute| {
+        nearest(attribute.name(), [name]).is_some() || is_word_for(attribute.name(), name, element)
+    })
+}
+
+/// Whether others call an attribute of such an element by this name: their files name a class or another file in their own words.
+fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
+    match (element.local_name(), known) {
+        ("include" | "implementation.composite", "name") => {
+            matches!(written, "file" | "href" | "src" | "ref" | "location" | "composite")
+        }
+        ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
+        ("wire", "source") => written == "from",
+        ("wire", "target") => written == "to",
+        _ => false,
+    }
 }

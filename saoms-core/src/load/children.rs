@@ -113,7 +113,7 @@ impl Loader<'_> {
                         .find(|one| one.ends_with(meant) && one.len() == kind.len() + 1 + meant.len())
                 })
             }
-            _ => nearest(name, known),
+            _ => word(name).filter(|meant| known.contains(meant)).or_else(|| nearest(name, known)),
         };
         self.report(match near {
             Some(meant) => {
@@ -175,6 +175,8 @@ impl Loader<'_> {
         let mut one = Diagnostic::new(&codes::MISPLACED_TEXT, location, message);
         if element.local_name().starts_with("implementation.") && element.attribute("class").is_none() {
             one = one.help("the class is named by the attribute `class`");
+        } else if element.local_name() == "reference" && element.attribute("target").is_none() {
+            one = one.help("the component that it calls is named by the attribute `target`");
         }
         self.report(one);
     }
@@ -229,6 +231,20 @@ impl Loader<'_> {
         }
         self.report(one);
     }
+}
+
+/// What other languages call an element, or a general name of several.
+fn word(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "implementation" => "implementation.java",
+        "interface" => "interface.java",
+        "binding" => "binding.sca",
+        "param" | "parameter" | "arg" | "argument" => "property",
+        "node" | "bean" => "component",
+        "connection" | "connect" | "link" => "wire",
+        "import" => "include",
+        _ => return None,
+    })
 }
 
 /// Whether an element of this name is of SAOMS, and none of SCA could be meant.

@@ -93,7 +93,15 @@ pub(super) fn value(
     let bytes = bytes(path, max_size, open).map_err(|failure| {
         let mut one = failure.diagnostic(path, max_size, named, &VALUE);
         if one.code == &codes::FILE_NOT_FOUND {
-            one.help.insert(0, format!("it is looked for as {}", quoted(&path.display().to_string())));
+            let shown = path.display().to_string();
+            if shown.contains('\\') {
+                one.help.insert(
+                    0,
+                    format!("folders stand before `/`: write {}", quoted(&shown.replace('\\', "/"))),
+                );
+            } else {
+                one.help.insert(0, format!("it is looked for as {}", quoted(&shown)));
+            }
         }
         Box::new(one)
     })?;

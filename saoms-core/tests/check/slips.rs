@@ -356,3 +356,115 @@ fn loops_are_taken_as_given_with_the_classes() {
     "#]]
     .assert_eq(&found(true));
 }
+
+#[test]
+fn words_of_other_languages_are_told_once() {
+    let with = |from: &str, to: &str| {
+        let robot =
+            robot("R", "<property name=\"number\">1</property><reference name=\"gps\" target=\"G\"/>");
+        assert!(robot.contains(from), "{from}");
+        let found = of(&format!("{GPS}\n{}", robot.replace(from, to)));
+        found
+            .lines()
+            .filter(|line| !line.contains(" (example."))
+            .fold(String::new(), |all, line| all + line + "\n")
+    };
+    let class = "<implementation.java class=\"example.Robot\"/>";
+    expect![[r#"
+        3:22-36 error S1004: SCA 1.1 has no element `implementation`
+          fix: replace `implementation` with `implementation.java` [3:22-36 "implementation.java"]
+    "#]]
+    .assert_eq(&with(class, "<implementation class=\"example.Robot\"/>"));
+    expect![[r#"
+        3:42-55 error S1012: text in `implementation.java`, which holds no text
+          help: the class is named by the attribute `class`
+    "#]]
+    .assert_eq(&with(class, "<implementation.java>example.Robot</implementation.java>"));
+    expect![[r#"
+        3:42-46 error S1007: `implementation.java` has no attribute `name`
+          fix: replace `name` with `class` [3:42-46 "class"]
+    "#]]
+    .assert_eq(&with(class, "<implementation.java name=\"example.Robot\"/>"));
+    expect![[r#"
+        3:98-103 error S1004: SCA 1.1 has no element `param`
+          fix: replace `param` with `property` [3:98-103 "property"] [3:121-126 "property"]
+    "#]]
+    .assert_eq(&with("<property name=\"period\">1</property>", "<param name=\"period\">1</param>"));
+    expect![[r#"
+        4:52-55 error S2005: `gps` of class `example.Robot` is a reference, and no service
+          fix: replace `service` with `reference` [4:38-45 "reference"]
+    "#]]
+    .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<service name=\"gps\" target=\"G\"/>"));
+    expect![[r#"
+        4:59-60 error S1012: text in `reference`, which holds no text
+          help: the component that it calls is named by the attribute `target`
+    "#]]
+    .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<reference name=\"gps\">G</reference>"));
+    expect![[r#"
+        4:69-80 error S2012: component `G` has no service `whereabouts`
+          help: its services are `position`
+          fix: replace `whereabouts` with `position` [4:69-80 "position"]
+    "#]]
+    .assert_eq(&with("target=\"G\"", "target=\"G/whereabouts\""));
+    expect![[r#"
+        4:92-96 error S1007: `include` has no attribute `file`
+          fix: replace `file` with `name` [4:92-96 "name"]
+    "#]]
+    .assert_eq(&with("</component>", "</component><include file=\"part.composite\"/>"));
+    expect![[r#"
+        3:121-125 error S3007: property `period`: `0,5s` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `period`: From one due execution to the next; a number without a unit is in ms
+          fix: replace `0,5s` with `0.5s` [3:121-125 "0.5s"]
+    "#]].assert_eq(&with("\">1</property>\n", "\">0,5s</property>\n"));
+    expect![[r#"
+        4:25-28 error S3007: property `number`: `3 m` is not a whole number: expected a whole number from 1 to 99
+          help: `number`: The number of the robot
+          fix: replace `3 m` with `3` [4:25-28 "3"]
+    "#]].assert_eq(&with("\">1</property><ref", "\">3 m</property><ref"));
+}
+
+#[test]
+fn a_wire_the_wrong_way_round_is_told_once() {
+    let robot = robot("R", "<property name=\"number\">1</property>");
+    let twins = "<component name=\"C\"><implementation.java class=\"example.Twins\"/></component>";
+    expect![[r#"
+        5:15-16 error S2016: this wire goes backwards: `C` offers a service, and `R/gps` is a reference
+          fix: swap `source` and `target` [5:15-16 "R/gps"] [5:26-31 "C"]
+        5:15-16 error S2015: component `C` offers no service with the interface `example.Positions`
+          help: it offers `left` (example.Wheels), `right` (example.Wheels)
+    "#]]
+    .assert_eq(&of(&format!("{twins}\n{robot}\n<wire source=\"C\" target=\"R/gps\"/>")));
+    expect![[r#"
+        5:15-25 error S2016: this wire goes backwards: `G/position` offers a service, and `R/gps` is a reference
+          fix: swap `source` and `target` [5:15-25 "R/gps"] [5:35-40 "G/position"]
+    "#]]
+        .assert_eq(&of(&format!("{GPS}\n{robot}\n<wire source=\"G/position\" target=\"R/gps\"/>")));
+}
+
+#[test]
+fn a_reference_of_a_composite_is_promoted_by_it() {
+    let inner = part("inner", "", &robot("R", "<property name=\"number\">1</property>"));
+    let outer = part(
+        "outer",
+        "",
+        &format!(
+            "{GPS}\n<component name=\"I\"><implementation.composite name=\"t:inner\"/><reference name=\"gps\" target=\"G\"/></component>"
+        ),
+    );
+    expect![[r#"
+        3:80-83 error S2006: composite `inner` has no reference `gps`
+          inner:1:115-120 this one
+          help: it has those of its components that it promotes: write `<reference name="gps" promote="COMPONENT/reference"/>` in it
+    "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
+}
+
+#[test]
+fn folders_stand_before_slashes() {
+    let inside = robot("R", "<property name=\"number\" file=\"sub\\n.txt\"/>");
+    let found = checked(&inside, &[("sub/n.txt", b"1")], 1 << 20).1;
+    expect![[r#"
+        3:31-40 error S0001: there is no such file
+          help: folders stand before `/`: write `sub/n.txt`
+    "#]]
+    .assert_eq(&found);
+}

@@ -300,7 +300,7 @@ fn slips_that_many_make_have_hints() {
     "#]]
     .assert_eq(&all.join("\n"));
     expect![[r#"
-        4:15-25 error S2016: this wire goes backwards: `A/position` is a service, and `N/wheels` a reference
+        4:15-25 error S2016: this wire goes backwards: `A/position` offers a service, and `N/wheels` is a reference
           fix: swap `source` and `target` [4:15-25 "N/wheels"] [4:35-43 "A/position"]
         4:17-25 error S2015: service `position` of component `A` has the interface `example.Positions`, and the reference needs `example.Wheels`
           help: it offers `position` (example.Positions)

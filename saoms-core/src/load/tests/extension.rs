@@ -117,7 +117,7 @@ fn an_xsi_type_says_which_interface_it_is() {
     assert_eq!(
         faults,
         "5:22 [interface] error S1008 `interface` needs the attribute `interface`
-6:22 [interface] error S1004 SCA 1.0 has no element `interface` | replace `interface` with `interface.c`
-6:53 [binding] error S1004 SCA 1.0 has no element `binding`\n"
+6:22 [interface] error S1004 SCA 1.0 has no element `interface` | replace `interface` with `interface.java`
+6:53 [binding] error S1004 SCA 1.0 has no element `binding` | replace `binding` with `binding.sca`\n"
     );
 }

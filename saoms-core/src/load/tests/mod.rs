@@ -327,7 +327,6 @@ fn what_cannot_be_is_found_at_its_place() {
     faults_1_0(
         "<component name='a'><implementation.java>x.Y</implementation.java></component>",
         "
-2:22 [implementation.java] error S1008 `implementation.java` needs the attribute `class`
 2:42 [x.Y] error S1012 text in `implementation.java`, which holds no text",
     );
     faults_1_0(
