@@ -140,7 +140,10 @@ fn may_be_promoted(
         quoted(inner.name()),
         quoted(outer.value.name())
     );
-    let one = Diagnostic::new(&codes::PROMOTED_MULTIPLICITY, outer.location, message);
+    // In SCA 1.0 files the two often differ, and other programs take the outer one: it is wrong where a class needs its target.
+    let is_1_1 = fleet.members[member].composite.version.is_1_1();
+    let severity = if is_1_1 || declared.is_some() { Severity::Error } else { Severity::Warning };
+    let one = Diagnostic::new(&codes::PROMOTED_MULTIPLICITY, outer.location, message).severity(severity);
     let narrower: Vec<&str> =
         Multiplicity::ALL.into_iter().filter(|one| one.narrows(inner)).map(Multiplicity::name).collect();
     report.push(one.help(format!("it can be {}", list(narrower))));

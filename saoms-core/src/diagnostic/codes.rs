@@ -107,7 +107,7 @@ codes! {
     WIRED_BY_IMPLEMENTATION = "S2038" Error "wired-by-implementation" ("ASM50013"): "A reference that its implementation wires has a target. In SCA 1.0 files a warning.";
     TYPE_AND_ELEMENT = "S2039" Error "type-and-element": "A property has both a type and an element.";
     BINDING_REPEATED = "S2040" Error "binding-repeated" ("ASM90002"): "A service or a reference has two bindings of one name.";
-    SERVICE_BINDING_URI = "S2041" Error "service-binding-uri" ("ASM90005"): "A service's binding of SCA has a URI.";
+    SERVICE_BINDING_URI = "S2041" Warning "service-binding-uri" ("ASM90005"): "A service's binding of SCA has a URI.";
     COMPOSITE_VALUE_TYPE = "S2042" Error "composite-value-type" ("ASM50027"): "The value of a composite's property is not of its type.";
     COMPONENT_TYPE_REPEATED = "S2043" Error "component-type-repeated": "A component type has two services, references or properties of one name. In SCA 1.0 files a warning.";
     COMPONENT_TYPE_MISSING = "S2044" Error "component-type-missing" ("ASM40001"): "An implementation that says nothing by itself has no component type beside it.";
