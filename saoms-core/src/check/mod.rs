@@ -24,6 +24,7 @@ mod fleet;
 mod given;
 mod global;
 mod instance;
+mod levels;
 mod loops;
 mod multiplicity;
 mod names;

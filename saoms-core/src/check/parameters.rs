@@ -2,11 +2,13 @@
 
 use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use super::fleet::{Fleet, Member, Unit};
 use super::instance::Instance;
+use super::levels::Levels;
 use super::options::Options;
-use super::path::{expression, walk};
+use super::path::{Fault, expression, one_of};
 use super::raw::{Piece, Raw, beside_source, raw};
 use super::report::Report;
 use super::value_type::{self, Match, Typed};
@@ -38,6 +40,8 @@ struct Parameter<'a> {
     is_used: bool,
     /// Whether what a component gives was held to its type.
     is_judged: bool,
+    /// What is in its value, once a path led into it.
+    levels: Option<Rc<Levels<'a>>>,
 }
 
 /// What counts in place of the value that a composite gives its property itself.
@@ -230,11 +234,11 @@ impl<'a> Parameters<'a> {
     /// What `source` stands for in this unit. Faults are reported.
     pub(super) fn resolve(
         &mut self,
-        unit: usize,
+        place: usize,
         source: &Text,
         report: &mut Report<'_>,
     ) -> Result<Raw<'a>, ()> {
-        let unit = &mut self.units[unit];
+        let unit = &mut self.units[place];
         let Some((name, path)) = expression(source) else {
             unit.has_wrong_source = true;
             let message = format!("{} names no property of the composite", quoted(source));
@@ -261,6 +265,14 @@ impl<'a> Parameters<'a> {
         };
         parameter.is_used = true;
         let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
+        let start = name.len() + 1;
+        let fault = |(step, message): Fault, report: &mut Report<'_>| {
+            let at = report.part(source, start + step.start..start + step.end);
+            report.push(Diagnostic::new(&codes::SOURCE_MALFORMED, at, message));
+        };
+        if let (Some(levels), Some(path)) = (&parameter.levels, path.filter(|path| path.starts_with('/'))) {
+            return levels.walk(path).map_err(|one| fault(one, report));
+        }
         let is_judged = std::mem::replace(&mut parameter.is_judged, true);
         let mut whole = match given {
             Some(Given::Setting(setting)) => Raw::one(&setting.value),
@@ -295,11 +307,16 @@ impl<'a> Parameters<'a> {
             // What has no value has no parts either.
             return Ok(whole);
         }
-        let start = source.len() - path.len();
-        walk(whole, path).map_err(|(step, message)| {
-            let at = report.part(source, start + step.start..start + step.end);
-            report.push(Diagnostic::new(&codes::SOURCE_MALFORMED, at, message));
-        })
+        let whole = one_of(whole, path).map_err(|one| fault(one, report))?;
+        // Without more steps it is the value itself.
+        let Some(from) = path.find('/') else { return Ok(whole) };
+        let levels = Rc::new(Levels::of(whole));
+        if from == 0
+            && let Some(parameter) = self.units[place].by_name.get_mut(name)
+        {
+            parameter.levels = Some(Rc::clone(&levels));
+        }
+        levels.walk(path).map_err(|one| fault(one, report))
     }
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
@@ -355,7 +372,7 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
         }
         all.by_name.insert(
             &property.name,
-            Parameter { composite, property, given: None, is_used: false, is_judged: false },
+            Parameter { composite, property, given: None, is_used: false, is_judged: false, levels: None },
         );
     }
     all

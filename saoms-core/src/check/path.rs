@@ -14,8 +14,11 @@ use crate::xml::{Attribute, Element};
 /// What is understood, for those who wrote something else.
 const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
 
+/// Parts that are looked at for what could have been meant.
+const MOST_LOOKED_AT: usize = 1_000;
+
 /// A fault of a path: its bytes, and what is wrong.
-type Fault = (Range<usize>, String);
+pub(super) type Fault = (Range<usize>, String);
 
 /// `$name`, `$name[2]`, `$name/path` or `$name[2]/path`: the name, and what follows it.
 pub(super) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
@@ -25,80 +28,49 @@ pub(super) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
     (!name.is_empty()).then_some((name, (!path.is_empty()).then_some(path)))
 }
 
-/// The parts of a value that what follows the name leads to.
-pub(super) fn walk<'a>(mut whole: Raw<'a>, path: &str) -> Result<Raw<'a>, Fault> {
-    let mut steps = steps(path).peekable();
-    if let Some((at, step)) = steps.next().filter(|(_, step)| !step.is_empty()) {
-        // What stands directly behind the name is about its values.
-        let Some(Predicate::Place(wanted)) = predicate(step) else {
-            return Err((
-                at,
-                format!("{} is not understood: behind the name stands `[2]` or `/`", quoted(step)),
-            ));
-        };
-        let count = whole.0.len();
-        let Some(place) = wanted.of(count) else {
-            return Err((at, format!("the property has {}", counted(count, "value"))));
-        };
-        whole = Raw(vec![whole.0.swap_remove(place)]);
+/// The value that `[2]` behind the name means.
+pub(super) fn one_of<'a>(mut whole: Raw<'a>, path: &str) -> Result<Raw<'a>, Fault> {
+    let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(whole) };
+    let Some(Predicate::Place(wanted)) = predicate(step) else {
+        return Err((at, format!("{} is not understood: behind the name stands `[2]` or `/`", quoted(step))));
+    };
+    let count = whole.0.len();
+    let Some(place) = wanted.of(count) else {
+        return Err((at, format!("the property has {}", counted(count, "value"))));
+    };
+    Ok(Raw(vec![whole.0.swap_remove(place)]))
+}
+
+/// Where a step leads that is no element, such as `@name` or `text()`.
+pub(super) fn ends<'a>(
+    around: &[Element<'a>],
+    (at, step): (Range<usize>, &str),
+    is_last: bool,
+    instance: Option<&'a super::instance::Instance>,
+) -> Option<Result<Raw<'a>, Fault>> {
+    if let Some(name) = step.strip_prefix('@').filter(|name| is_name(name)) {
+        return Some(match is_last {
+            false => Err((at, "an attribute has no parts".to_owned())),
+            true => attributes(around, name, instance).ok_or_else(|| no_attribute(at, name, around)),
+        });
     }
-    if steps.peek().is_none() {
-        return Ok(whole);
+    if step == "text()" {
+        return Some(match is_last {
+            false => Err((at, "a text has no parts".to_owned())),
+            true => texts(around, instance).ok_or_else(|| (at, "there is no text here".to_owned())),
+        });
     }
-    let mut instance = None;
-    let (mut around, mut here): (Vec<Element<'a>>, Vec<Element<'a>>) = (Vec::new(), Vec::new());
-    let first = steps.peek().map_or("", |(_, step)| *step);
-    for piece in whole.0 {
-        let (elements, of) = match piece {
-            Piece::Elements(elements, of) => (elements, of),
-            Piece::Whole(_, root, of) => (vec![root], of),
-            Piece::Text(_) => continue,
-        };
-        instance = of;
-        // `$order/total` also means the `total` of a value that is written as one element.
-        match elements[..] {
-            [only] if is_within(only, first) => {
-                around.push(only);
-                here.extend(only.children());
-            }
-            _ => here.extend(elements),
-        }
-    }
-    if here.is_empty() && around.is_empty() {
-        return Err((0..path.len(), "the property has a simple value: there are no parts in it".to_owned()));
-    }
-    while let Some((at, step)) = steps.next() {
-        let is_last = steps.peek().is_none();
-        if let Some(name) = step.strip_prefix('@').filter(|name| is_name(name)) {
-            return match is_last {
-                false => Err((at, "an attribute has no parts".to_owned())),
-                true => attributes(&around, name, instance).ok_or_else(|| no_attribute(at, name, &around)),
-            };
-        }
-        if step == "text()" {
-            return match is_last {
-                false => Err((at, "a text has no parts".to_owned())),
-                true => texts(&around, instance).ok_or_else(|| (at, "there is no text here".to_owned())),
-            };
-        }
-        if step.is_empty() {
-            return Err((at.start.saturating_sub(1)..at.end, format!("a step is missing: {FORMS}")));
-        }
-        let Some(test) = Test::of(step) else {
-            return Err((at, format!("{} is not understood: {FORMS}", quoted(step))));
-        };
-        let found = test.of_all(&here).map_err(|message| (at.clone(), message))?;
-        if is_last {
-            return Ok(Raw::of_elements(&found, instance));
-        }
-        here = found.iter().flat_map(|one| one.children()).collect();
-        around = found;
-    }
-    Err((0..path.len(), "the path is empty".to_owned()))
+    let is_missing = step.is_empty();
+    is_missing.then(|| Err((at.start.saturating_sub(1)..at.end, format!("a step is missing: {FORMS}"))))
+}
+
+/// The fault of a step that is of no form that is understood.
+pub(super) fn no_step(at: Range<usize>, step: &str) -> Fault {
+    (at, format!("{} is not understood: {FORMS}", quoted(step)))
 }
 
 /// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within quotation marks is none.
-fn steps(path: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
+pub(super) fn steps(path: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
     let mut start = Some(0);
     std::iter::from_fn(move || {
         let from = start?;
@@ -121,32 +93,21 @@ fn steps(path: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
     })
 }
 
-/// Whether the first step is one inside the one element of a value rather than to it.
-fn is_within(only: Element<'_>, step: &str) -> bool {
-    match Test::of(step) {
-        Some(Test { name: Some(name), .. }) => {
-            only.local_name() != name && only.children().any(|child| child.local_name() == name)
-        }
-        Some(Test { name: None, .. }) => false,
-        None => step.starts_with('@') || step == "text()",
-    }
-}
-
 /// What a step asks of elements.
-struct Test<'p> {
+pub(super) struct Test<'p> {
     /// Their name; any without.
-    name: Option<&'p str>,
-    predicate: Option<Predicate<'p>>,
+    pub(super) name: Option<&'p str>,
+    pub(super) predicate: Option<Predicate<'p>>,
 }
 
-enum Predicate<'p> {
+pub(super) enum Predicate<'p> {
     Place(Place),
     /// An attribute has this value.
     Attribute(&'p str, &'p str),
 }
 
 #[derive(Clone, Copy)]
-enum Place {
+pub(super) enum Place {
     /// From one on.
     Number(usize),
     Last,
@@ -154,7 +115,7 @@ enum Place {
 
 impl Place {
     /// Its index among so many.
-    fn of(self, count: usize) -> Option<usize> {
+    pub(super) fn of(self, count: usize) -> Option<usize> {
         let place = match self {
             Self::Number(number) => number.checked_sub(1),
             Self::Last => count.checked_sub(1),
@@ -164,7 +125,7 @@ impl Place {
 }
 
 impl<'p> Test<'p> {
-    fn of(step: &'p str) -> Option<Self> {
+    pub(super) fn of(step: &'p str) -> Option<Self> {
         let step = step.strip_prefix("child::").unwrap_or(step);
         // As some tools write a name without a prefix.
         let by_predicate = step.strip_prefix("*[local-name()='").and_then(|rest| rest.split_once("']"));
@@ -178,58 +139,32 @@ impl<'p> Test<'p> {
         Some(Self { name, predicate })
     }
 
-    fn of_all<'a>(&self, all: &[Element<'a>]) -> Result<Vec<Element<'a>>, String> {
-        let is_named = |one: &Element<'_>| self.name.is_none_or(|name| one.local_name() == name);
-        let named: Vec<Element<'a>> = all.iter().copied().filter(is_named).collect();
+    /// Why it leads to none of these, of which some have its name.
+    pub(super) fn fault(&self, all: &[Element<'_>], named: &[Element<'_>]) -> String {
         if named.is_empty() {
             let mut known: Vec<&str> = Vec::new();
-            for one in all.iter().map(|one| one.local_name()) {
+            for one in all.iter().take(MOST_LOOKED_AT).map(|one| one.local_name()) {
                 if known.len() < 50 && !known.contains(&one) {
                     known.push(one);
                 }
             }
             let asked = self.name.map_or(String::new(), |name| format!(" {}", quoted(name)));
-            return Err(match known.is_empty() {
+            return match known.is_empty() {
                 true => format!("there is no part{asked}: there are no parts here"),
                 false => format!("there is no part{asked}; the parts are {}", list(known)),
-            });
+            };
         }
-        match &self.predicate {
-            None => Ok(named),
-            Some(Predicate::Place(wanted)) => {
-                let found = within_parents(&named, *wanted);
-                match found.is_empty() {
-                    false => Ok(found),
-                    true => Err(format!("there {}, from `[1]` on", is_counted(named.len(), self.name))),
-                }
-            }
-            Some(Predicate::Attribute(name, value)) => {
-                let has = |one: &Element<'_>| attribute(*one, name).is_some_and(|one| one.value() == *value);
-                let found: Vec<Element<'a>> = named.iter().copied().filter(has).collect();
-                if found.is_empty() {
-                    let values = named.iter().filter_map(|one| attribute(*one, name)).take(50);
-                    let values: Vec<_> = values.map(|one| one.value()).collect();
-                    let known = match values.is_empty() {
-                        true => "none has it".to_owned(),
-                        false => format!("its values are {}", list(values.iter().map(|value| &**value))),
-                    };
-                    return Err(format!(
-                        "no part here has {} as its {}: {known}",
-                        quoted(value),
-                        quoted(name)
-                    ));
-                }
-                Ok(found)
-            }
-        }
+        let Some(Predicate::Attribute(name, value)) = &self.predicate else {
+            return format!("there {}, from `[1]` on", is_counted(named.len(), self.name));
+        };
+        let values = named.iter().take(MOST_LOOKED_AT).filter_map(|one| attribute(*one, name)).take(50);
+        let values: Vec<_> = values.map(|one| one.value()).collect();
+        let known = match values.is_empty() {
+            true => "none has it".to_owned(),
+            false => format!("its values are {}", list(values.iter().map(|value| &**value))),
+        };
+        format!("no part here has {} as its {}: {known}", quoted(value), quoted(name))
     }
-}
-
-/// Those at a place among their siblings; siblings stand beside each other.
-fn within_parents<'a>(all: &[Element<'a>], wanted: Place) -> Vec<Element<'a>> {
-    let parent = |one: &Element<'a>| one.parent().map(Element::id);
-    let siblings = all.chunk_by(|one, other| parent(one) == parent(other));
-    siblings.filter_map(|these| Some(these[wanted.of(these.len())?])).collect()
 }
 
 /// `[2]`, `[last()]` or `[@name='value']`.
@@ -266,7 +201,7 @@ fn texts<'a>(around: &[Element<'a>], instance: Option<&'a super::instance::Insta
     (!found.is_empty()).then_some(Raw(found))
 }
 
-fn attribute<'a>(element: Element<'a>, name: &str) -> Option<Attribute<'a>> {
+pub(super) fn attribute<'a>(element: Element<'a>, name: &str) -> Option<Attribute<'a>> {
     element.attributes().find(|one| one.local_name() == local(name))
 }
 

@@ -19,6 +19,8 @@ use crate::source::Location;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
 pub(super) const MOST_MEMBERS: usize = 1_000_000;
+/// Composites of one circle that are named.
+const SHOWN: usize = 8;
 /// Composites inside each other.
 const MOST_DEEP: usize = 250;
 
@@ -70,21 +72,26 @@ pub(super) fn unfold<'a>(
 /// Which of the composites that were asked for another one of them includes, directly or not.
 fn included(contribution: &Contribution) -> Vec<bool> {
     let all = contribution.composites();
-    let mut included = vec![false; all.len()];
-    for start in 0..contribution.asked_for().len() {
-        let mut seen = vec![false; all.len()];
-        let mut waiting = vec![start];
-        while let Some(place) = waiting.pop() {
-            for include in &all[place].includes {
-                if let Some(&Link::To(inner)) = contribution.link(include.origin)
-                    && !std::mem::replace(&mut seen[inner], true)
-                {
-                    included[inner] |= inner != start;
-                    waiting.push(inner);
-                }
+    let asked_for = contribution.asked_for().len();
+    // Of each the first two that lead to it: where one of them is another one than it, it is included.
+    let mut starts: Vec<[Option<usize>; 2]> = vec![[None; 2]; all.len()];
+    let mut waiting: Vec<(usize, usize)> = (0..asked_for).map(|start| (start, start)).collect();
+    while let Some((place, start)) = waiting.pop() {
+        let known = &mut starts[place];
+        let Some(free) = known.iter_mut().find(|one| one.is_none_or(|one| one == start)) else { continue };
+        if free.replace(start).is_some() {
+            continue;
+        }
+        for include in &all[place].includes {
+            if let Some(&Link::To(inner)) = contribution.link(include.origin) {
+                waiting.push((inner, start));
             }
         }
     }
+    let is_other = |place: usize| move |start: &usize| *start != place;
+    let included = starts.iter().enumerate();
+    let included = included.map(|(place, starts)| starts.iter().flatten().any(is_other(place)));
+    let mut included: Vec<bool> = included.collect();
     // A circle of includes has to start somewhere.
     if !included.is_empty() && included.iter().take(contribution.asked_for().len()).all(|one| *one) {
         included[0] = false;
@@ -402,8 +409,12 @@ impl<'a> Unfolding<'a> {
 
     fn is_circle(&self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
         let Some(start) = self.open.iter().position(|open| open.place == place) else { return false };
-        let names = self.open[start..].iter().map(|open| quoted(&open.composite.name));
-        let mut names: Vec<String> = names.collect();
+        let circle = &self.open[start..];
+        let mut names: Vec<String> =
+            circle.iter().take(SHOWN).map(|open| quoted(&open.composite.name)).collect();
+        if circle.len() > SHOWN {
+            names.push(format!("{} more", circle.len() - SHOWN));
+        }
         names.push(names[0].clone());
         let message = format!("composites hold each other in a circle: {}", names.join(" -> "));
         let mut one = Diagnostic::new(&codes::COMPOSITE_CIRCLE, naming.name.location, message)

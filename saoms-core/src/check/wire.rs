@@ -53,13 +53,13 @@ pub(super) fn wires<'f>(
                 all.entry(member).or_default().push(Wire { name, target: source, scope, is_replacing });
                 continue;
             }
-            for (one, replica) in spread(source, scope, fleet) {
-                if replica.is_some() && !room.take(source, report) {
-                    break;
-                }
+            if !room.take(source, scope, fleet, report) {
+                continue;
+            }
+            for (one, _) in spread(source, scope, fleet) {
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
-                    // Both ends can be wrong.
-                    for (to, _) in spread(to, scope, fleet) {
+                    // Both ends can be wrong. All replicas of a group have the same faults.
+                    if let Some((to, _)) = spread(to, scope, fleet).next() {
                         target(&to, scope, None, fleet, classes, report);
                     }
                     continue;

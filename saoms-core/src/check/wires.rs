@@ -64,7 +64,9 @@ pub(super) fn check(
     report: &mut Report<'_>,
 ) -> Wiring {
     let room = Room::default();
-    let wires = wires(fleet, classes, &room, report);
+    let mut wires = wires(fleet, classes, &room, report);
+    // They are looked up by the names of their references.
+    wires.values_mut().for_each(|wires| wires.sort_by_key(|wire| wire.name));
     let mut all = Wires { fleet, classes, promoted, wires, autowire: Autowire::default(), room };
     let sources = given::promoted(fleet);
     let mut circles = Circles::default();
@@ -73,7 +75,7 @@ pub(super) fn check(
         report.about(&fleet.members[member]);
         let Some(class) = fleet.class_of(member, classes) else {
             all.given(member, report);
-            let is_wired = |name: &str| all.wires_of(member).iter().any(|wire| wire.name == name);
+            let is_wired = |name: &str| !all.wires_from((member, name)).is_empty();
             given::unwired(member, fleet, &sources, is_wired, report);
             wiring.members.push(wiring.references.len());
             continue;
@@ -141,6 +143,14 @@ impl<'f, 'a> Wires<'f, 'a> {
             return &[];
         }
         self.wires.get(&member).map_or(&[], Vec::as_slice)
+    }
+
+    /// The wires from a reference.
+    fn wires_from(&self, (member, name): Place<'_>) -> &[Wire<'f>] {
+        let all = self.wires_of(member);
+        let from = all.partition_point(|wire| wire.name < name);
+        let count = all[from..].partition_point(|wire| wire.name == name);
+        &all[from..from + count]
     }
 
     /// How many targets a reference of a component of a class can have.
@@ -242,11 +252,11 @@ impl<'f, 'a> Wires<'f, 'a> {
     ) -> Level {
         let fleet = self.fleet;
         let scope = fleet.members[member].scope;
-        let wires = self.wires_of(member).iter().filter(|wire| wire.name == name);
-        let is_replaced = wires.clone().any(|wire| wire.is_replacing);
+        let wires = self.wires_from((member, name));
+        let is_replaced = wires.iter().any(|wire| wire.is_replacing);
         let own = Some(member);
         let mut level = Level::default();
-        let mut is_said = wires.clone().next().is_some();
+        let mut is_said = !wires.is_empty();
         if let Some(reference) = fleet.members[member].component.reference(name) {
             let by_binding =
                 reference.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
@@ -296,11 +306,11 @@ impl<'f, 'a> Wires<'f, 'a> {
             }
             return;
         }
+        if !self.room.take(text, scope, self.fleet, report) {
+            level.ends.is_unknown = true;
+            return;
+        }
         for (one, replica) in spread(text, scope, self.fleet) {
-            if replica.is_some() && !self.room.take(text, report) {
-                level.ends.is_unknown = true;
-                break;
-            }
             // A group stands for the others.
             if replica.is_some() && replica == own {
                 continue;
