@@ -1,9 +1,11 @@
 //! Namespaces that are nearly those of SCA or SAOMS: what is in them would be passed over in silence.
 
+use std::collections::{HashMap, HashSet};
+
 use super::Loader;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
-use crate::xml::Document;
+use crate::xml::{Attribute, Document};
 
 impl Loader<'_> {
     /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged with it.
@@ -11,14 +13,19 @@ impl Loader<'_> {
         let near =
             document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
         let near: Vec<(&str, &str)> = near.filter_map(|one| Some((one, meant(one)?))).collect();
+        if near.is_empty() {
+            return;
+        }
+        let (mut used, mut declared) = (HashSet::new(), HashMap::new());
+        for element in document.elements() {
+            used.insert(element.namespace());
+            used.extend(element.attributes().map(Attribute::namespace));
+            for one in element.namespace_declarations() {
+                declared.entry(one.value()).or_insert(one);
+            }
+        }
         for (written, meant) in near {
-            let is_used = document.elements().any(|element| {
-                element.namespace() == written || element.attributes().any(|one| one.namespace() == written)
-            });
-            let declarations = document.elements().flat_map(|element| element.namespace_declarations());
-            let Some(first) = declarations.filter(|_| is_used).find(|one| one.value() == written) else {
-                continue;
-            };
+            let Some(first) = declared.get(written).filter(|_| used.contains(written)) else { continue };
             let at = first.value_span().in_file(document.file());
             let message = format!(
                 "what is in the namespace {} is passed over: it is nearly {}",

@@ -29,9 +29,14 @@ pub(super) struct Shelf {
     folders: HashMap<PathBuf, Listing>,
     heads: HashMap<PathBuf, Option<Head>>,
     roots: HashMap<PathBuf, PathBuf>,
+    /// What was looked for, from which folder: names are used again and again.
+    found: HashMap<Wanted, Option<PathBuf>>,
     left: usize,
     open: OpenTexts,
 }
+
+/// A folder, namespaces and a local name.
+type Wanted = (PathBuf, Option<Vec<String>>, String);
 
 /// The composites in a folder, and the folders in it, sorted.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +60,7 @@ impl Shelf {
             folders: HashMap::new(),
             heads: HashMap::new(),
             roots: HashMap::new(),
+            found: HashMap::new(),
             left: MOST_ENTRIES,
             open,
         }
@@ -67,6 +73,16 @@ impl Shelf {
         namespaces: Option<&[String]>,
         local: &str,
     ) -> Option<PathBuf> {
+        let wanted = (folder.to_owned(), namespaces.map(<[String]>::to_vec), local.to_owned());
+        if let Some(known) = self.found.get(&wanted) {
+            return known.clone();
+        }
+        let found = self.look_for(folder, namespaces, local);
+        self.found.insert(wanted, found.clone());
+        found
+    }
+
+    fn look_for(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
         let fits = |head: &Head| {
             let is_meant = |meant: &String| *meant == head.namespace;
             head.local == local && namespaces.is_none_or(|all| all.iter().any(is_meant))
@@ -104,7 +120,7 @@ impl Shelf {
         }
         all.retain(|path| {
             let is_same = |head: &Head| head.namespace == namespace && head.local == local;
-            identity(path) != identity(found) && self.head(path).as_ref().is_some_and(is_same)
+            self.head(path).as_ref().is_some_and(is_same) && identity(path) != identity(found)
         });
         all
     }
