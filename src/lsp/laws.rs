@@ -35,7 +35,9 @@ fn is_sound(all: &[Diagnostic]) -> bool {
 }
 
 /// Editors are told what the checker finds, at the same bytes. A sound fleet is sound after something in it got another name.
-pub(super) fn hold(scene: &Scene, at: usize) {
+///
+/// Gives whether something got another name.
+pub(super) fn hold(scene: &Scene, at: usize) -> bool {
     let texts: Vec<String> = scene.files.iter().map(|file| file.text.to_string()).collect();
     let (all, sources) = checked(scene, &texts);
     let told: Vec<_> = reported(&all, &sources).collect();
@@ -50,9 +52,9 @@ pub(super) fn hold(scene: &Scene, at: usize) {
         }
     }
     if !is_sound(&all) || texts.iter().any(|text| text.contains(FRESH)) {
-        return;
+        return false;
     }
-    let Ok(mut edits) = rename(scene, at, FRESH) else { return };
+    let Ok(mut edits) = rename(scene, at, FRESH) else { return false };
     edits.sort_by_key(|(place, _)| std::cmp::Reverse(place.clone()));
     let mut renamed = texts;
     for (place, new) in &edits {
@@ -61,4 +63,5 @@ pub(super) fn hold(scene: &Scene, at: usize) {
     let (after, sources) = checked(scene, &renamed);
     assert!(is_sound(&after), "{}{}\n{edits:?}", human(&after, &sources, false), renamed.join("\n----\n"));
     assert_eq!(all.len(), after.len(), "{}{}", human(&after, &sources, false), renamed.join("\n----\n"));
+    true
 }

@@ -56,7 +56,7 @@ fn value(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Faul
 fn single(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Fault> {
     match &expression.node {
         Node::Value(value) => Ok(value.clone()),
-        Node::Name(name) => lookup(name).map_err(|problem| problem.at(expression.at.clone())),
+        Node::Name(name, at) => lookup(name).map_err(|problem| problem.at(at.clone())),
         Node::Not(inner) => Ok(Value::Boolean(!boolean(inner, lookup)?)),
         Node::Negative(inner) => {
             let number = integer(inner, lookup)?;

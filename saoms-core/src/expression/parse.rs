@@ -21,7 +21,8 @@ pub struct Expression {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Node {
     Value(Value),
-    Name(String),
+    /// With its own bytes: those of the expression hold the parentheses around it, too.
+    Name(String, Range<usize>),
     Negative(Box<Expression>),
     Not(Box<Expression>),
     Two(Box<Expression>, &'static str, Box<Expression>),
@@ -35,7 +36,7 @@ impl Expression {
         while let Some(one) = open.pop() {
             match &one.node {
                 Node::Value(_) => {}
-                Node::Name(name) => all.push((name.as_str(), one.at.clone())),
+                Node::Name(name, at) => all.push((name.as_str(), at.clone())),
                 Node::Negative(inner) | Node::Not(inner) => open.push(inner),
                 Node::Two(left, _, right) => open.extend([&**right, &**left]),
             }
@@ -172,7 +173,7 @@ impl Parser<'_> {
                 "and" | "or" => {
                     return Err(Problem::new(format!("something is missing before `{word}`")).at(at.clone()));
                 }
-                name => Node::Name(name.to_owned()),
+                name => Node::Name(name.to_owned(), at.clone()),
             },
             Token::Sign("-") => return self.prefix(LEVELS.len(), Node::Negative),
             Token::Sign("(") => {

@@ -47,6 +47,8 @@ fn numbers_are_calculated_as_people_do() {
         ("1 2", "[2] an operator is expected before this"),
         ("$index", "[$] names stand for themselves here -> "),
         ("inedx + 1", "[inedx] no `inedx`"),
+        ("2 * ( inedx )", "[inedx] no `inedx`"),
+        ("(site ) + 1", "[(site )] here is the text `north`, and a whole number is expected"),
         ("site + 1", "[site] here is the text `north`, and a whole number is expected"),
     ] {
         assert_eq!(of(text), value, "{text}");
@@ -138,6 +140,10 @@ fn depth_is_a_fault_and_no_crash() {
     thread.join().unwrap();
 }
 
+/// What expressions are made of, so that many of them can be read.
+const PIECES: [&str; 12] =
+    ["robots", "site", "nobody", "(", ")", " ", "not ", "-", " + ", " == ", " and ", "'north'"];
+
 proptest! {
     #[test]
     fn whatever_the_text_there_is_an_answer_in_it(text in "[a-z0-9 ${}:()'\"+*/%<>=!é-]{0,40}") {
@@ -157,6 +163,18 @@ proptest! {
             prop_assert_eq!(words(&text), known);
         }
         names(&text);
+    }
+
+    #[test]
+    fn names_are_where_they_are_written(pieces in prop::collection::vec(prop::sample::select(PIECES.to_vec()), 0..9)) {
+        let text = pieces.concat();
+        if let Ok(expression) = parse(&text) {
+            for (name, at) in expression.names() {
+                prop_assert_eq!(&text[at], name, "{}", &text);
+            }
+            let known: Vec<_> = expression.names().into_iter().map(|(_, at)| at).collect();
+            prop_assert_eq!(words(&text), known, "{}", &text);
+        }
     }
 
     #[test]

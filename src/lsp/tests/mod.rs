@@ -7,4 +7,5 @@ mod hover;
 mod marked;
 mod names;
 mod session;
+mod sound;
 mod topics;
