@@ -26,6 +26,7 @@ mod lsp {
     mod symbols;
     mod syntax;
     pub(crate) mod testing;
+    mod topics;
     mod uri;
 }
 
@@ -34,5 +35,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let Some((text, [high, low])) = bytes.split_last_chunk() else { return };
     let text = String::from_utf8_lossy(text);
     let at = usize::from(u16::from_be_bytes([*high, *low])) % (text.len() + 1);
-    lsp::testing::ask_everything(&text, text.floor_char_boundary(at), &[]);
+    let at = text.floor_char_boundary(at);
+    lsp::testing::ask_everything(&text, at, &[]);
+    lsp::testing::hold_laws(&text, at, &[]);
 });

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use crate::lsp::testing::{ask_everything, ask_everything_in};
+use crate::lsp::testing::{ask_everything, ask_everything_in, hold_laws};
 
 const WHOLE: &str = r#"<?xml version="1.0"?>
 <!-- ü -->
@@ -99,5 +99,6 @@ proptest! {
     fn everything_can_be_asked_in_disturbed_texts(text in disturbed(), at in any::<prop::sample::Index>()) {
         let at = text.floor_char_boundary(at.index(text.len() + 1));
         ask_all(&text, at);
+        hold_laws(&text, at, &[("inner.composite", WHOLE)]);
     }
 }
