@@ -56,7 +56,7 @@ fn every_file_as_it_is() {
 
 /// How many cases of each kind are tried; `PROPTEST_CASES` in the environment says another number.
 fn cases() -> u32 {
-    std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(120)
+    std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(60)
 }
 
 proptest! {
