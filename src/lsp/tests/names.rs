@@ -1,6 +1,7 @@
 use super::marked::{defined, found, renamed};
+use crate::lsp::navigate::{Goal, definition};
 use crate::lsp::symbols::symbols;
-use crate::lsp::testing::{composite, scene_of};
+use crate::lsp::testing::{composite, scene_in, scene_of};
 
 const INNER: &str = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="inner" targetNamespace="urn:f">
   <property name="size">3</property>
@@ -163,6 +164,29 @@ fn what_a_reference_of_a_composite_targets_is_around_it() {
     let others = [("one.composite", one.as_str()), ("two.composite", &outer("two", "W"))];
     let refused = renamed(&marked, &others, "Site").unwrap_err();
     assert!(refused.contains("in `two.composite`"), "{refused}");
+}
+
+#[test]
+fn names_in_files_beside_composites_lead_to_what_they_mean() {
+    let fleet = composite(
+        r#"<property name="bots">2</property><component name="H${index}" s:count="2" s:overrides="h.csv"><implementation.composite name="hall"/><property name="text" file="t.txt"/></component>"#,
+    );
+    let hall = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="hall" targetNamespace="urn:f"><property name="size"/></composite>"#;
+    let others = [("fleet.composite", fleet.as_str()), ("hall.composite", hall)];
+    let goes = |name: &str, marked: &str| {
+        let (scene, at) = scene_in(name, marked, &others);
+        definition(&scene, at)
+            .into_iter()
+            .map(|goal| match goal {
+                Goal::Place(place) => scene.files[place.file].text[place.start..place.end].to_owned(),
+                Goal::File(path) => path.display().to_string(),
+            })
+            .collect::<Vec<String>>()
+    };
+    assert_eq!(goes("h.csv", "name,si|ze\nH1,3\n"), ["size"]);
+    assert_eq!(goes("h.csv", "name,size\nH|1,3\n"), ["H${index}"]);
+    assert_eq!(goes("h.csv", "name,size\nH1,|3\n"), [""; 0]);
+    assert_eq!(goes("t.txt", "of ${bo|ts}"), ["bots"]);
 }
 
 #[test]
