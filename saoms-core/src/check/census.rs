@@ -174,21 +174,20 @@ fn topics<'a>(
     all.into_iter().map(|(way, used)| (way, used.joined())).collect()
 }
 
+/// The declared and the new names of topics.
+type Renames = Vec<(String, String)>;
+
 /// Lists of topics, each made once.
 #[derive(Default)]
 struct Lists {
     /// By the place of the class and what is renamed.
-    known: HashMap<(usize, Vec<(String, String)>), Rc<[TopicUse]>>,
+    known: HashMap<(usize, Renames), Rc<[TopicUse]>>,
     declared: HashMap<*const TopicDeclaration, Rc<TopicDeclaration>>,
 }
 
 impl Lists {
     /// The topics of a component of this class.
-    fn of(
-        &mut self,
-        (index, class): (usize, &ClassIndex<'_>),
-        renames: Vec<(String, String)>,
-    ) -> Rc<[TopicUse]> {
+    fn of(&mut self, (index, class): (usize, &ClassIndex<'_>), renames: Renames) -> Rc<[TopicUse]> {
         let Self { known, declared } = self;
         let list = known.entry((index, renames));
         if let Entry::Occupied(list) = list {

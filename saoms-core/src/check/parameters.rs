@@ -21,7 +21,12 @@ use crate::source::{Location, Text};
 pub(super) struct Parameters<'a> {
     /// By the places of the fleet's units.
     units: Vec<Declared<'a>>,
+    /// How many more values sources with several can lead to.
+    left: usize,
 }
+
+/// Values that sources with several can lead to: each component that takes all of a list has each of its values.
+const MOST_VALUES: usize = 4_000_000;
 
 /// The properties of one composite, those of what it includes among them.
 #[derive(Default)]
@@ -85,7 +90,7 @@ impl<'a> Parameters<'a> {
     /// Collects the properties and gives them what counts in place of their own values.
     pub(super) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
         let units = fleet.units.iter().map(|unit| declared(unit, report)).collect();
-        let mut parameters = Self { units };
+        let mut parameters = Self { units, left: MOST_VALUES };
         for (place, unit) in fleet.units.iter().enumerate() {
             let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];
@@ -234,10 +239,27 @@ impl<'a> Parameters<'a> {
     /// What `source` stands for in this unit. Faults are reported.
     pub(super) fn resolve(
         &mut self,
-        place: usize,
+        unit: usize,
         source: &Text,
         report: &mut Report<'_>,
     ) -> Result<Raw<'a>, ()> {
+        let raw = self.follow(unit, source, report)?;
+        let (left, count) = (self.left, raw.0.len());
+        if count > 1 {
+            self.left = left.saturating_sub(count);
+            if left <= count {
+                if left > 0 {
+                    let message = format!("sources come to more than {MOST_VALUES} values");
+                    let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message);
+                    report.push(one.help("each component that takes all values of a property has each of them: is this what is meant?"));
+                }
+                return Err(());
+            }
+        }
+        Ok(raw)
+    }
+
+    fn follow(&mut self, place: usize, source: &Text, report: &mut Report<'_>) -> Result<Raw<'a>, ()> {
         let unit = &mut self.units[place];
         let Some((name, path)) = expression(source) else {
             unit.has_wrong_source = true;

@@ -372,3 +372,16 @@ fn many_values_may_be_a_list_of_its_type() {
     assert!(!of("1 2\t3").contains("S2042"));
     assert!(of("1 2 x").contains("error S2042: the property `p` is of the type `xsd:int`: found `1 2 x`"));
 }
+
+/// Each of many that takes all of many values would be the square of what the file has.
+#[test]
+fn sources_of_many_values_have_a_limit() {
+    let inside = format!(
+        r#"<property name="all" many="true">{}</property>
+<component name="Robot${{index}}" saoms:count="100" xmlns:saoms="urn:saoms:1"><implementation.java class="example.Robot"/><property name="charger" source="$all"/></component>"#,
+        "<value>1</value>".repeat(41_000)
+    );
+    let found = faults(&inside);
+    let limit = "error S2035: sources come to more than 4000000 values";
+    assert_eq!(found.matches(limit).count(), 1, "{found}");
+}

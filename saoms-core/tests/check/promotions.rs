@@ -77,7 +77,8 @@ fn composites_have_several_services_to_choose_from() {
     expect![[r#"
         3:83-84 warning S2014: component `H` has several services
           help: name one of `s` and `u`: `H/...`
-    "#]].assert_eq(&all);
+    "#]]
+    .assert_eq(&all);
 }
 
 #[test]
