@@ -61,6 +61,23 @@ fn targets_wires_and_promotions_are_links() {
 }
 
 #[test]
+fn a_wire_that_replaces_targets_is_drawn_in_their_place() {
+    edges(
+        "><component name='A'><implementation.java class='a.A'/>
+          <reference name='one' target='B'/><reference name='two' target='B'/></component>
+        <component name='B'><implementation.java class='a.B'/></component>
+        <component name='C'><implementation.java class='a.C'/></component>
+        <wire source='A/one' target='B/s'/><wire source='A/one' target='C' replace='true'/>
+        <wire source='A/two' target='C' replace='false'/>",
+        expect![[r#"
+            c0 -->|"two"| c1
+            c0 -->|"one"| c2
+            c0 -->|"two"| c2
+        "#]],
+    );
+}
+
+#[test]
 fn what_is_named_and_not_there_is_missing() {
     let diagram = diagram(
         "><component name='A'><reference name='r' target='B/s'/></component><wire source='C/x' target='A'/>",

@@ -7,6 +7,7 @@ use super::groups::Groups;
 use super::ports::{Ports, Side};
 use super::read::View;
 use crate::expression::{has_expression, pattern};
+use crate::model::Wire;
 
 /// Wires of autowire that are drawn of one composite: each reference that takes several has one to each service of its interface.
 const MOST_AUTOWIRED: usize = 20_000;
@@ -24,11 +25,16 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
         seen: HashSet::new(),
         linked: HashSet::new(),
     };
-    linker.targets(view);
+    let is_replacing = |wire: &Wire| wire.replace().is_some_and(|replace| replace.value);
+    let replaced = view.wires().filter(|wire| is_replacing(wire)).filter_map(|wire| wire.source.as_ref());
+    let replaced: HashSet<End> = replaced.map(|source| linker.reference(source)).collect();
+    linker.targets(view, &replaced);
     for wire in view.wires() {
         let (Some(source), Some(target)) = (&wire.source, &wire.target) else { continue };
         let from = linker.reference(source);
-        linker.wire(from, target);
+        if is_replacing(wire) || !replaced.contains(&from) {
+            linker.wire(from, target);
+        }
     }
     // What is promoted is wired around the composite, where there is something around it.
     let wired = linker.linked.clone();
@@ -50,11 +56,14 @@ struct Linker<'d> {
 }
 
 impl Linker<'_> {
-    fn targets(&mut self, view: &View<'_>) {
+    /// Wires references to their targets, but those to which a wire gives others in their place.
+    fn targets(&mut self, view: &View<'_>, replaced: &HashSet<End>) {
         for (component, (_, model)) in view.components().enumerate() {
             for (port, reference) in model.references.iter().enumerate() {
-                for target in &reference.targets {
-                    self.wire(End::Component { component, port }, target);
+                let from = End::Component { component, port };
+                let stands = !replaced.contains(&from);
+                for target in reference.targets.iter().filter(|_| stands) {
+                    self.wire(from, target);
                 }
             }
         }
