@@ -438,7 +438,7 @@ fn what_a_charger_without_a_block_cuts_off_is_not_told() {
     let master = ("Master", "saoms.MasterEnvironment", &[][..], false);
     assert_eq!(
         found(&[world, environment, robot, master]),
-        ["error S5002 the charger of robot 1 is at (0,0), on a blocked block"]
+        ["error S5002 the charger of robot 1 is at (0,0), blocked on the map"]
     );
 }
 

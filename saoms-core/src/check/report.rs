@@ -16,11 +16,16 @@ pub(super) const CANDIDATES: usize = 1_000_000;
 /// Lists that are not longer are searched in any case.
 pub(super) const FEW: usize = 100;
 
+/// How many diagnostics are taken back.
+const WITHDRAWALS: usize = 1000;
+
 /// Collects diagnostics, and knows the texts they are about.
 pub(super) struct Report<'a> {
     sources: &'a Sources,
     diagnostics: &'a mut Diagnostics,
     candidates: usize,
+    /// How many may still be taken back.
+    withdrawals: usize,
     /// Whether what is not known is taken as given.
     pub(super) assumes: bool,
     /// Whether what comes of a value that components share is told beside that: where sharing is let pass, it counts.
@@ -54,6 +59,7 @@ impl<'a> Report<'a> {
             sources,
             diagnostics,
             candidates: CANDIDATES,
+            withdrawals: WITHDRAWALS,
             assumes: false,
             tells_echoes: false,
             escalated: HashSet::new(),
@@ -77,7 +83,11 @@ impl<'a> Report<'a> {
 
     /// Takes back what was told of this code at this place, since something else says it better.
     pub(super) fn withdraw(&mut self, code: &'static Code, at: Location) {
-        self.diagnostics.withdraw(code, at);
+        // Each goes through all that were said: a file full of them has some told twice.
+        if let Some(left) = self.withdrawals.checked_sub(1) {
+            self.withdrawals = left;
+            self.diagnostics.withdraw(code, at);
+        }
     }
 
     /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
