@@ -430,3 +430,11 @@ fn offered(
         all => format!("it offers {all}"),
     }
 }
+
+/// `component/service`.
+pub(super) fn uri(provider: Provider, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> String {
+    let component = &fleet.members[provider.member].component.name;
+    let service =
+        fleet.class_of(provider.member, classes).map_or("", |class| &class.services[provider.service].name);
+    format!("{component}/{service}")
+}

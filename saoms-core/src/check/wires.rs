@@ -15,7 +15,7 @@ use super::multiplicity::keeps_own;
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
 use super::room::Room;
-use super::target::{Provider, Target, has_several, parts, spread, target};
+use super::target::{Provider, Target, has_several, parts, spread, target, uri};
 use super::wire::{Wire, wires};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
@@ -492,12 +492,4 @@ impl Targets {
             Some(first) => _ = self.first_two.get_or_insert((first, place)),
         }
     }
-}
-
-/// `component/service`.
-fn uri(provider: Provider, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> String {
-    let component = &fleet.members[provider.member].component.name;
-    let service =
-        fleet.class_of(provider.member, classes).map_or("", |class| &class.services[provider.service].name);
-    format!("{component}/{service}")
 }
