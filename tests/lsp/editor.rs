@@ -124,7 +124,7 @@ impl Editor {
         let mut last = Vec::new();
         loop {
             let message = self.messages.recv_timeout(PATIENCE);
-            let Ok(message) = message else { panic!("{name} was shown with {last:?} last") };
+            let message = message.map_err(|_| format!("{name} was shown with {last:?} last")).unwrap();
             if message["method"] == "textDocument/publishDiagnostics" && message["params"]["uri"] == *uri {
                 let all = message["params"]["diagnostics"].as_array().unwrap();
                 last = all.iter().map(shown).collect::<Vec<String>>();

@@ -148,10 +148,11 @@ impl Cell {
 /// The cells of each line, of which there is at least one.
 fn lines(text: &str) -> Vec<Vec<Cell>> {
     let mut all = vec![Vec::new()];
-    let mut start = text.len() - text.trim_start_matches('\u{feff}').len();
+    let first = text.len() - text.trim_start_matches('\u{feff}').len();
+    let mut start = first;
     let mut is_quoted = false;
     let bytes = text.as_bytes();
-    for at in start..=text.len() {
+    for at in first..=text.len() {
         let byte = bytes.get(at).copied();
         is_quoted ^= byte == Some(b'"');
         if byte.is_none() || (!is_quoted && matches!(byte, Some(b',' | b'\n'))) {
