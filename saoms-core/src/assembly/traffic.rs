@@ -85,7 +85,8 @@ impl Topic {
     /// How many messages a second there are if each part of each writer sends one in each execution.
     pub fn rate(&self) -> f64 {
         let rates = self.writers.iter().filter_map(|writer| Some((writer.parts, writer.period?)));
-        rates.map(|(parts, period)| f64::from(parts) / period.as_secs_f64()).sum()
+        // The sum of none is `-0.0`.
+        rates.map(|(parts, period)| f64::from(parts) / period.as_secs_f64()).sum::<f64>() + 0.0
     }
 }
 

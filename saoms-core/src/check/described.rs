@@ -12,7 +12,7 @@ use super::global;
 use super::parameters::Found;
 use super::properties::Given;
 use super::report::Report;
-use super::value_type;
+use super::value_type::{self, Typed};
 use super::written::type_and_element;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::{Component, ComponentType, Multiplicity, Part, Property, Reference, Version};
@@ -32,7 +32,7 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
             type_and_element(property, "ASM40010", report);
             global::check(property, &described.document, &codes::COMPOSITE_VALUE_TYPE, report);
             value_type::named(property, &described.document, report);
-            value_type::own(property, report);
+            value_type::own(Typed { property, document: &described.document }, report);
         }
         repeated(
             described.services.iter().map(|one| &one.name),
@@ -154,7 +154,8 @@ fn used(member: &Member<'_>, described: &ComponentType, class: &ClassIndex<'_>, 
 
 /// Checks what a component gives for a property of its class against the type that the file says.
 pub(super) fn value(described: &ComponentType, name: &str, given: &Given, report: &mut Report<'_>) {
-    let Some(declared) = described.properties.iter().find(|one| one.name == *name) else { return };
+    let Some(property) = described.properties.iter().find(|one| one.name == *name) else { return };
+    let declared = Typed { property, document: &described.document };
     let values = match &given.value {
         PropertyValue::Many(values) => &values[..],
         one => std::slice::from_ref(one),

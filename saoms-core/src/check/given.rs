@@ -263,17 +263,17 @@ fn fits(own: Typed<'_>, declared: Option<Typed<'_>>, found: &Result<Found<'_>, (
             global::given(declared, own, report);
         }
     }
-    let typed: Vec<&Property> = [Some(own), declared].into_iter().flatten().map(|one| one.property).collect();
+    let typed: Vec<Typed<'_>> = [Some(own), declared].into_iter().flatten().collect();
     for piece in &found.raw.0 {
         match piece {
             Piece::Text(text) => {
-                let _ = typed.iter().all(|typed| value_type::holds(typed, text, &codes::VALUE_TYPE, report));
+                let _ = typed.iter().all(|typed| value_type::holds(*typed, text, &codes::VALUE_TYPE, report));
             }
             Piece::Whole(text, ..) => {
-                let _ = typed.iter().all(|typed| value_type::holds(typed, text, &codes::VALUE_TYPE, report));
+                let _ = typed.iter().all(|typed| value_type::holds(*typed, text, &codes::VALUE_TYPE, report));
             }
             Piece::Elements(elements, _) => {
-                let simple = typed.iter().find_map(|typed| value_type::simple(typed));
+                let simple = typed.iter().find_map(value_type::simple);
                 if let (Some(of), Some(first)) = (simple, elements.first()) {
                     let message = format!(
                         "the property {} is of the type {}, and has elements inside: {}",

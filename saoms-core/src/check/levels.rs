@@ -1,7 +1,7 @@
 //! The parts of the value of a property, found by the steps of many paths: a fleet can take each of its values from one complex property.
 
 use std::cell::{Cell, OnceCell, RefCell};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::instance::Instance;
@@ -32,8 +32,10 @@ struct Level<'a> {
     /// Those that they are in.
     around: Vec<Element<'a>>,
     here: Vec<Element<'a>>,
+    /// Whether they are in each other as well.
+    is_deep: bool,
     by_name: OnceCell<HashMap<&'a str, Vec<Element<'a>>>>,
-    /// By the name that was asked for and an attribute, and by its value.
+    /// By the name that was asked for and an attribute (`@id`) or a part, and by the value of that.
     by_attribute: RefCell<HashMap<(Option<String>, String), ByValue<'a>>>,
 }
 
@@ -60,10 +62,8 @@ impl<'a> Levels<'a> {
     /// What a path leads to that starts with `/`.
     pub(super) fn walk(&self, path: &str) -> Result<Raw<'a>, Fault> {
         if self.first.here.is_empty() {
-            return Err((
-                0..path.len(),
-                "the property has a simple value: there are no parts in it".to_owned(),
-            ));
+            let message = "the property has a simple value: there are no parts in it";
+            return Err(Fault::new(0..path.len(), message));
         }
         // What stands before the first `/` is the name.
         let mut all = steps(path).skip(1).peekable();
@@ -72,12 +72,14 @@ impl<'a> Levels<'a> {
         let mut level = Rc::clone(inside.unwrap_or(&self.first));
         while let Some((at, step)) = all.next() {
             let is_last = all.peek().is_none();
-            if let Some(end) = ends(&level.around, (at.clone(), step), is_last, self.instance) {
+            let is_deep = step.is_empty() && !is_last && !level.is_deep;
+            if !is_deep && let Some(end) = ends(&level.around, (at.clone(), step), is_last, self.instance) {
                 return end;
             }
-            let Some(test) = Test::of(step) else { return Err(no_step(at, step)) };
-            if is_last {
-                let found = level.find(&test).map_err(|message| (at, message))?;
+            let test =
+                if is_deep { None } else { Some(Test::of(step).ok_or_else(|| no_step(at.clone(), step))?) };
+            if let Some(test) = test.as_ref().filter(|_| is_last) {
+                let found = level.find(test).map_err(|message| Fault::new(at, message))?;
                 return Ok(Raw::of_elements(&found, self.instance));
             }
             let key = (inside.is_some(), path[..at.end].to_owned());
@@ -85,7 +87,11 @@ impl<'a> Levels<'a> {
             level = match known {
                 Some(known) => known,
                 None => {
-                    let next = Rc::new(Level::of(level.find(&test).map_err(|message| (at, message))?));
+                    let next = match &test {
+                        Some(test) => Level::of(level.find(test).map_err(|message| Fault::new(at, message))?),
+                        None => level.deep(),
+                    };
+                    let next = Rc::new(next);
                     let left = self.room.get().checked_sub(next.around.len() + next.here.len());
                     if let Some(left) = left {
                         self.room.set(left);
@@ -95,7 +101,7 @@ impl<'a> Levels<'a> {
                 }
             };
         }
-        Err((0..path.len(), "the path is empty".to_owned()))
+        Err(Fault::new(0..path.len(), "the path is empty"))
     }
 }
 
@@ -104,6 +110,22 @@ impl<'a> Level<'a> {
     fn of(around: Vec<Element<'a>>) -> Self {
         let here = around.iter().flat_map(|one| one.children()).collect();
         Self { around, here, ..Self::default() }
+    }
+
+    /// All that is inside, to any depth: siblings beside each other.
+    fn deep(&self) -> Self {
+        let top = if self.around.is_empty() { &self.here[..] } else { &[] };
+        let mut waiting = if self.around.is_empty() { self.here.clone() } else { self.around.clone() };
+        let (mut around, mut seen) = (Vec::new(), HashSet::new());
+        while let Some(one) = waiting.pop() {
+            if seen.insert(one.id()) {
+                around.push(one);
+                waiting.extend(one.children());
+            }
+        }
+        around.sort_unstable_by_key(|one| one.id());
+        let here = top.iter().copied().chain(around.iter().flat_map(|one| one.children())).collect();
+        Self { around, here, is_deep: true, ..Self::default() }
     }
 
     fn by_name(&self) -> &HashMap<&'a str, Vec<Element<'a>>> {
@@ -135,14 +157,21 @@ impl<'a> Level<'a> {
     /// The elements that a step leads to, or why it leads to none.
     fn find(&self, test: &Test<'_>) -> Result<Vec<Element<'a>>, String> {
         let named = self.named(test.name);
-        let found = match &test.predicate {
+        let mut found = match &test.predicate {
             None => named.to_vec(),
             Some(Predicate::Place(wanted)) => at_place(named, *wanted),
             Some(Predicate::Attribute(name, value)) => {
+                let by_value = self.by_value(test.name, &format!("@{name}"));
+                by_value.get(*value).cloned().unwrap_or_default()
+            }
+            Some(Predicate::Part(name, value)) => {
                 let by_value = self.by_value(test.name, name);
                 by_value.get(*value).cloned().unwrap_or_default()
             }
         };
+        if self.is_deep {
+            found.sort_unstable_by_key(|one| one.id());
+        }
         if found.is_empty() { Err(test.fault(&self.here, named)) } else { Ok(found) }
     }
 
@@ -152,6 +181,16 @@ impl<'a> Level<'a> {
         let all = known.entry(key).or_insert_with(|| {
             let mut all: HashMap<String, Vec<Element<'a>>> = HashMap::new();
             for one in self.named(name) {
+                let Some(of) = of.strip_prefix('@') else {
+                    let parts = one.children().filter(|part| part.local_name() == of);
+                    for text in parts.filter_map(|part| part.trimmed_text()) {
+                        let these = all.entry(text.as_str().to_owned()).or_default();
+                        if these.last().is_none_or(|last| last.id() != one.id()) {
+                            these.push(*one);
+                        }
+                    }
+                    continue;
+                };
                 if let Some(attribute) = attribute(*one, of) {
                     all.entry(attribute.value().into_owned()).or_default().push(*one);
                 }

@@ -25,6 +25,7 @@ mod given;
 mod global;
 mod instance;
 mod levels;
+mod lexical;
 mod loops;
 mod multiplicity;
 mod names;

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use super::options::Options;
 use super::report::{Report, list};
 use super::value_type;
-use crate::diagnostic::{codes, nearest, quoted};
+use crate::diagnostic::{nearest, quoted};
 use crate::expression::{INDEX, Problem, Value};
 use crate::model::{Component, Composite, Contribution, Link, Property};
 use crate::source::{Location, Text};
@@ -67,7 +67,7 @@ impl Names {
         let Some(Name { mistyped: Some(property), text: Some(text), .. }) = self.all.get(name) else {
             return false;
         };
-        report.of_all(|report| !value_type::holds(property, text, &codes::COMPOSITE_VALUE_TYPE, report))
+        report.of_all(|report| !value_type::holds_by_name(property, text, report))
     }
 
     /// Where the value of a name is written.

@@ -124,7 +124,9 @@ impl<'a> Parameters<'a> {
     /// Holds what comes from the command line and the environment to the types of the properties.
     fn judge_outside(&self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
         for (unit, declared) in fleet.units.iter().zip(&self.units) {
-            for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
+            let all = unit.composites.iter();
+            let all = all.flat_map(|one| one.properties.iter().map(|property| (property, &*one.document)));
+            for (property, document) in all {
                 let parameter = declared.by_name.get(property.name.as_str());
                 let value = match parameter.and_then(|parameter| parameter.given) {
                     Some(Given::Setting(setting)) => &setting.value,
@@ -132,7 +134,7 @@ impl<'a> Parameters<'a> {
                     _ => continue,
                 };
                 if parameter.is_some_and(|parameter| std::ptr::eq(parameter.property, property)) {
-                    value_type::given(property, value, report);
+                    value_type::given(Typed { property, document }, value, report);
                 }
             }
         }
@@ -268,6 +270,8 @@ impl<'a> Parameters<'a> {
                 .help("write `$name`, or `$name/part` for a part of a complex property");
             if unit.by_name.contains_key(source.as_str()) {
                 one = one.suggest("insert `$`", source.location, format!("${source}"));
+            } else if source.contains('$') {
+                one = taken_as_given(one, report.assumes);
             }
             report.push(one);
             return Err(());
@@ -288,22 +292,29 @@ impl<'a> Parameters<'a> {
         parameter.is_used = true;
         let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
         let start = name.len() + 1;
-        let fault = |(step, message): Fault, report: &mut Report<'_>| {
+        let fault = |Fault { step, message, is_understood }: Fault, report: &mut Report<'_>| {
             let at = report.part(source, start + step.start..start + step.end);
-            report.push(Diagnostic::new(&codes::SOURCE_MALFORMED, at, message));
+            let one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
+            report.push(if is_understood { one } else { taken_as_given(one, report.assumes) });
         };
         if let (Some(levels), Some(path)) = (&parameter.levels, path.filter(|path| path.starts_with('/'))) {
             return levels.walk(path).map_err(|one| fault(one, report));
         }
         let is_judged = std::mem::replace(&mut parameter.is_judged, true);
+        let typed = Typed { property, document: &composite.document };
         let mut whole = match given {
-            Some(Given::Setting(setting)) => Raw::one(&setting.value),
-            Some(Given::Variable(variable)) => Raw::one(&variable.value),
+            // One that is not of its type is reported.
+            Some(Given::Setting(Setting { value, .. }) | Given::Variable(Variable { value, .. })) => {
+                if !value_type::is_right(typed, value) {
+                    return Err(());
+                }
+                Raw::one(value)
+            }
             Some(Given::Component(outside, outer)) => {
                 let raw = self.values(outside, outer, report)?.raw;
                 for piece in raw.0.iter().filter(|_| !is_judged) {
                     if let Piece::Text(text) = piece {
-                        value_type::given(property, text, report);
+                        value_type::given(typed, text, report);
                     }
                 }
                 raw
@@ -375,6 +386,16 @@ impl<'a> Parameters<'a> {
 }
 
 /// The properties of a composite and of what it includes. Repeated ones are reported.
+/// Whoever runs a composite of another program may understand more of XPath.
+fn taken_as_given(one: Diagnostic, assumes: bool) -> Diagnostic {
+    match assumes {
+        true => {
+            one.severity(Severity::Warning).help("another program may understand it: it is taken as given")
+        }
+        false => one,
+    }
+}
+
 fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
     let mut all = Declared::default();
     let properties = unit

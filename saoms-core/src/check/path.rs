@@ -1,8 +1,8 @@
 //! Where the `source` of a property leads: `$name`, and the part of its value that a path of steps leads to.
 //!
-//! SCA takes an XPath (Assembly 1.1, 4.1.3). Understood are steps down into elements by name or `*`, each with one predicate, and at the end an attribute or a
-//! text; what steps lead to several elements, leads on from all of them, as in XPath. Prefixes do not count. The work grows with the value and the
-//! length of the path alone: each step goes one level down.
+//! SCA takes an XPath (Assembly 1.1, 4.1.3). Understood are steps down into elements by name or `*`, each with one predicate, steps to any depth (`//`),
+//! and at the end an attribute or a text; what steps lead to several elements, leads on from all of them, as in XPath. Prefixes do not count. The work grows with the value and the
+//! length of the path alone: each step looks at each element once.
 
 use std::ops::Range;
 
@@ -12,13 +12,31 @@ use crate::diagnostic::quoted;
 use crate::xml::{Attribute, Element};
 
 /// What is understood, for those who wrote something else.
-const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
+const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
 
 /// Parts that are looked at for what could have been meant.
 const MOST_LOOKED_AT: usize = 1_000;
 
-/// A fault of a path: its bytes, and what is wrong.
-pub(super) type Fault = (Range<usize>, String);
+/// A fault of a path.
+pub(super) struct Fault {
+    /// Its bytes.
+    pub(super) step: Range<usize>,
+    /// What is wrong.
+    pub(super) message: String,
+    /// Whether it is understood what is asked for.
+    pub(super) is_understood: bool,
+}
+
+impl Fault {
+    pub(super) fn new(step: Range<usize>, message: impl Into<String>) -> Self {
+        Self { step, message: message.into(), is_understood: true }
+    }
+
+    /// Of a step of another form.
+    fn unknown(step: Range<usize>, message: String) -> Self {
+        Self { step, message, is_understood: false }
+    }
+}
 
 /// `$name`, `$name[2]`, `$name/path` or `$name[2]/path`: the name, and what follows it.
 pub(super) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
@@ -32,11 +50,12 @@ pub(super) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
 pub(super) fn one_of<'a>(mut whole: Raw<'a>, path: &str) -> Result<Raw<'a>, Fault> {
     let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(whole) };
     let Some(Predicate::Place(wanted)) = predicate(step) else {
-        return Err((at, format!("{} is not understood: behind the name stands `[2]` or `/`", quoted(step))));
+        let message = format!("{} is not understood: behind the name stands `[2]` or `/`", quoted(step));
+        return Err(Fault::unknown(at, message));
     };
     let count = whole.0.len();
     let Some(place) = wanted.of(count) else {
-        return Err((at, format!("the property has {}", counted(count, "value"))));
+        return Err(Fault::new(at, format!("the property has {}", counted(count, "value"))));
     };
     Ok(Raw(vec![whole.0.swap_remove(place)]))
 }
@@ -50,23 +69,24 @@ pub(super) fn ends<'a>(
 ) -> Option<Result<Raw<'a>, Fault>> {
     if let Some(name) = step.strip_prefix('@').filter(|name| is_name(name)) {
         return Some(match is_last {
-            false => Err((at, "an attribute has no parts".to_owned())),
+            false => Err(Fault::new(at, "an attribute has no parts")),
             true => attributes(around, name, instance).ok_or_else(|| no_attribute(at, name, around)),
         });
     }
     if step == "text()" {
         return Some(match is_last {
-            false => Err((at, "a text has no parts".to_owned())),
-            true => texts(around, instance).ok_or_else(|| (at, "there is no text here".to_owned())),
+            false => Err(Fault::new(at, "a text has no parts")),
+            true => texts(around, instance).ok_or_else(|| Fault::new(at, "there is no text here")),
         });
     }
     let is_missing = step.is_empty();
-    is_missing.then(|| Err((at.start.saturating_sub(1)..at.end, format!("a step is missing: {FORMS}"))))
+    let step = at.start.saturating_sub(1)..at.end;
+    is_missing.then(|| Err(Fault::new(step, format!("a step is missing: {FORMS}"))))
 }
 
 /// The fault of a step that is of no form that is understood.
 pub(super) fn no_step(at: Range<usize>, step: &str) -> Fault {
-    (at, format!("{} is not understood: {FORMS}", quoted(step)))
+    Fault::unknown(at, format!("{} is not understood: {FORMS}", quoted(step)))
 }
 
 /// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within quotation marks is none.
@@ -104,6 +124,8 @@ pub(super) enum Predicate<'p> {
     Place(Place),
     /// An attribute has this value.
     Attribute(&'p str, &'p str),
+    /// An element inside has this text.
+    Part(&'p str, &'p str),
 }
 
 #[derive(Clone, Copy)]
@@ -154,8 +176,12 @@ impl<'p> Test<'p> {
                 false => format!("there is no part{asked}; the parts are {}", list(known)),
             };
         }
-        let Some(Predicate::Attribute(name, value)) = &self.predicate else {
-            return format!("there {}, from `[1]` on", is_counted(named.len(), self.name));
+        let (name, value) = match &self.predicate {
+            Some(Predicate::Attribute(name, value)) => (name, value),
+            Some(Predicate::Part(name, value)) => {
+                return format!("no part here has {} as its part {}", quoted(value), quoted(name));
+            }
+            _ => return format!("there {}, from `[1]` on", is_counted(named.len(), self.name)),
         };
         let values = named.iter().take(MOST_LOOKED_AT).filter_map(|one| attribute(*one, name)).take(50);
         let values: Vec<_> = values.map(|one| one.value()).collect();
@@ -167,22 +193,30 @@ impl<'p> Test<'p> {
     }
 }
 
-/// `[2]`, `[last()]` or `[@name='value']`.
+/// `[2]`, `[last()]`, `[@name='value']` or `[part='value']`; the values can be numbers.
 fn predicate(text: &str) -> Option<Predicate<'_>> {
     let inside = text.strip_prefix('[')?.strip_suffix(']')?.trim();
-    if let Some(rest) = inside.strip_prefix('@') {
-        let (name, value) = rest.split_once('=')?;
-        let value = value.trim();
-        let open = value.chars().next().filter(|open| matches!(open, '\'' | '"'))?;
-        let value = value[1..].strip_suffix(open).filter(|value| !value.contains(open))?;
-        return Some(Predicate::Attribute(name.trim(), value)).filter(|_| is_name(name.trim()));
+    let place = |text: &str| {
+        if text == "last()" {
+            return Some(Predicate::Place(Place::Last));
+        }
+        let is_number = !text.is_empty() && text.bytes().all(|digit| digit.is_ascii_digit());
+        // A number that is too large is one that nothing has.
+        is_number.then(|| Predicate::Place(Place::Number(text.parse().unwrap_or(usize::MAX))))
+    };
+    let Some((name, value)) = inside.split_once('=') else { return place(inside) };
+    let (name, value) = (name.trim(), value.trim());
+    if name == "position()" {
+        return place(value);
     }
-    if inside == "last()" {
-        return Some(Predicate::Place(Place::Last));
+    let value = match value.chars().next().filter(|open| matches!(open, '\'' | '"')) {
+        Some(open) => value[1..].strip_suffix(open).filter(|value| !value.contains(open))?,
+        None => Some(value).filter(|value| value.parse::<f64>().is_ok())?,
+    };
+    match name.strip_prefix('@') {
+        Some(name) => is_name(name).then_some(Predicate::Attribute(name, value)),
+        None => is_name(name).then_some(Predicate::Part(local(name), value)),
     }
-    let is_number = !inside.is_empty() && inside.bytes().all(|digit| digit.is_ascii_digit());
-    // A number that is too large is one that nothing has.
-    is_number.then(|| Predicate::Place(Place::Number(inside.parse().unwrap_or(usize::MAX))))
 }
 
 fn attributes<'a>(
@@ -216,7 +250,7 @@ fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> Fault {
         true => "there are none here".to_owned(),
         false => format!("the attributes are {}", list(known)),
     };
-    (at, format!("there is no attribute {}; {known}", quoted(name)))
+    Fault::new(at, format!("there is no attribute {}; {known}", quoted(name)))
 }
 
 /// A name without its prefix.

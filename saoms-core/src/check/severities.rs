@@ -221,18 +221,20 @@ impl Severities {
         }
     }
 
-    /// Reports options that hide what composites set to something stricter: what has a reason there stays.
+    /// Reports options that change nothing, because composites set what there is to something else: what has a reason there stays.
     pub(super) fn overruled(&self, diagnostics: &mut Diagnostics) {
         let options = self.rules.iter().filter(|rule| matches!(rule.scope, Scope::Option) && !rule.is_used);
         for option in options {
-            let is_stricter = |rule: &&Rule| {
-                rule.code == option.code && rule.is_used && rule.set.level.hides() < option.set.level.hides()
-            };
-            let Some(by) = self.rules.iter().find(is_stricter) else { continue };
+            let is_other =
+                |rule: &&Rule| rule.code == option.code && rule.is_used && rule.set.level != option.set.level;
+            let Some(by) = self.rules.iter().find(is_other) else { continue };
             let (code, asked, level) = (&option.code, option.set.level.name(), by.set.level.name());
             let message =
                 format!("{code} is not set to `{asked}`: a composite sets it to `{level}`, and counts first");
             let one = Diagnostic::new(&codes::SEVERITY_UNUSED, option.set.at, message);
+            // One for all fleets is stricter than what one of them gives a reason for.
+            let is_stricter = option.set.level.hides() < by.set.level.hides();
+            let one = if is_stricter { one.severity(Severity::Note) } else { one };
             diagnostics
                 .push(one.label(by.set.at, "set here").help("change it there, or leave the option out"));
         }

@@ -1,5 +1,6 @@
 //! The types of XML Schema that properties name.
 
+use super::lexical::{self, is_digits};
 use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
 use crate::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
@@ -56,6 +57,24 @@ const SIMPLE_TYPES: &[SimpleType] = &[
     ("unsignedByte", "a whole number of 8 bits, not negative", |text| fits::<u8>(text)),
     ("double", "a number", is_float),
     ("float", "a number", is_float),
+    ("date", "a date such as `2026-11-22`", lexical::date),
+    ("time", "a time such as `12:30:00`", lexical::time),
+    ("dateTime", "a date and a time such as `2026-11-22T12:30:00`", lexical::date_time),
+    ("duration", "a duration such as `PT1H30M`", lexical::duration),
+    ("gYear", "a year such as `2026`", lexical::year),
+    ("gYearMonth", "a year and a month such as `2026-11`", lexical::year_month),
+    ("gMonth", "a month such as `--11`", lexical::month),
+    ("gMonthDay", "a month and a day such as `--11-22`", lexical::month_day),
+    ("gDay", "a day such as `---22`", lexical::day),
+    ("QName", "a name, with a prefix or without", lexical::qualified),
+    ("NCName", "a name without a prefix", lexical::name),
+    ("ID", "a name without a prefix", lexical::name),
+    ("IDREF", "a name without a prefix", lexical::name),
+    ("NMTOKEN", "letters, digits, `.`, `-`, `_` and `:`", lexical::token),
+    ("language", "a language such as `en`", lexical::language),
+    ("hexBinary", "pairs of hexadecimal digits", lexical::hexadecimal),
+    ("base64Binary", "text of base 64", lexical::base_64),
+    ("anyURI", "a URI", lexical::uri),
     ("decimal", "a decimal number", |text| is_float(text) && !text.contains(['e', 'E', 'N', 'I'])),
 ];
 
@@ -67,53 +86,79 @@ fn fits<T: TryFrom<i128>>(text: &str) -> bool {
     whole(text).is_some_and(|it| T::try_from(it).is_ok())
 }
 
-fn is_digits(text: &str) -> bool {
-    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
 fn is_float(text: &str) -> bool {
     let is_number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
     matches!(text, "INF" | "-INF" | "NaN") || text.chars().all(is_number) && text.parse::<f64>().is_ok()
 }
 
 /// Checks the values that a composite gives its property itself against its type, where that is a simple one of XML Schema.
-pub(super) fn own(property: &Property, report: &mut Report<'_>) {
-    property.simple_values().for_each(|value| given(property, value, report));
+pub(super) fn own(typed: Typed<'_>, report: &mut Report<'_>) {
+    typed.property.simple_values().for_each(|value| given(typed, value, report));
 }
 
 /// The same for a value that somebody else gives the property.
-pub(super) fn given(property: &Property, value: &Text, report: &mut Report<'_>) {
-    holds(property, value, &codes::COMPOSITE_VALUE_TYPE, report);
+pub(super) fn given(typed: Typed<'_>, value: &Text, report: &mut Report<'_>) {
+    holds(typed, value, &codes::COMPOSITE_VALUE_TYPE, report);
 }
 
 /// Whether a value is of the type of a property; where it is not, that is reported with this code.
-pub(super) fn holds(property: &Property, value: &Text, code: &'static Code, report: &mut Report<'_>) -> bool {
+pub(super) fn holds(typed: Typed<'_>, value: &Text, code: &'static Code, report: &mut Report<'_>) -> bool {
+    simple_type(typed).is_none_or(|(of, kind)| is_of(typed.property, (of, kind), value, code, report))
+}
+
+/// The same where it is not known what the prefixes of types mean.
+pub(super) fn holds_by_name(property: &Property, value: &Text, report: &mut Report<'_>) -> bool {
     let Some(of) = property.r#type() else { return true };
-    let Some((_, expected, is_one)) = simple_type(of) else { return true };
+    let found = SIMPLE_TYPES.iter().find(|(name, ..)| *name == local(of));
+    found.is_none_or(|kind| is_of(property, (of, kind), value, &codes::COMPOSITE_VALUE_TYPE, report))
+}
+
+/// Whether a value is of the type of a property.
+pub(super) fn is_right(typed: Typed<'_>, value: &str) -> bool {
+    simple_type(typed).is_none_or(|(_, kind)| is_written(typed.property, kind, value))
+}
+
+fn is_written(property: &Property, (_, _, is_one): &SimpleType, value: &str) -> bool {
     // Many values may be written as a list, as in files of SCA 1.0.
     let is_list = property.many().is_some_and(|many| many.value);
-    if value.is_empty() || is_one(value) || is_list && value.split_whitespace().all(is_one) {
+    is_one(value) || is_list && value.split_whitespace().all(is_one)
+}
+
+fn is_of(
+    property: &Property,
+    (of, kind): (&Text, &SimpleType),
+    value: &Text,
+    code: &'static Code,
+    report: &mut Report<'_>,
+) -> bool {
+    if is_written(property, kind, value) {
         return true;
     }
+    let at = if value.is_empty() { property.tag() } else { value.location };
     let message = format!(
-        "the property {} is of the type {}: found {}, expected {expected}",
+        "the property {} is of the type {}: found {}, expected {}",
         quoted(&property.name),
         quoted(of),
-        quoted(value)
+        if value.is_empty() { "nothing".to_owned() } else { quoted(value) },
+        kind.1
     );
-    let one = Diagnostic::new(code, value.location, message).label(of.location, "the type");
+    let one = Diagnostic::new(code, at, message).label(of.location, "the type");
     report.push(one.help("change the value, or the type"));
     false
 }
 
 /// The type of a property, where it is one of XML Schema that has no elements inside.
-pub(super) fn simple(property: &Property) -> Option<&Text> {
-    property.r#type().filter(|of| simple_type(of).is_some())
+pub(super) fn simple<'a>(typed: &Typed<'a>) -> Option<&'a Text> {
+    simple_type(*typed).map(|(of, _)| of)
 }
 
-fn simple_type(of: &str) -> Option<&'static SimpleType> {
+/// The same, with how its values are written. A type of the same name in a namespace of users is another one.
+fn simple_type(typed: Typed<'_>) -> Option<(&Text, &'static SimpleType)> {
+    let of = typed.property.r#type()?;
     let local = local(of);
-    SIMPLE_TYPES.iter().find(|(name, ..)| *name == local)
+    let found = SIMPLE_TYPES.iter().find(|(name, ..)| *name == local)?;
+    let is_ours = !of.contains(':') || typed.namespace(of).is_none_or(|namespace| namespace == XML_SCHEMA);
+    is_ours.then_some((of, found))
 }
 
 fn local(of: &str) -> &str {

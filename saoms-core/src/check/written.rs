@@ -5,7 +5,7 @@ use super::fleet::Fleet;
 use super::global;
 use super::properties;
 use super::report::Report;
-use super::value_type;
+use super::value_type::{self, Typed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Part, Property, Reference, Service, Version};
 use crate::source::{Location, Text};
@@ -17,7 +17,7 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             type_and_element(property, "ASM60040", report);
             global::check(property, &composite.document, &codes::COMPOSITE_VALUE_TYPE, report);
             value_type::named(property, &composite.document, report);
-            value_type::own(property, report);
+            value_type::own(Typed { property, document: &composite.document }, report);
             properties::one_value(property, composite.version, report);
         }
         composite.services.iter().for_each(|one| binding::of_service(one, report));

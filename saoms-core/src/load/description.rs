@@ -8,7 +8,7 @@ use super::root::of_another_kind;
 use super::shelf::DESCRIPTIONS;
 use super::vocabulary::CONTRIBUTION;
 use super::{Loader, read};
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::Version;
 use crate::source::{Sources, Text};
 use crate::xml::{self, Element};
@@ -102,7 +102,8 @@ impl Description {
         }
         let Some(part) = CONTRIBUTION.child(name) else {
             // Imports of other kinds are extensions, whichever namespace they are in.
-            let is_extension = name.starts_with("import.") || name.starts_with("export.");
+            let is_extension = (name.starts_with("import.") || name.starts_with("export."))
+                && nearest(name, CONTRIBUTION.children.iter().copied()).is_none();
             if !is_extension && !CONTRIBUTION.children.contains(&name) {
                 loader.unexpected(child, &CONTRIBUTION, family);
             }
@@ -114,6 +115,7 @@ impl Description {
         };
         if part.name == "deployable" {
             let namespace = namespace(&what, child);
+            self.judge(&what, namespace.as_deref(), child, loader);
             return self.deployables.push(Deployable { name: what, namespace });
         }
         let (list, ending) = match name.strip_prefix("import") {
@@ -131,6 +133,31 @@ impl Description {
         let location = location.filter(|location| !location.contains(':'));
         let location = location.map(|location| PathBuf::from(location.as_str()));
         list.push(Entry { kind, what: what.as_str().to_owned(), location });
+    }
+}
+
+impl Description {
+    /// Warns of a deployable that is named twice, or without the namespace that it is in: what is found by its name alone is run.
+    fn judge(&self, what: &Text, namespace: Option<&str>, child: Element<'_>, loader: &mut Loader<'_>) {
+        let local = what.split_once(':').map_or(what.as_str(), |(_, local)| local);
+        let is_same = |one: &&Deployable| one.local() == local && one.namespace.as_deref() == namespace;
+        let message = if let Some(first) = self.deployables.iter().find(is_same) {
+            let one = format!("{} is called deployable twice", quoted(what));
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, what.location, one);
+            one.label(first.name.location, "the first").help("keep one of them")
+        } else if namespace.is_none() {
+            let why = match what.split_once(':') {
+                Some((prefix, _)) if child.resolve_prefix(prefix).is_none() => {
+                    format!("the prefix {} is bound to no namespace", quoted(prefix))
+                }
+                _ => format!("{} does not say its namespace", quoted(what)),
+            };
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, what.location, why);
+            one.help("write it with a prefix of the target namespace of the composite")
+        } else {
+            return;
+        };
+        loader.report(message.severity(Severity::Warning).rule("ASM12027"));
     }
 }
 

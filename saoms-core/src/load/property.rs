@@ -3,8 +3,8 @@
 use super::Loader;
 use super::children::Family;
 use super::vocabulary::{COMPONENT, COMPOSITE, Kind};
-use crate::diagnostic::nearest;
-use crate::model::{Origin, Property, PropertyDetails, PropertyValue};
+use crate::diagnostic::{nearest, quoted};
+use crate::model::{Origin, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
 use crate::xml::{Attribute, Element, ElementId};
 
@@ -62,12 +62,31 @@ impl Loader<'_> {
             must_supply: self.boolean(element, "mustSupply"),
             source: self.optional(element, "source"),
             file: if has_file { self.optional(element, "file") } else { None },
-            env: self.own(element, "env"),
+            env: self.variable(element),
             from_file: None,
             document: None,
             values,
             content,
         }
+    }
+
+    /// The name of an environment variable. What no program can set is reported.
+    fn variable(&mut self, element: Element<'_>) -> Option<Text> {
+        let named = self.own(element, "env")?;
+        let is_name = |name: &str| {
+            let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+            name.chars().all(is_letter) && !name.starts_with(|letter: char| letter.is_ascii_digit())
+        };
+        if is_name(&named) {
+            return Some(named);
+        }
+        let attribute = element.attribute_in(SAOMS_NAMESPACE, "env")?;
+        let message = format!(
+            "{} is no name of an environment variable: it has letters, digits and `_`, and no digit first",
+            quoted(&named)
+        );
+        self.value_fault(attribute, message, None);
+        None
     }
 
     /// Whether an element of SCA in a property is a mistake. Any other is a value of the user's own, since a default

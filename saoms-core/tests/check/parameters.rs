@@ -35,7 +35,7 @@ fn sources_lead_to_composite_properties() {
           2:17-22 the first
           help: give each its own name
         11:41-47 error S2023: there is no part `plaice`; the parts are `place`
-        12:39-47 error S2023: `place[x]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        12:39-47 error S2023: `place[x]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         13:33-37 error S2024: the composite has no property `sped`
           fix: replace `sped` with `speed` [13:33-37 "speed"]
         14:32-37 error S2023: `speed` names no property of the composite
@@ -140,15 +140,15 @@ fn sources_are_paths() {
         $b/bay/@di: S2023: there is no attribute `di`; the attributes are `id`
         $b/bay[2]/@id/x: S2023: an attribute has no parts
         $b/bay[1]/text(): S2023: there is no text here
-        $b/bay[x=3]/x: S2023: `bay[x=3]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
-        $b//x: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
-        $b/bay/../x: S2023: `..` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
-        $b/bay[1]x: S2023: `bay[1]x` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b/bay[x=3]/x: Text("3"
+        $b//x: S3011: the property `number` takes one value, and here are 3
+        $b/bay/../x: S2023: `..` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b/bay[1]x: S2023: `bay[1]x` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         $many[3]: S2023: the property has 2 values
         $many[a]: S2023: `[a]` is not understood: behind the name stands `[2]` or `/`
         $many/x: S2023: the property has a simple value: there are no parts in it
         $s/x: S2023: the property has a simple value: there are no parts in it
-        $b/: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b/: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         $b[99999999999999999999999]: S2023: the property has one value
     "#]].assert_eq(&all);
     assert!(value("$b/bay[1]/@id", "colour").starts_with("S3009: property `colour`: `a` is not allowed"));
@@ -384,4 +384,70 @@ fn sources_of_many_values_have_a_limit() {
     let found = faults(&inside);
     let limit = "error S2035: sources come to more than 4000000 values";
     assert_eq!(found.matches(limit).count(), 1, "{found}");
+}
+
+#[test]
+fn paths_lead_to_any_depth_and_to_what_a_part_says() {
+    let of = |source: &str, assume_classes: bool| {
+        let inside = format!(
+            "<property name='c' type='p:C' xmlns:p='urn:p'><a xmlns=''><b id='1'><w>10</w></b><b id='2'><w>20</w><w>21</w><b id='3'><w>30</w></b></b></a></property>
+<component name='R'><implementation.java class='example.Reader'/><property name='words' source=\"{source}\"/></component>"
+        );
+        let (assembly, diagnostics, sources) = nested(&[&part("fleet", "", &inside)], &[], assume_classes);
+        let told: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+        let values = assembly.map(|assembly| {
+            let all = assembly.components[0].values.iter().map(|(_, value)| format!("{value:?}"));
+            all.collect::<Vec<_>>().join(" ")
+        });
+        match values {
+            Some(values) => format!("{source}: {values}\n"),
+            None => format!("{source}: {told}"),
+        }
+    };
+    let sources = [
+        "$c//w",
+        "$c//w[1]",
+        "$c/a//b[2]/w[2]",
+        "$c//b//w",
+        "$c//b[@id=3]/w",
+        "$c/a/b[w=10]/w",
+        "$c/a/b[w='20']/w[position()=2]",
+        "$c//w[position()=last()]",
+        "$c//b/@id",
+        "$c//b[w=11]/w",
+        "$c//v",
+        "$c//",
+        "$c///w",
+        "$c/a/b[position()<2]/w",
+    ];
+    let all: String = sources.iter().map(|source| of(&source.replace('<', "&lt;"), false)).collect();
+    expect![[r#"
+        $c//w: Many([Text("10"), Text("20"), Text("21"), Text("30")])
+        $c//w[1]: Many([Text("10"), Text("20"), Text("30")])
+        $c/a//b[2]/w[2]: Many([Text("21")])
+        $c//b//w: Many([Text("10"), Text("20"), Text("21"), Text("30")])
+        $c//b[@id=3]/w: Many([Text("30")])
+        $c/a/b[w=10]/w: Many([Text("10")])
+        $c/a/b[w='20']/w[position()=2]: Many([Text("21")])
+        $c//w[position()=last()]: Many([Text("10"), Text("21"), Text("30")])
+        $c//b/@id: Many([Text("1"), Text("2"), Text("3")])
+        $c//b[w=11]/w: 3:101-108 error S2023: no part here has `11` as its part `w`
+        $c//v: 3:101-102 error S2023: there is no part `v`; the parts are `a`, `b` and `w`
+        $c//: 3:100-101 error S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $c///w: 3:100-101 error S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $c/a/b[position()&lt;2]/w: 3:102-120 error S2023: `b[position()<2]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+    "#]].assert_eq(&all);
+    // Another program may understand more.
+    let all: String = ["count($c/a/b)", "$c/a/b[position()&gt;1]/w", "$c/x"]
+        .iter()
+        .map(|source| of(source, true))
+        .collect();
+    expect![[r#"
+        count($c/a/b): 3:97-110 warning S2023: `count($c/a/b)` names no property of the composite
+          help: write `$name`, or `$name/part` for a part of a complex property
+          help: another program may understand it: it is taken as given
+        $c/a/b[position()&gt;1]/w: 3:102-120 warning S2023: `b[position()>1]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+          help: another program may understand it: it is taken as given
+        $c/x: 3:100-101 error S2023: there is no part `x`; the parts are `a`
+    "#]].assert_eq(&all);
 }

@@ -111,3 +111,99 @@ fn a_property_for_one_value_has_one() {
     "#]]
     .assert_eq(&faults(inner));
 }
+
+#[test]
+fn values_are_written_as_their_types_ask_for() {
+    let right = [
+        ("date", "2026-11-22"),
+        ("date", "-0044-02-29Z"),
+        ("time", "23:59:59.5+01:00"),
+        ("time", "24:00:00"),
+        ("dateTime", "2026-11-22T12:30:00"),
+        ("duration", "-P1Y2M3DT4H5M6.7S"),
+        ("duration", "PT1H"),
+        ("gYear", "2026"),
+        ("gYearMonth", "2026-11"),
+        ("gMonth", "--11"),
+        ("gMonthDay", "--02-29"),
+        ("gDay", "---31"),
+        ("QName", "t:x"),
+        ("NCName", "a.b-c"),
+        ("ID", "_1"),
+        ("NMTOKEN", "1:2"),
+        ("language", "de-AT-1996"),
+        ("hexBinary", "0aFF"),
+        ("hexBinary", ""),
+        ("base64Binary", "YQ=="),
+        ("anyURI", "http://x/%20 y"),
+        ("string", ""),
+        ("t:date", "soon"),
+    ];
+    let wrong = [
+        ("date", "2026-13-01"),
+        ("date", "2026-02-30"),
+        ("date", "26-01-01"),
+        ("time", "25:00:00"),
+        ("time", "12:30"),
+        ("dateTime", "2026-11-22"),
+        ("dateTime", "2026-11-22Z T1:00:00"),
+        ("duration", "5"),
+        ("duration", "P"),
+        ("duration", "PT"),
+        ("duration", "P1H"),
+        ("duration", "P1.5D"),
+        ("gYear", "x"),
+        ("gYearMonth", "2026-13"),
+        ("gMonth", "11"),
+        ("gMonthDay", "--02-30"),
+        ("gDay", "---32"),
+        ("QName", "a:b:c"),
+        ("NCName", "a b"),
+        ("ID", "1"),
+        ("NMTOKEN", "a b"),
+        ("language", "!!"),
+        ("hexBinary", "xyz"),
+        ("base64Binary", "*"),
+        ("anyURI", "%%% ^"),
+        ("int", ""),
+    ];
+    let all = |values: &[(&str, &str)]| {
+        let property = |(place, (of, value)): (usize, &(&str, &str))| {
+            let of = if of.contains(':') { (*of).to_owned() } else { format!("xsd:{of}") };
+            format!("<property name='p{place}' type='{of}' value='{value}'/>\n")
+        };
+        given(&values.iter().enumerate().map(property).collect::<String>())
+    };
+    assert_eq!(all(&right), "");
+    let told = all(&wrong);
+    for place in 0..wrong.len() {
+        assert!(
+            told.contains(&format!("error S3007: the property `p{place}` is of the type")),
+            "{:?}\n{told}",
+            wrong[place]
+        );
+    }
+    expect![[r#"
+        3:44-54 error S3007: the property `p0` is of the type `xsd:date`: found `2026-13-01`, expected a date such as `2026-11-22`
+          3:27-35 the type
+          help: change the value, or the type
+        4:44-54 error S3007: the property `p1` is of the type `xsd:date`: found `2026-02-30`, expected a date such as `2026-11-22`
+          4:27-35 the type
+          help: change the value, or the type
+    "#]].assert_eq(&all(&wrong[..2]));
+    expect![[r#"
+        3:2-10 error S3007: the property `p0` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+          3:27-34 the type
+          help: change the value, or the type
+    "#]].assert_eq(&all(&[("int", "")]));
+}
+
+#[test]
+fn variables_have_names_that_somebody_can_set() {
+    let told = given(
+        "</component><property name='n' xmlns:saoms='urn:saoms:1' saoms:env='9 bad' many='false'>2</property><component name='B'><implementation.java class='x.B'/><property name='p' source='$n'/>",
+    );
+    expect![[r#"
+        3:69-74 error S1011: `9 bad` is no name of an environment variable: it has letters, digits and `_`, and no digit first
+    "#]].assert_eq(&told);
+}

@@ -80,6 +80,10 @@ fn what_is_deployable_runs_and_what_nobody_names_is_a_fleet_of_its_own() {
         about.composite
         broken.composite
         lib/fleet.composite runs
+        META-INF/sca-contribution.xml:2:57 [other] warning S1011 `other` does not say its namespace
+          write it with a prefix of the target namespace of the composite
+        META-INF/sca-contribution.xml:2:88 [u:fleet] warning S1011 the prefix `u` is bound to no namespace
+          write it with a prefix of the target namespace of the composite
     "#]]
     .assert_eq(&fleets(&files));
 }
@@ -177,4 +181,23 @@ fn composites_of_one_name_are_told_as_far_as_the_folder_is_one_contribution() {
         fleet.composite S2001
     "#]]
     .assert_eq(&crate::named::links(&files, "fleet.composite"));
+}
+
+#[test]
+fn deployables_say_their_namespace_once() {
+    let text = deployables(&["a:fleet", "fleet", "zz:fleet", "a:fleet"])
+        .replace("</contribution>", "<import.jva package='x'/></contribution>");
+    let files = [("fleet.composite", composite("urn:a", "fleet", "")), ("sca-contribution.xml", text)];
+    expect![[r#"
+        fleet.composite runs
+        sca-contribution.xml:2:57 [fleet] warning S1011 `fleet` does not say its namespace
+          write it with a prefix of the target namespace of the composite
+        sca-contribution.xml:2:88 [zz:fleet] warning S1011 `zz:fleet` is called deployable twice
+          keep one of them
+        sca-contribution.xml:2:122 [a:fleet] warning S1011 `a:fleet` is called deployable twice
+          keep one of them
+        sca-contribution.xml:2:133 [import.jva] error S1004 SCA 1.1 has no element `import.jva`
+          replace `import.jva` with `import.java`
+    "#]]
+    .assert_eq(&fleets(&files));
 }
