@@ -57,8 +57,9 @@ fn around<'t>(text: &'t str, start: &str) -> (&'t str, &'t str) {
         return text.find(start).map_or((text, ""), |at| (&text[..at], ""));
     }
     // The rows of a table, behind the last of the codes of the core.
-    let rows = text.split_inclusive('\n').filter(|line| line.starts_with("| S") && !line.starts_with(start));
-    let last = rows.last().unwrap();
+    let mut rows =
+        text.split_inclusive('\n').filter(|line| line.starts_with("| S") && !line.starts_with(start));
+    let last = rows.next_back().unwrap();
     let begin = text.find(last).unwrap() + last.len();
     let of_part = text[begin..].split_inclusive('\n').take_while(|line| line.starts_with(start));
     let end = begin + of_part.map(str::len).sum::<usize>();

@@ -1,5 +1,6 @@
 //! Topics: who publishes and who reads them, and under which names.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use saoms_core::registry::TopicDeclaration;
@@ -100,20 +101,24 @@ impl Scene {
 
     /// Every place of a topic: where it gets its name, or else the classes of the components that have it. Those that publish it define it.
     pub(super) fn places_of_topic(&self, name: &str) -> Vec<Occurrence> {
-        let uses = self.uses_of_topics().into_iter().filter(|one| one.name == name);
-        let all = uses.map(|one| {
+        // A component that publishes a topic and reads it has it at one place.
+        let mut places: BTreeMap<Place, bool> = BTreeMap::new();
+        for one in self.uses_of_topics().into_iter().filter(|one| one.name == name) {
             let class = match &one.component.implementation {
                 Some(Implementation::Class(class)) => class.at.clone(),
                 _ => one.component.name.at.clone(),
             };
-            Occurrence {
-                symbol: Symbol::Topic { name: name.to_owned() },
-                at: Place::of(one.file, &one.at.unwrap_or(class)),
-                is_definition: one.topic.is_published,
-                is_in_expression: false,
-            }
-        });
-        all.collect()
+            let at = Place::of(one.file, &one.at.unwrap_or(class));
+            *places.entry(at).or_default() |= one.topic.is_published;
+        }
+        let symbol = Symbol::Topic { name: name.to_owned() };
+        let occurrence = |(at, is_definition)| Occurrence {
+            symbol: symbol.clone(),
+            at,
+            is_definition,
+            is_in_expression: false,
+        };
+        places.into_iter().map(occurrence).collect()
     }
 
     /// What there is to say about a topic of the fleet.

@@ -8,10 +8,10 @@ use super::contracts::of_class;
 use super::fleet::{Fleet, Kind, Unit};
 use super::offer::Side;
 use super::report::{Report, list};
-use super::target::{Uri, spread};
+use super::target::{Uri, parts, spread};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
-use crate::model::{Multiplicity, Part, Reference};
+use crate::model::{Binding, Multiplicity, Part, Reference};
 use crate::source::{Location, Text};
 
 /// A reference of a component, by its name.
@@ -74,7 +74,9 @@ pub(super) fn check<'f>(
                     }
                 }
                 None => {
-                    if !found.is_empty() && reference.targets.is_empty() {
+                    let has_address = || has_address(reference.bindings());
+                    let needs_target = || found.iter().any(|inner| needs_target(*inner, fleet, classes));
+                    if reference.targets.is_empty() && !has_address() && needs_target() {
                         unwired(reference, report);
                     }
                     for inner in found {
@@ -147,6 +149,44 @@ fn may_be_promoted(
     let narrower: Vec<&str> =
         Multiplicity::ALL.into_iter().filter(|one| one.narrows(inner)).map(Multiplicity::name).collect();
     report.push(one.help(format!("it can be {}", list(narrower))));
+}
+
+/// Whether a binding says where calls go, so that nothing else has to.
+fn has_address(bindings: &[Binding]) -> bool {
+    bindings.iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
+}
+
+/// Whether the reference of a component comes to that of a class, by nothing that has an address of its own.
+fn needs_target(place: Place<'_>, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> bool {
+    let mut waiting = vec![place];
+    let mut seen = HashSet::new();
+    while let Some((member, name)) = waiting.pop() {
+        if !seen.insert((member, name)) {
+            continue;
+        }
+        let own = fleet.members[member].component.reference(name);
+        if own.is_some_and(|own| has_address(own.bindings())) {
+            continue;
+        }
+        let Some(inner) = fleet.inner(member) else {
+            if fleet.class_of(member, classes).is_some() {
+                return true;
+            }
+            continue;
+        };
+        for reference in inner.references().filter(|one| one.name == name && !has_address(one.bindings())) {
+            for promote in reference.promote() {
+                let (component, part) = parts(promote);
+                let Some(member) = fleet.find(inner.scope, component) else { continue };
+                let only = || match &fleet.members[member].component.references[..] {
+                    [only] => Some(only.name.as_str()),
+                    _ => None,
+                };
+                waiting.extend(part.or_else(only).map(|name| (member, name)));
+            }
+        }
+    }
+    false
 }
 
 fn unwired(reference: &Reference, report: &mut Report<'_>) {

@@ -82,6 +82,8 @@ impl Loader<'_> {
         let name = meant_name(element);
         if let Some((_, attributes)) = REQUIRED.iter().find(|(known, _)| *known == name) {
             for attribute in *attributes {
+                // Nobody else looks at the names of these attributes.
+                self.misspelt(element, attribute);
                 self.required(element, attribute);
             }
         }
@@ -101,6 +103,25 @@ impl Loader<'_> {
             }
             _ => {}
         }
+    }
+
+    /// Reports an attribute in whose place the one of this name is meant.
+    fn misspelt(&mut self, element: Element<'_>, meant: &str) {
+        let mut all = element.attributes().filter(|one| one.namespace().is_empty());
+        let Some(slip) = all.find(|one| one.name() != meant && nearest(one.name(), [meant]).is_some()) else {
+            return;
+        };
+        if element.attribute(meant).is_some() {
+            return;
+        }
+        let location = slip.name_span().in_file(element.document().file());
+        let message = format!("{} has no attribute {}", quoted(element.name()), quoted(slip.name()));
+        let description = format!("replace {} with {}", quoted(slip.name()), quoted(meant));
+        self.report(Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message).suggest(
+            description,
+            location,
+            meant,
+        ));
     }
 
     /// The properties by which services of OSGi are found or offered.

@@ -146,3 +146,28 @@ fn implementations_wire_all_that_is_promoted_together_or_nothing() {
           help: give all of them one `wiredByImpl`, or promote them apart
     "#]].assert_eq(&given(wrong));
 }
+
+#[test]
+fn a_promoted_reference_is_wired_where_it_has_an_address_or_nobody_knows_what_takes_it() {
+    let told = |component: &str, inside: &str| {
+        let around = format!(
+            "<reference name='R' promote='I/r'/>\n<component name='I'><implementation.composite name='t:in'/>{inside}</component>"
+        );
+        let inner = part("in", "", &format!("<reference name='r' promote='C/gps'/>\n{component}"));
+        let (_, diagnostics, sources) = nested(&[&part("fleet", "", &around), &inner], &[], true);
+        diagnostics.iter().map(|one| shown(one, &sources)).collect::<String>()
+    };
+    let class = |class: &str| {
+        format!(
+            "<component name='C'><implementation.java class='{class}'/><property name='ID'>R</property><property name='period'>1</property><reference name='gps'/></component>"
+        )
+    };
+    expect![[r#"
+        2:18-19 warning S2022: reference `R` of the composite is wired to nothing: calls through it fail
+          help: the composite runs by itself, and nothing around it can wire its references
+    "#]]
+    .assert_eq(&told(&class("example.Robot001"), ""));
+    let address = "<reference name='r'><binding.ws uri='http://x'/></reference>";
+    expect![[""]].assert_eq(&told(&class("example.Robot001"), address));
+    expect![[""]].assert_eq(&told(&class("unknown.Robot"), ""));
+}

@@ -30,6 +30,22 @@ fn bindings_of_ejb_are_of_a_known_kind() {
 }
 
 #[test]
+fn attributes_that_implementations_need_can_be_misspelt() {
+    let told = |implementation: &str, expected: &str| {
+        faults_1_1(&format!("<component name='a'>\n{implementation}</component>"), expected);
+    };
+    told("<implementation.spring location='x'/>", "");
+    told(
+        "<implementation.spring locaton='x'/>",
+        "3:24 [locaton] error S1007 `implementation.spring` has no attribute `locaton` | replace `locaton` with `location`",
+    );
+    told(
+        "<implementation.spring/>",
+        "3:2 [implementation.spring] error S1008 `implementation.spring` needs the attribute `location`",
+    );
+}
+
+#[test]
 fn formats_are_of_those_who_make_bindings() {
     binding("<binding.sca><wireFormat.default/><operationSelector.own/></binding.sca>", "");
     binding(
