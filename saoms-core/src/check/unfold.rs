@@ -15,7 +15,7 @@ use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Include, Link, Missing, Naming};
-use crate::source::Location;
+use crate::xml::Element;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
 pub(super) const MOST_MEMBERS: usize = 1_000_000;
@@ -132,11 +132,24 @@ fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut Hash
     size
 }
 
-/// A component as it stands in its file.
-fn written<'c>(composite: &'c Composite, component: &Component) -> Option<(Location, &'c str)> {
-    let span = component.origin.element(&composite.document).span();
-    let text = composite.document.text().get(span.start as usize..span.end as usize)?;
-    Some((span.in_file(component.origin.file()), text))
+/// Whether two elements say the same in the same words, however they are laid out.
+fn is_same(one: Element<'_>, other: Element<'_>) -> bool {
+    let says = |element: Element<'_>| {
+        let attributes: Vec<_> = element
+            .written_attributes()
+            .map(|one| (one.name().to_owned(), one.value().into_owned()))
+            .collect();
+        let text = element.trimmed_text().map(|text| text.value);
+        (element.name().to_owned(), attributes, text, element.children().count())
+    };
+    let (mut mine, mut others) = (one.descendants(), other.descendants());
+    loop {
+        match (mine.next(), others.next()) {
+            (None, None) => return true,
+            (Some(one), Some(other)) if says(one) == says(other) => {}
+            _ => return false,
+        }
+    }
 }
 
 /// A composite whose components are being collected.
@@ -345,10 +358,11 @@ impl<'a> Unfolding<'a> {
         if let Some(by) = by.filter(|_| first.composite.file() != component.origin.file()) {
             one = one.label(by.name.location, "included here");
         }
-        let here = self.open.last().and_then(|open| written(open.composite, component));
-        let there = written(first.composite, first.component);
+        let here = self.open.last().map(|open| component.origin.element(&open.composite.document));
+        let there = first.component.origin.element(&first.composite.document);
         report.push(match here {
-            Some((at, _)) if !first.is_copy && here.map(|here| here.1) == there.map(|there| there.1) => {
+            Some(here) if !first.is_copy && is_same(here, there) => {
+                let at = here.span().in_file(component.origin.file());
                 one.suggest("remove the second: both are the same, word for word", at, "")
             }
             _ => one.help("give each its own name"),

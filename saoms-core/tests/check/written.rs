@@ -176,11 +176,10 @@ fn values_are_written_as_their_types_ask_for() {
     };
     assert_eq!(all(&right), "");
     let told = all(&wrong);
-    for place in 0..wrong.len() {
+    for (place, one) in wrong.iter().enumerate() {
         assert!(
             told.contains(&format!("error S3007: the property `p{place}` is of the type")),
-            "{:?}\n{told}",
-            wrong[place]
+            "{one:?}\n{told}"
         );
     }
     expect![[r#"
