@@ -6,6 +6,7 @@ mod assemblies;
 mod classes;
 mod component_types;
 mod corpus;
+mod environment;
 mod expanded;
 mod files;
 mod findings;
