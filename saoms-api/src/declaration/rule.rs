@@ -1,8 +1,8 @@
-use std::cmp::Ordering;
 use std::fmt;
 use std::time::Duration;
 
 use crate::parse_duration;
+use crate::time::read_duration;
 
 /// The type of a property, as declarations name it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -74,18 +74,6 @@ pub enum Scalar {
     Duration(Duration),
 }
 
-impl Scalar {
-    /// Their order; `None` for values of different types.
-    fn compare(&self, other: &Scalar) -> Option<Ordering> {
-        match (self, other) {
-            (Scalar::Integer(one), Scalar::Integer(other)) => Some(one.cmp(other)),
-            (Scalar::Float(one), Scalar::Float(other)) => one.partial_cmp(other),
-            (Scalar::Duration(one), Scalar::Duration(other)) => Some(one.cmp(other)),
-            _ => None,
-        }
-    }
-}
-
 /// What one scalar property accepts, as its declaration says. The checker and the component read values through it, so they agree.
 ///
 /// ```
@@ -127,7 +115,12 @@ impl<'a> Rule<'a> {
         match self.kind {
             PropertyKind::String => self.text(text).map(|()| Scalar::Text(text.to_owned())),
             PropertyKind::Enumeration => self.text(text).map(|()| Scalar::Text(text.trim().to_owned())),
-            _ => self.number(text),
+            PropertyKind::Integer => self.within(text, integer).map(Scalar::Integer),
+            PropertyKind::Float => self.within(text, float).map(Scalar::Float),
+            PropertyKind::Duration => self.within(text, duration).map(Scalar::Duration),
+            PropertyKind::Boolean => self.within(text, boolean).map(Scalar::Boolean),
+            // No text is one.
+            PropertyKind::Complex => self.within(text, |_| None::<bool>).map(Scalar::Boolean),
         }
     }
 
@@ -138,7 +131,10 @@ impl<'a> Rule<'a> {
     pub fn allows(&self, text: &str) -> Result<(), String> {
         match self.kind {
             PropertyKind::String | PropertyKind::Enumeration => self.text(text),
-            _ => self.number(text).map(drop),
+            PropertyKind::Integer => self.within(text, integer).map(drop),
+            PropertyKind::Float => self.within(text, float).map(drop),
+            PropertyKind::Duration => self.within(text, duration).map(drop),
+            _ => self.check(text).map(drop),
         }
     }
 
@@ -154,17 +150,19 @@ impl<'a> Rule<'a> {
         }
     }
 
-    fn number(&self, text: &str) -> Result<Scalar, String> {
-        if trim(text).is_empty() {
+    /// Reads a value that has an order, and compares it with the bounds.
+    fn within<T: PartialOrd>(&self, text: &str, read: impl Fn(&str) -> Option<T>) -> Result<T, String> {
+        let trimmed = trim(text);
+        if trimmed.is_empty() {
             return Err(format!("the value is empty: expected {}", Expected(self)));
         }
-        let Some(value) = parse_scalar(self.kind, text) else {
+        let Some(value) = read(trimmed) else {
             return Err(self.refusal(why_not(self.kind, text), text));
         };
-        let order = |bound: Option<&str>| value.compare(&parse_scalar(self.kind, bound?)?);
-        let below = order(self.min) == Some(Ordering::Less);
-        let above = order(self.max) == Some(Ordering::Greater)
-            || matches!(order(self.exclusive_max), Some(Ordering::Greater | Ordering::Equal));
+        let bound = |bound: Option<&str>| read(trim(bound?));
+        let below = bound(self.min).is_some_and(|min| value < min);
+        let above = bound(self.max).is_some_and(|max| value > max)
+            || bound(self.exclusive_max).is_some_and(|max| value >= max);
         if below || above { Err(self.refusal("out of range", text)) } else { Ok(value) }
     }
 
@@ -182,18 +180,11 @@ impl<'a> Rule<'a> {
 pub fn parse_scalar(kind: PropertyKind, text: &str) -> Option<Scalar> {
     let trimmed = trim(text);
     match kind {
-        PropertyKind::Boolean => match trimmed {
-            "true" | "1" => Some(Scalar::Boolean(true)),
-            "false" | "0" => Some(Scalar::Boolean(false)),
-            _ => None,
-        },
+        PropertyKind::Boolean => boolean(trimmed).map(Scalar::Boolean),
         PropertyKind::Integer => integer(trimmed).map(Scalar::Integer),
-        // `parse` also knows `inf` and `NaN`, which no range could refuse.
-        PropertyKind::Float => {
-            trimmed.parse().ok().filter(|value: &f64| value.is_finite()).map(Scalar::Float)
-        }
+        PropertyKind::Float => float(trimmed).map(Scalar::Float),
         PropertyKind::String => Some(Scalar::Text(text.to_owned())),
-        PropertyKind::Duration => parse_duration(trimmed).ok().map(Scalar::Duration),
+        PropertyKind::Duration => duration(trimmed).map(Scalar::Duration),
         PropertyKind::Enumeration => Some(Scalar::Text(trimmed.to_owned())),
         PropertyKind::Complex => None,
     }
@@ -206,6 +197,23 @@ pub(crate) fn trim(text: &str) -> &str {
         [only] if only.is_ascii_graphic() => text,
         _ => text.trim(),
     }
+}
+
+fn boolean(text: &str) -> Option<bool> {
+    match text {
+        "true" | "1" => Some(true),
+        "false" | "0" => Some(false),
+        _ => None,
+    }
+}
+
+/// A number; `parse` also knows `inf` and `NaN`, which no range could refuse.
+fn float(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|value: &f64| value.is_finite())
+}
+
+fn duration(text: &str) -> Option<Duration> {
+    read_duration(text).ok()
 }
 
 /// A whole number; those of ordinary size are read much faster than 128 bits are.

@@ -4,14 +4,18 @@
 //! processor, where one with the names in it is not; looking names up would take a tenth of the time of a check otherwise.
 
 use std::hash::BuildHasher;
+use std::hint::black_box;
 
 use super::fleet::Member;
 use crate::hash::Seeded;
 
+/// Names that [`ByName::warm`] takes at once: about as many as a processor has reads of memory under way.
+pub(super) const AT_ONCE: usize = 32;
+
 /// The components of a fleet by scope and name; of each name one.
 #[derive(Default)]
 pub(super) struct ByName {
-    /// As many as a power of two, at least twice as many as are taken. Where one is taken already, the next one is.
+    /// As many as a power of two, at least half as many again as are taken. Where one is taken already, the next one is.
     slots: Vec<Slot>,
     taken: usize,
     hashing: Seeded,
@@ -32,7 +36,7 @@ impl ByName {
     pub(super) fn with_capacity(count: usize) -> Self {
         let mut all = Self::default();
         if count > 0 {
-            all.slots = vec![FREE; (2 * count).next_power_of_two()];
+            all.slots = vec![FREE; (count + count.div_ceil(2)).next_power_of_two()];
         }
         all
     }
@@ -43,10 +47,26 @@ impl ByName {
         (slot.member != FREE.member).then_some(slot.member as usize)
     }
 
+    /// Looks at what [`get`](Self::get) will look at for each of these names. A name that is looked up waits for memory three times, one
+    /// after the other; many of them wait together.
+    pub(super) fn warm<'n>(&self, names: impl Iterator<Item = (usize, &'n str)>, members: &[Member<'_>]) {
+        let Some(last) = self.slots.len().checked_sub(1) else { return };
+        let mut slots = [0; AT_ONCE];
+        let mut count = 0;
+        for (slot, (scope, name)) in slots.iter_mut().zip(names) {
+            *slot = (self.hash(scope, name) >> 32) as usize & last;
+            count += 1;
+        }
+        let slots = slots[..count].iter().map(|at| self.slots[*at].member);
+        let seen = slots.filter_map(|member| members.get(member as usize)).map(|member| member.component);
+        black_box(seen.fold(0, |sum, component| sum + component.name.len()));
+    }
+
     /// Adds the component at a place, in place of another one of its name.
     pub(super) fn insert(&mut self, place: usize, members: &[Member<'_>]) {
-        if 2 * (self.taken + 1) > self.slots.len() {
-            let larger = Self { hashing: self.hashing, ..Self::with_capacity(self.taken + 1) };
+        let count = self.taken + 1;
+        if count + count.div_ceil(2) > self.slots.len() {
+            let larger = Self { hashing: self.hashing, ..Self::with_capacity(2 * count) };
             let before = std::mem::replace(self, larger);
             before.places().for_each(|place| self.insert(place, members));
         }
@@ -80,7 +100,7 @@ impl ByName {
             if slot.member == FREE.member || is_it() {
                 return Some(at);
             }
-            // At least half of them are free.
+            // At least a third of them are free.
             at = (at + 1) & last;
         }
     }

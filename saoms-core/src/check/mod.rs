@@ -299,7 +299,7 @@ fn components<'f, 'a>(
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, ((member, checked), loops)) in fleet.members.iter().zip(checked).zip(loops).enumerate() {
         report.about(member);
-        let (Kind::Class(index), Some(checked)) = (member.kind, checked) else {
+        let (Kind::Class(index), Some(mut checked)) = (member.kind, checked) else {
             all.push(None);
             continue;
         };
@@ -316,12 +316,13 @@ fn components<'f, 'a>(
         let renamed = renamed.unwrap_or_default();
         let task = task.and_then(|task| task.settings);
         let sound = checked.is_sound && is_periodic == task.is_some();
-        let mut values = checked.values(&class.slots, |slot| slot.own);
-        let absent =
-            class.class.presets().iter().filter(|(name, _)| checked.get(&class.slots, name).is_none());
-        values.extend(absent.cloned());
+        let presets = class.class.presets().iter();
+        let absent = presets.filter(|(name, _)| checked.get(&class.slots, name).is_none());
+        let absent: Vec<(String, PropertyValue)> = absent.cloned().collect();
         let queue = checked.get(&class.slots, "queue").map(|given| given.place);
         let written = checked.places(&class.slots);
+        let mut values = checked.take_values(&class.slots);
+        values.extend(absent);
         let resolved = match loops.filter(|_| sound) {
             Some(loops) => Some(Box::new(Resolved { values, written, task, renamed, queue, loops })),
             None if member.has_open_values() => None,

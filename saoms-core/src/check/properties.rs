@@ -96,6 +96,17 @@ impl Checked {
         places.collect()
     }
 
+    /// Takes the values of the class's own properties.
+    pub(super) fn take_values(&mut self, slots: &Slots<'_>) -> Vec<(String, PropertyValue)> {
+        let mut values = Vec::with_capacity(self.given.len());
+        values.extend(
+            self.given
+                .drain(..)
+                .filter_map(|given| Some((slots.all[given.slot].own?.name.clone(), given.value))),
+        );
+        values
+    }
+
     /// The values of those properties that `of` finds a declaration for.
     pub(super) fn values<'r>(
         &self,

@@ -51,7 +51,7 @@ struct Copied {
 const MOST_COPIES: usize = 2000;
 
 /// How many diagnostics are remembered.
-const REMEMBERED: usize = 100_000;
+const REMEMBERED: usize = 20_000;
 
 impl<'a> Report<'a> {
     pub(super) fn new(sources: &'a Sources, diagnostics: &'a mut Diagnostics) -> Self {

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::arena::{Arena, End};
-use super::by_name::ByName;
+use super::by_name::{AT_ONCE, ByName};
 use super::fleet::{Fleet, Kind, Member, Scope, Unit};
 use super::instance::{Instance, Replica};
 use super::once;
@@ -246,8 +246,21 @@ impl<'a> Unfolding<'a> {
             match self.open[last].next() {
                 None => _ = self.open.pop(),
                 Some(Next::Include(include)) => self.include(include, report),
-                Some(Next::Component(component)) => self.component(component, report),
+                Some(Next::Component(component)) => {
+                    self.warm(last);
+                    self.component(component, report);
+                }
             }
+        }
+    }
+
+    /// Has the memory for the names of the next components ready, before each of them is looked up.
+    fn warm(&self, open: usize) {
+        let Open { composite, next_component, unit, .. } = self.open[open];
+        if next_component % AT_ONCE == 1 {
+            let scope = self.fleet.units[unit].scope;
+            let next = composite.components[next_component - 1..].iter();
+            self.fleet.by_name.warm(next.map(|one| (scope, one.name.as_str())), &self.fleet.members);
         }
     }
 

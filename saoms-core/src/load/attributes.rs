@@ -277,9 +277,8 @@ impl Loader<'_> {
     /// The words of an attribute that is a list.
     pub(super) fn list(&mut self, element: Element<'_>, name: &str) -> Vec<Text> {
         let Some(attribute) = self.attribute(element, name) else { return Vec::new() };
-        if attribute.is_plain() && !attribute.raw_value().is_empty() {
-            // One word, as most lists are.
-            return vec![attribute.trimmed()];
+        if let Some(word) = attribute.only_word() {
+            return vec![word];
         }
         let mut words = if self.is_replicated {
             attribute.words_with_expressions().take(MOST_WORDS + 1).collect()

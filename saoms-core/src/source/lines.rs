@@ -54,7 +54,7 @@ impl LineIndex {
         let at = text.floor_char_boundary(at as usize);
         let line = self.starts.partition_point(|&start| start as usize <= at);
         let start = self.starts[line - 1] as usize;
-        let start = (start + mark(&text[start..])).min(at.max(start));
+        let start = if start == 0 { mark(text).min(at) } else { start };
         let column = self.before(text, at).saturating_sub(self.before(text, start)) + 1;
         LineColumn { line: line as u32, column }
     }
@@ -65,7 +65,7 @@ impl LineIndex {
         let end = self.starts.get(line).map_or(text.len(), |&next| next as usize);
         let content = text[start..end].trim_end_matches(['\r', '\n']);
         let end = start + content.len();
-        let start = start + mark(content);
+        let start = if start == 0 { mark(content) } else { start };
         let columns = place.column.max(1) - 1;
         let Some(scalars) = &self.scalars else {
             return start.saturating_add(columns as usize).min(end) as u32;
@@ -98,9 +98,10 @@ impl LineIndex {
     }
 }
 
-/// The length of the byte order mark that a line starts with. It is no character of the line: editors do not show it.
-fn mark(line: &str) -> usize {
-    if line.starts_with('\u{feff}') { 3 } else { 0 }
+/// The length of the byte order mark that a text starts with. It is no character of the first line: editors do not show it. Elsewhere it is a
+/// character like others.
+fn mark(text: &str) -> usize {
+    if text.starts_with('\u{feff}') { 3 } else { 0 }
 }
 
 fn counted(bytes: &[u8]) -> u32 {

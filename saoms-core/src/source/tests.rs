@@ -17,6 +17,8 @@ fn columns_count_scalars_and_lines_end_as_in_xml() {
     assert_eq!(place("a\rb", 2), (2, 1));
     assert_eq!(place("é😀x", 6), (1, 3));
     assert_eq!(place("\u{feff}ab", 4), (1, 2));
+    assert_eq!(place("a\n\u{feff}b", 2), (2, 1), "a mark is one at the start of a text alone");
+    assert_eq!(place("a\n\u{feff}b", 5), (2, 2));
     assert_eq!(place("a\n", 2), (2, 1));
 }
 

@@ -346,11 +346,6 @@ impl<'a> Attribute<'a> {
         self.span().in_file(self.document.file)
     }
 
-    /// Whether the value means itself, and has no white space in it.
-    pub(crate) fn is_plain(self) -> bool {
-        value::is_plain(self.raw_value().as_bytes())
-    }
-
     /// The value and where it is, when it is a name as most are: not empty, and of ASCII without white space and `/`.
     pub(crate) fn plain_name(self) -> Option<Text> {
         let name = self.raw_value();
@@ -358,13 +353,17 @@ impl<'a> Attribute<'a> {
         is_plain.then(|| Located::new(name.into(), self.value.in_file(self.document.file)))
     }
 
+    /// The value and where it is, when it is one word as most are, without white space or references.
+    pub(crate) fn only_word(self) -> Option<Text> {
+        let word = self.raw_value();
+        let is_word = !word.is_empty() && value::is_plain(word.as_bytes());
+        is_word.then(|| Located::new(word.into(), self.value.in_file(self.document.file)))
+    }
+
     /// The value and where it is, white space at its ends left out.
     pub fn trimmed(self) -> Text {
-        // Most values are names: one look at their bytes tells that they mean themselves.
-        if self.is_plain() {
-            return Located::new(self.raw_value().into(), self.value.in_file(self.document.file));
-        }
-        self.located(value::trim(self.raw_value()))
+        // One look at the bytes of most values tells that they mean themselves.
+        self.only_word().unwrap_or_else(|| self.located(value::trim(self.raw_value())))
     }
 
     /// The words of a value that is a list, each with its own place.
