@@ -29,6 +29,7 @@ mod lexical;
 mod loops;
 mod multiplicity;
 mod names;
+mod naming;
 mod offer;
 mod once;
 mod options;

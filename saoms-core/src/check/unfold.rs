@@ -7,14 +7,16 @@ use super::arena::{Arena, End};
 use super::by_name::{AT_ONCE, ByName};
 use super::fleet::{Fleet, Kind, Member, Scope, Unit};
 use super::instance::{Instance, Replica};
+use super::naming;
 use super::once;
 use super::options::Options;
 use super::presence::Presence;
 use super::replicas::{MOST_REPLICAS, Plan};
 use super::report::Report;
-use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::hash::Map;
-use crate::model::{Component, Composite, Contribution, Include, Link, Missing, Naming};
+use crate::model::{Component, Composite, Contribution, Include, Link, Naming};
+use crate::source::Location;
 use crate::xml::Element;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
@@ -51,6 +53,7 @@ pub(super) fn unfold<'a>(
         is_full: false,
         options,
         sizes: HashMap::new(),
+        loose: HashSet::new(),
         replicas: replicas.end(),
         replicas_left: MOST_REPLICAS,
     };
@@ -108,6 +111,8 @@ pub(super) struct Unfolding<'a> {
     pub(super) options: &'a Options,
     /// How many components the composites come to that were asked about.
     sizes: HashMap<usize, usize>,
+    /// The names that were told to mean something else than what they lead to.
+    loose: HashSet<Location>,
     pub(super) replicas: End<'a, Replica>,
     pub(super) replicas_left: u64,
 }
@@ -421,14 +426,21 @@ impl<'a> Unfolding<'a> {
     }
 
     /// The composite that a name leads to. A name that leads nowhere is reported.
-    fn find(&self, naming: Naming<'a>, report: &mut Report<'_>) -> Option<(usize, &'a Composite)> {
+    fn find(&mut self, naming: Naming<'a>, report: &mut Report<'_>) -> Option<(usize, &'a Composite)> {
         let contribution = self.fleet.contribution;
-        match contribution.link(naming.origin)? {
-            Link::To(place) => Some((*place, &contribution.composites()[*place])),
+        let link = contribution.link(naming.origin)?;
+        let around = self.open.last()?.composite;
+        match link {
+            Link::To(place) => {
+                let composite = &contribution.composites()[*place];
+                if !naming::is_exact(naming, around, composite) && self.loose.insert(naming.name.location) {
+                    report.push(naming::loose(naming, around, composite));
+                }
+                Some((*place, composite))
+            }
             Link::Faulty => None,
             Link::Missing(missing) => {
-                let composite = self.open.last()?.composite;
-                report.push(not_found(naming, missing, composite, self.options.assume_classes));
+                report.push(naming::not_found(naming, missing, around, self.options.assume_classes));
                 None
             }
         }
@@ -452,47 +464,4 @@ impl<'a> Unfolding<'a> {
         report.push(one);
         true
     }
-}
-
-fn not_found(
-    naming: Naming<'_>,
-    missing: &Missing,
-    composite: &Composite,
-    assume_classes: bool,
-) -> Diagnostic {
-    let name = naming.name;
-    let (namespaces, local) = composite.resolve_name(naming);
-    let of = match &namespaces {
-        None => String::new(),
-        Some(all) => match all.first().map_or("", |namespace| namespace.as_str()) {
-            "" => " in no namespace".to_owned(),
-            namespace => format!(" in the namespace {}", quoted(namespace)),
-        },
-    };
-    let is_include = naming.origin.element(&composite.document).local_name() == "include";
-    let code = if is_include { &codes::INCLUDE_NOT_FOUND } else { &codes::COMPOSITE_NOT_FOUND };
-    let message = format!("there is no composite {}{of}", quoted(local));
-    let mut one = Diagnostic::new(code, name.location, message);
-    // What is spelt alike is meant; anything else may come from another contribution.
-    if assume_classes && missing.near.is_empty() {
-        one = one.severity(Severity::Warning);
-    }
-    if namespaces.is_none() {
-        let prefix = name.split(':').next().unwrap_or_default();
-        one = one.help(format!("the prefix {} is bound to no namespace", quoted(prefix)));
-    }
-    if local.ends_with(".composite") {
-        one = one.help("it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file");
-    }
-    for near in &missing.near {
-        let replacement = super::report::escaped(near);
-        one = one.suggest(super::report::replacing(name, near), name.location, replacement);
-    }
-    for searched in &missing.searched {
-        one = one.help(searched.clone());
-    }
-    if missing.searched.is_empty() {
-        one = one.help("name the file of the composite beside this one");
-    }
-    one
 }

@@ -92,6 +92,9 @@ fn includes_that_cannot_be_say_so() {
         7:18-19 error S2002: there are two components `A`
           more:2:18-19 the first
           fix: remove the second: both are the same, word for word [7:1-75 ""]
+        more:2:90-95 warning S2030: `fleet` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
+          1:115-120 this one
+          fix: replace `fleet` with `t:fleet` [more:2:90-95 "t:fleet"]
         more:2:90-95 error S2032: composites hold each other in a circle: `fleet` -> `more` -> `fleet`
           2:16-22 through this
           help: a composite cannot be a part of itself: remove one of these
@@ -424,4 +427,49 @@ fn what_a_missing_include_would_bring_is_not_told_again() {
         let found: Vec<String> = found.iter().map(|one| shown(one, &sources)).collect();
         assert!(found.len() == 1 && found[0].contains("S2030"), "{found:?}");
     }
+}
+
+#[test]
+fn a_name_that_means_another_namespace_than_it_leads_to_says_so() {
+    let fleet = part(
+        "fleet",
+        "xmlns:u=\"urn:u\"",
+        "<include name=\"hall\"/>\n<include name=\"yard\"/>\n<component name=\"A\"><implementation.composite name=\"hall\"/></component>\n<component name=\"B\"><implementation.composite name=\"x:hall\"/></component>\n<include name=\"u:dock\"/>",
+    );
+    let gps = |name: &str| {
+        format!("<component name=\"{name}\"><implementation.java class=\"example.Gps\"/></component>")
+    };
+    let hall = part("hall", "", &gps("H"));
+    let yard = part("yard", "", &gps("Y")).replace("targetNamespace=\"urn:t\"", "");
+    let dock = part("dock", "", &gps("D")).replace("\"urn:t\"", "\"urn:u\"");
+    expect![[r#"
+        2:16-20 warning S2030: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
+          hall:1:115-119 this one
+          fix: replace `hall` with `t:hall` [2:16-20 "t:hall"]
+        3:16-20 warning S2030: `yard` without a prefix is in the default namespace, which is that of SCA: that in no namespace is taken
+          yard:1:92-96 this one
+          help: give it a `targetNamespace`, and name it with a prefix that is bound to that
+        4:53-57 warning S2031: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
+          hall:1:115-119 this one
+          fix: replace `hall` with `t:hall` [4:53-57 "t:hall"]
+        5:53-59 warning S2031: the prefix `x` is bound to no namespace: that of `urn:t` is taken
+          hall:1:115-119 this one
+          fix: replace `x:hall` with `t:hall` [5:53-59 "t:hall"]
+        yard:1:2-11 error S1009: `composite` has no `targetNamespace`
+          help: other composites refer to this one by its namespace and name
+    "#]].assert_eq(&outcome(&[&fleet, &hall, &yard, &dock], &[]));
+    // Where no prefix is bound, one is declared; a default namespace of the author's own is what is meant.
+    let no_prefix = fleet.replace("xmlns:t=\"urn:t\"", "").lines().take(2).collect::<Vec<_>>().join("\n")
+        + "</composite>";
+    expect![[r#"
+        2:16-20 warning S2030: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
+          hall:1:115-119 this one
+          fix: insert `xmlns:tns="urn:t"` into `composite`, and replace `hall` with `tns:hall` [1:11-11 " xmlns:tns=\"urn:t\""] [2:16-20 "tns:hall"]
+        H (example.Gps) other->
+    "#]].assert_eq(&outcome(&[&no_prefix, &hall], &[]));
+    let own = "<s:composite xmlns:s=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns=\"urn:t\" targetNamespace=\"urn:f\" name=\"fleet\"><s:include name=\"hall\"/></s:composite>";
+    expect![[r#"
+        H (example.Gps) other->
+    "#]]
+    .assert_eq(&outcome(&[own, &hall], &[]));
 }

@@ -95,7 +95,7 @@ fn example(code: &Code) -> Result<String, String> {
         }
         "S2035" => {
             let level = |level: u32| {
-                let inner = format!("<implementation.composite name=\"hall{}\"/>", level - 1);
+                let inner = format!("<implementation.composite name=\"t:hall{}\"/>", level - 1);
                 let one = |name| format!("    <component name=\"{name}\">{inner}</component>\n");
                 (
                     format!("hall{level}.composite"),
