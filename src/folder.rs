@@ -91,21 +91,21 @@ pub(crate) fn checked_each<T>(
         arguments.files.iter().cloned().partition(|path| path.is_dir());
     let mut fleets = Vec::new();
     if !files.is_empty() {
-        fleets.push(FolderFleet { files, is_deployable: true });
+        fleets.push(FolderFleet { files, is_deployable: true, is_exported: false });
     }
     for folder in &folders {
         fleets.extend(load_folder(folder, arguments.max_size, &mut sources, &mut diagnostics));
     }
     let options = options(arguments, asked, &mut sources, &mut diagnostics);
     let options = Options { shared_settings: fleets.len() > 1, ..options };
-    let mut merged = Merged { is_one: fleets.len() == 1, ..Merged::default() };
+    let mut merged = Merged::default();
     let count = fleets.len();
     merged.add(diagnostics.into_all(), true, &sources);
     let mut contribution = Contribution::default();
     let mut made = Vec::new();
     // Composites in one folder have the same plugins, whose faults are told once.
     let mut registries: HashMap<Vec<PathBuf>, Registry> = HashMap::new();
-    for FolderFleet { files, is_deployable } in fleets {
+    for FolderFleet { files, is_deployable, is_exported } in fleets {
         let beside: Vec<PathBuf> =
             files.iter().filter_map(|file| file.parent().map(Path::to_owned)).collect();
         let registry = match registries.entry(beside) {
@@ -117,7 +117,9 @@ pub(crate) fn checked_each<T>(
         let asked = Asked { files: &files, max_size: arguments.max_size, options, search: &search };
         let found = checked_with(check, asked, registry, sources, Diagnostics::new());
         sources = found.sources;
-        merged.add(found.diagnostics, is_deployable, &sources);
+        // What is made for others alone may lack what these give it, also where nothing else is in the folder.
+        let is_whole = is_deployable || count == 1 && !is_exported;
+        merged.add(found.diagnostics, is_whole, &sources);
         contribution = found.contribution;
         made.extend(files.into_iter().next().zip(found.made));
     }
@@ -140,7 +142,6 @@ struct Merged {
     fleets: usize,
     /// Settings that fleets do not know: a fault where none of them does.
     unknown: Vec<Diagnostic>,
-    is_one: bool,
 }
 
 /// What a fleet says of a place.
@@ -151,11 +152,11 @@ struct Told {
 }
 
 impl Merged {
-    /// Adds those of a fleet. One that nobody says runs by itself may lack what those that use it give.
-    fn add(&mut self, found: Vec<Diagnostic>, is_deployable: bool, sources: &Sources) {
+    /// Adds those of a fleet. One that is not `whole`, and that nobody says runs by itself, may lack what those that use it give.
+    fn add(&mut self, found: Vec<Diagnostic>, is_whole: bool, sources: &Sources) {
         self.fleets += 1;
         for one in found {
-            if is_of_user(&one) && !is_deployable && !self.is_one {
+            if is_of_user(&one) && !is_whole {
                 continue;
             }
             if one.code == &codes::UNKNOWN_SETTING {

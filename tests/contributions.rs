@@ -172,3 +172,25 @@ fn what_fleets_share_is_told_once() {
     let (_, _, told) = saoms(folder.path(), &["check", "."], "");
     assert_eq!(told.matches("S4003").count(), 1, "{told}");
 }
+
+/// What is exported and does not run is made for others, also where it is alone.
+#[test]
+fn the_only_composite_of_a_library_may_lack_what_others_give_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let must = "<property name=\"level\" mustSupply=\"true\"/>";
+    let hall = must.to_owned() + &robot(7, "<property name=\"battery\" source=\"$level\"/>");
+    fs::write(folder.path().join("hall.composite"), composite("hall", &hall)).unwrap();
+    let described = |inside: &str| {
+        let text = format!(
+            "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:a=\"urn:a\">{inside}</contribution>"
+        );
+        fs::write(folder.path().join("sca-contribution.xml"), text).unwrap();
+        let (code, _, stderr) = saoms(folder.path(), &["check", "."], "");
+        assert_eq!(code == 0, !stderr.contains("S2025"), "{stderr}");
+        code
+    };
+    assert_eq!(described(""), 2);
+    assert_eq!(described("<export namespace=\"urn:b\"/>"), 2);
+    assert_eq!(described("<export namespace=\"urn:a\"/>"), 0);
+    assert_eq!(described("<export namespace=\"urn:a\"/><deployable composite=\"a:hall\"/>"), 2);
+}

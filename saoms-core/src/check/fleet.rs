@@ -165,6 +165,11 @@ impl<'a> Fleet<'a> {
         self.scopes[scope].missing.iter().any(|pattern| is_like(name, pattern))
     }
 
+    /// Whether an include of a scope leads nowhere, which is reported: what stands there may wire anything.
+    pub(super) fn lacks_include(&self, scope: usize) -> bool {
+        self.scopes[scope].missing.iter().any(|pattern| pattern == "*")
+    }
+
     /// The replicas that a name such as `Robot*` stands for.
     pub(super) fn group(&self, scope: usize, name: &str) -> Option<&[usize]> {
         if !name.contains('*') || self.find(scope, name).is_some() {

@@ -158,7 +158,7 @@ pub(super) fn unwired<'f>(
     let member = &fleet.members[place];
     let component = member.component;
     let is_promoted = |name| promoted.contains(&(member.scope, component.name.as_str(), name));
-    if member.kind != Kind::Given || is_promoted(None) || is_wired("") {
+    if member.kind != Kind::Given || is_promoted(None) || is_wired("") || fleet.lacks_include(member.scope) {
         return;
     }
     let default = component.autowire().map_or(member.autowire, |said| said.value);

@@ -26,6 +26,23 @@ impl<'a> Raw<'a> {
     }
 }
 
+impl<'a> Raw<'a> {
+    /// The values of a property that takes several of an `element`, one each, where they are written beside each other.
+    pub(super) fn split_into_elements_of(self, property: &Property) -> Self {
+        let Some(of) = property.element().filter(|_| property.many().is_some_and(|many| many.value)) else {
+            return self;
+        };
+        let name = local(of);
+        let pieces = self.0.into_iter().flat_map(|piece| match piece {
+            Piece::Elements(elements, instance) if elements.iter().all(|one| one.local_name() == name) => {
+                elements.into_iter().map(|one| Piece::Elements(vec![one], instance)).collect()
+            }
+            other => vec![other],
+        });
+        Self(pieces.collect())
+    }
+}
+
 fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
 }

@@ -340,9 +340,9 @@ impl<'a> Parameters<'a> {
             // What has no value has no parts either.
             return Ok(whole);
         }
-        let whole = one_of(whole, path).map_err(|one| fault(one, report))?;
+        let whole = one_of(whole.split_into_elements_of(property), path).map_err(|one| fault(one, report))?;
         // Without more steps it is the value itself.
-        let Some(from) = path.find('/') else { return Ok(whole) };
+        let Some(from) = path.find('/') else { return Ok(whole.inside_elements_of(property)) };
         let levels = Rc::new(Levels::of(whole));
         if from == 0
             && let Some(parameter) = self.units[place].by_name.get_mut(name)

@@ -449,7 +449,7 @@ impl<'f, 'a> Wires<'f, 'a> {
         }
         let (member, name) = place;
         let reference = fleet.members[member].component.reference(name);
-        if !is_required {
+        if !is_required || fleet.lacks_include(fleet.members[member].scope) {
             return;
         }
         let (interface, component) = (&declared.interface.name, &fleet.members[member].component.name);

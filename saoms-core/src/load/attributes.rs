@@ -99,6 +99,7 @@ impl Loader<'_> {
         let meant = meant.or_else(|| free.iter().copied().find(|known| is_word_for(name, known, element)));
         // The schema of SCA 1.0 lets any attribute pass; tools put some of their own there.
         let passes = meant.is_none()
+            && !is_named_so(element, attribute)
             && attribute.namespace().is_empty()
             && !self.version.is_1_1()
             && element.namespace() != SAOMS_NAMESPACE;
@@ -109,6 +110,14 @@ impl Loader<'_> {
         let message = format!("{} has no attribute {}", quoted(element.name()), quoted(name));
         let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message).severity(severity);
         one = match meant {
+            None if is_named_so(element, attribute) => {
+                let (value, whole) = (attribute.raw_value().replace('"', "&quot;"), attribute.location());
+                let meant = format!("name=\"{name}\" value=\"{value}\"");
+                match self.version.is_1_1() && element.attribute("value").is_none() {
+                    true => one.suggest(format!("replace it with {}", quoted(&meant)), whole, meant),
+                    false => one.help(format!("write `<{} name=\"{name}\">{value}</{0}>`", element.name())),
+                }
+            }
             Some(meant) if free.contains(&meant) => {
                 one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
             }
@@ -332,8 +341,23 @@ fn without_expressions(text: &str) -> Cow<'_, str> {
 fn has_near_miss(element: Element<'_>, name: &str) -> bool {
     let mut own = element.attributes().filter(|attribute| attribute.namespace().is_empty());
     own.any(|attribute| {
-        nearest(attribute.name(), [name]).is_some() || is_word_for(attribute.name(), name, element)
+        nearest(attribute.name(), [name]).is_some()
+            || is_word_for(attribute.name(), name, element)
+            || name == "name" && is_named_so(element, attribute)
     })
+}
+
+/// Whether an attribute of a property without a name has the name that the property is to have: `<property period="100"/>`.
+fn is_named_so(element: Element<'_>, attribute: Attribute<'_>) -> bool {
+    let is_free = |one: &Attribute<'_>| {
+        let known = &vocabulary::COMPONENT_PROPERTY;
+        one.namespace().is_empty() && !known.has(one.name(), Version::Osoa10)
+    };
+    let mut free = element.attributes().filter(is_free);
+    element.local_name() == "property"
+        && element.attribute("name").is_none()
+        && free.next().is_some_and(|one| one.name() == attribute.name())
+        && free.next().is_none()
 }
 
 /// Whether others call an attribute of such an element by this name: their files name a class or another file in their own words.

@@ -1,11 +1,11 @@
-//! Descriptions of contributions: `sca-contribution.xml`.
+//! Descriptions of contributions: `sca-contribution.xml`, and beside it `sca-contribution-generated.xml`.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::children::Family;
 use super::root::of_another_kind;
-use super::shelf::DESCRIPTIONS;
+use super::shelf::{DESCRIPTIONS, GENERATED};
 use super::vocabulary::CONTRIBUTION;
 use super::{Loader, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
@@ -65,13 +65,37 @@ impl Deployable {
 }
 
 impl Description {
-    /// Reads a description. What is wrong with it is reported.
-    pub(super) fn read(
-        path: PathBuf,
+    /// What is said of the contribution in a folder: by its author, and by the tools that made it. `None` where nobody says anything; what is wrong
+    /// is reported.
+    pub(super) fn of(
+        root: &Path,
         max_size: u64,
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
-    ) -> Self {
+    ) -> Option<Self> {
+        let mut made = Self::read(path_in(root)?, max_size, sources, diagnostics);
+        let generated = root.join(GENERATED);
+        if made.path != generated && generated.is_file() {
+            let more = Self::read(generated, max_size, sources, diagnostics);
+            made.imports.extend(more.imports);
+            made.exports.extend(more.exports);
+            let is_new = |one: &Deployable| {
+                let mut known = made.deployables.iter();
+                known.all(|known| known.local() != one.local() || known.namespace != one.namespace)
+            };
+            let new: Vec<Deployable> = more.deployables.into_iter().filter(is_new).collect();
+            made.deployables.extend(new);
+        }
+        Some(made)
+    }
+
+    /// Whether composites of a namespace are given to other contributions.
+    pub(super) fn exports(&self, namespace: &str) -> bool {
+        self.exports.iter().any(|entry| entry.is(Kind::Namespace, namespace))
+    }
+
+    /// Reads a description.
+    fn read(path: PathBuf, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
         let mut made = Self { path, ..Self::default() };
         let Some(file) = read(&made.path, max_size, sources, diagnostics) else { return made };
         let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());

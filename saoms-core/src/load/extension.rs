@@ -184,6 +184,7 @@ impl Loader<'_> {
     fn jms(&mut self, element: Element<'_>) {
         if let Some(uri) = element.attribute("uri") {
             self.jms_uri(uri);
+            self.jms_in_two_ways(element, uri);
         }
         if let Some(scheme) = element.attribute("correlationScheme")
             && !(self.version.is_1_1() && scheme.trimmed().contains(':'))
@@ -246,6 +247,17 @@ impl Loader<'_> {
         }
     }
 
+    /// Warns of a `destination` beside the `uri`, which names one as well (SCA JMS binding 1.1, 2).
+    fn jms_in_two_ways(&mut self, element: Element<'_>, uri: Attribute<'_>) {
+        let is_destination =
+            |one: &Element<'_>| one.local_name() == "destination" && one.namespace() == element.namespace();
+        let Some(destination) = element.children().find(is_destination) else { return };
+        let message = "binding.jms has a `uri`, and a `destination` that says where messages go";
+        let one = Diagnostic::new(&codes::TARGET_IN_TWO_WAYS, destination.name_location(), message);
+        let one = one.severity(Severity::Warning).rule("ASM50015");
+        self.report(one.label(uri.trimmed().location, "the other one").help("keep one of them"));
+    }
+
     fn jms_uri(&mut self, attribute: Attribute<'_>) {
         let text = attribute.trimmed();
         let Some(rest) = text.strip_prefix("jms:") else {
@@ -287,8 +299,11 @@ impl Loader<'_> {
         }
     }
 
-    /// A type that says what holds without it.
+    /// A type that says what holds without it: programs of SCA 1.0 tell it.
     fn usual_type(&mut self, element: Element<'_>) {
+        if self.version.is_1_1() {
+            return;
+        }
         if let Some(attribute) = element.attribute("type").filter(|one| one.trimmed().as_str() == "queue") {
             let message = "`type=\"queue\"` has no effect: a destination is a queue";
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), message);

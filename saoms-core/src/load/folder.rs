@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::description::{self, Deployable, Description};
-use super::shelf::Shelf;
+use super::description::{Deployable, Description};
+use super::shelf::{DEPLOYABLES, Shelf, describes};
 use super::{load_file, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::{Composite, Contribution, Link};
@@ -17,6 +17,8 @@ pub struct FolderFleet {
     pub files: Vec<PathBuf>,
     /// Whether `sca-contribution.xml` says that they run. Others may be parts of fleets that are elsewhere.
     pub is_deployable: bool,
+    /// Whether it says that other contributions may take them, and not that they run.
+    pub is_exported: bool,
 }
 
 /// Looks at a folder as a contribution, and at those in folders below it: the fleets in it. What `sca-contribution.xml` calls `deployable` is one fleet,
@@ -37,14 +39,16 @@ pub fn load_folder(
         let (files, mut inner) = shelf.contribution(&root);
         inner.reverse();
         waiting.extend(inner);
-        let description = description::path_in(&root);
-        let description = description.map(|path| Description::read(path, max_size, sources, diagnostics));
+        let description = Description::of(&root, max_size, sources, diagnostics);
         let contribution = Files::read(files, max_size, sources);
-        contribution.repeated(description.is_some(), max_size, sources, diagnostics);
+        contribution.repeated(describes(&root), max_size, sources, diagnostics);
         let deployables = description.iter().flat_map(|description| &description.deployables);
-        let deployed: Vec<Option<PathBuf>> =
+        let mut deployed: Vec<Option<PathBuf>> =
             deployables.map(|one| contribution.find(one, &mut shelf, &root, diagnostics)).collect();
-        contribution.fleets(deployed.into_iter().flatten().collect(), &mut fleets);
+        let inside = root.join(DEPLOYABLES);
+        deployed
+            .extend(contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some));
+        contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
     }
     if fleets.is_empty() && !diagnostics.has_errors() {
         let file = sources.add(folder.display().to_string(), "");
@@ -156,6 +160,12 @@ impl Files {
         };
         let message = format!("the contribution has no composite {name}");
         let one = Diagnostic::new(&codes::DEPLOYABLE_NOT_FOUND, at, message);
+        // What else is wrong with the name is mended with it.
+        diagnostics.withdraw(&codes::ATTRIBUTE_VALUE, at);
+        let one = match deployable.namespace {
+            Some(_) => one,
+            None => one.help("write it with a prefix of the target namespace of the composite"),
+        };
         let names = all.iter().filter(of_namespace).map(|one| one.name.as_str());
         diagnostics.push(if let Some(meant) = nearest(local, names.clone()) {
             let meant = format!("{}{meant}", prefix.unwrap_or_default());
@@ -175,7 +185,12 @@ impl Files {
     }
 
     /// What runs together, and every other composite that none here names.
-    fn fleets(self, mut deployed: Vec<PathBuf>, fleets: &mut Vec<FolderFleet>) {
+    fn fleets(
+        self,
+        mut deployed: Vec<PathBuf>,
+        description: Option<&Description>,
+        fleets: &mut Vec<FolderFleet>,
+    ) {
         let all = self.read.composites();
         let links: Vec<Vec<usize>> = all
             .iter()
@@ -220,12 +235,20 @@ impl Files {
         let faulty = (0..self.paths.len()).filter(|place| self.places.binary_search(place).is_err());
         let mut others: Vec<usize> = roots.into_iter().map(|root| self.places[root]).chain(faulty).collect();
         others.sort_unstable();
-        let others =
-            others.into_iter().map(|place| &self.paths[place]).filter(|path| !deployed.contains(path));
-        let others: Vec<FolderFleet> =
-            others.map(|path| FolderFleet { files: vec![path.clone()], is_deployable: false }).collect();
+        let is_exported = |place: usize| {
+            let read = self.places.binary_search(&place).ok();
+            let namespace = read.map(|read| all[read].namespace());
+            description.zip(namespace).is_some_and(|(description, namespace)| description.exports(namespace))
+        };
+        let others = others.into_iter().filter(|place| !deployed.contains(&self.paths[*place]));
+        let others = others.map(|place| FolderFleet {
+            files: vec![self.paths[place].clone()],
+            is_deployable: false,
+            is_exported: is_exported(place),
+        });
+        let others: Vec<FolderFleet> = others.collect();
         if !deployed.is_empty() {
-            fleets.push(FolderFleet { files: deployed, is_deployable: true });
+            fleets.push(FolderFleet { files: deployed, is_deployable: true, is_exported: false });
         }
         fleets.extend(others);
     }

@@ -145,9 +145,10 @@ impl Imports {
         diagnostics: &mut Diagnostics,
     ) -> Option<&Description> {
         let max_size = self.max_size;
-        let known = self.descriptions.entry(root.to_owned()).or_insert_with(|| {
-            description::path_in(root).map(|path| Description::read(path, max_size, sources, diagnostics))
-        });
+        let known = self
+            .descriptions
+            .entry(root.to_owned())
+            .or_insert_with(|| Description::of(root, max_size, sources, diagnostics));
         known.as_ref()
     }
 }

@@ -19,8 +19,13 @@ const MOST_ENTRIES: usize = 20_000;
 const MOST_ABOVE: usize = 12;
 /// The part of a file in which its first tag has to be.
 const HEAD: u64 = 64 * 1024;
-/// Where the description of a contribution is in its folder.
-pub(super) const DESCRIPTIONS: [&str; 2] = ["META-INF/sca-contribution.xml", "sca-contribution.xml"];
+/// Where the description of a contribution is in its folder: what its author wrote, or else what a tool made.
+pub(super) const DESCRIPTIONS: [&str; 3] =
+    ["META-INF/sca-contribution.xml", "sca-contribution.xml", GENERATED];
+/// What a tool says of a contribution, beside what its author does (SCA Assembly 1.1, 10.2.2).
+pub(super) const GENERATED: &str = "META-INF/sca-contribution-generated.xml";
+/// The folder in a contribution whose composites are deployable, as Apache Tuscany has it.
+pub(super) const DEPLOYABLES: &str = "META-INF/sca-deployables";
 /// Folders that hold what tools made.
 const SKIPPED: &[&str] = &["target", "node_modules"];
 
@@ -256,9 +261,10 @@ pub fn description_near(folder: &Path) -> Option<PathBuf> {
     description::path_in(&root(folder))
 }
 
-/// Whether a folder has a description of a contribution: one of its own, and not for the folder around it.
-fn describes(folder: &Path) -> bool {
-    !folder.ends_with("META-INF") && DESCRIPTIONS.iter().any(|name| folder.join(name).is_file())
+/// Whether a folder has a description of a contribution, or says by its folders what is deployable: one of its own, and not for the folder around it.
+pub(super) fn describes(folder: &Path) -> bool {
+    let is_described = || DESCRIPTIONS.iter().any(|name| folder.join(name).is_file());
+    !folder.ends_with("META-INF") && (is_described() || folder.join(DEPLOYABLES).is_dir())
 }
 
 /// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.

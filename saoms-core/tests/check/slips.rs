@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::files::checked;
-use crate::support::{faults_of, fleet, nested, outcome, part, shown};
+use crate::support::{faults_of, fleet, fleet_1_0, nested, outcome, part, shown};
 
 /// What is wrong with a fleet with the prefix of SAOMS.
 fn of(inside: &str) -> String {
@@ -467,4 +467,50 @@ fn folders_stand_before_slashes() {
           help: folders stand before `/`: write `sub/n.txt`
     "#]]
     .assert_eq(&found);
+}
+
+#[test]
+fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
+    let own = "<property period=\"100\"/><property  speed='1' many=\"true\">2</property><property nam=\"x\"/><property/>";
+    let text =
+        format!("<component name=\"R\"><implementation.java class=\"example.Robot\"/>\n{own}</component>");
+    expect![[r#"
+        3:11-17 error S1007: `property` has no attribute `period`
+          fix: replace it with `name="period" value="100"` [3:11-23 "name=\"period\" value=\"100\""]
+        3:36-41 error S1007: `property` has no attribute `speed`
+          fix: replace it with `name="speed" value="1"` [3:36-45 "name=\"speed\" value=\"1\""]
+        3:80-83 error S1007: `property` has no attribute `nam`
+          fix: replace `nam` with `name` [3:80-83 "name"]
+        3:90-98 error S1008: `property` needs the attribute `name`
+          help: write `<property name="..."`
+    "#]]
+    .assert_eq(&of(&text));
+    expect![[r#"
+        3:11-17 error S1007: `property` has no attribute `period`
+          help: write `<property name="period">100</property>`
+        3:36-41 error S1007: `property` has no attribute `speed`
+          help: write `<property name="speed">1</property>`
+        3:80-83 error S1007: `property` has no attribute `nam`
+          fix: replace `nam` with `name` [3:80-83 "name"]
+        3:90-98 error S1008: `property` needs the attribute `name`
+          help: write `<property name="..."`
+    "#]]
+    .assert_eq(&faults_of(&[&fleet_1_0(&text)], &[]));
+}
+
+/// What stands in a composite that is not found may wire anything.
+#[test]
+fn beside_an_include_that_leads_nowhere_no_reference_lacks_a_target() {
+    let navigator = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/></component>";
+    let fleet = part("fleet", "", &format!("<include name=\"t:C\"/>\n{navigator}"));
+    let wires = part("c", "", &format!("<wire source=\"N/wheels\" target=\"R\"/>{}", robot("R", "")));
+    expect![[r#"
+        2:16-19 error S2030: there is no composite `C` in the namespace `urn:t`
+          help: name the file of the composite beside this one
+          fix: replace `t:C` with `t:c` [2:16-19 "t:c"]
+    "#]]
+    .assert_eq(&outcome(&[&fleet, &wires], &[]));
+    let (_, given, sources) = nested(&[&fleet.replace("example.Nav", "other.Nav"), &wires], &[], true);
+    let given: String = given.iter().map(|one| shown(one, &sources)).collect();
+    assert!(!given.contains("S2018"), "{given}");
 }

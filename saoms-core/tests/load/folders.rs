@@ -201,3 +201,62 @@ fn deployables_say_their_namespace_once() {
     "#]]
     .assert_eq(&fleets(&files));
 }
+
+#[test]
+fn what_a_tool_says_of_a_contribution_is_added_to_what_its_author_says() {
+    let fleet = |name: &str| composite("urn:a", name, "");
+    let mut files = vec![
+        ("META-INF/sca-contribution-generated.xml", deployables(&["a:one", "a:two", "a:on"])),
+        ("one.composite", fleet("one")),
+        ("two.composite", fleet("two")),
+        ("META-INF/sca-deployables/three.composite", fleet("three")),
+        ("four.composite", fleet("four")),
+    ];
+    expect![[r#"
+        one.composite + two.composite + META-INF/sca-deployables/three.composite runs
+        four.composite
+        META-INF/sca-contribution-generated.xml:2:86 [a:on] error S2051 the contribution has no composite `a:on`
+          replace `a:on` with `a:one`
+    "#]].assert_eq(&fleets(&files));
+    files.push((
+        "sca-contribution.xml",
+        deployables(&["a:two"]).replace("</", "<export namespace='urn:a'/></"),
+    ));
+    expect![[r#"
+        two.composite + one.composite + META-INF/sca-deployables/three.composite runs
+        four.composite
+        META-INF/sca-contribution-generated.xml:2:86 [a:on] error S2051 the contribution has no composite `a:on`
+          replace `a:on` with `a:one`
+    "#]].assert_eq(&fleets(&files));
+    // The folder alone makes a contribution of what is around it.
+    let folder = [
+        ("META-INF/sca-deployables/fleet.composite", composite("urn:a", "fleet", "<include name='a:hall'/>")),
+        ("parts/hall.composite", fleet("hall")),
+    ];
+    expect![[r#"
+        META-INF/sca-deployables/fleet.composite runs
+    "#]]
+    .assert_eq(&fleets(&folder));
+    expect![[r#"
+        META-INF/sca-deployables/fleet.composite: a:hall -> parts/hall.composite
+    "#]]
+    .assert_eq(&crate::named::links(&folder, folder[0].0));
+}
+
+#[test]
+fn a_wrong_deployable_is_told_once() {
+    let files = [
+        ("fleet.composite", composite("urn:a", "fleet", "")),
+        ("sca-contribution.xml", deployables(&["flet", "u:hall"])),
+    ];
+    expect![[r#"
+        fleet.composite
+        sca-contribution.xml:2:24 [flet] error S2051 the contribution has no composite `flet`
+          write it with a prefix of the target namespace of the composite
+          replace `flet` with `fleet`
+        sca-contribution.xml:2:54 [u:hall] error S2051 the contribution has no composite `u:hall`
+          write it with a prefix of the target namespace of the composite
+          it has `fleet`
+    "#]]
+    .assert_eq(&fleets(&files));
+}

@@ -137,3 +137,20 @@ fn an_xsi_type_says_which_interface_it_is() {
 6:53 [binding] error S1004 SCA 1.0 has no element `binding` | replace `binding` with `binding.sca`\n"
     );
 }
+
+#[test]
+fn a_queue_of_jms_is_named_in_one_way() {
+    let told = |inside: &str, expected: &str| {
+        faults_1_1(
+            &format!("<component name='a'>{JAVA}<service name='s'>\n{inside}</service></component>"),
+            expected,
+        );
+    };
+    // What is so by itself is no fault in SCA 1.1, whose schema says that it is.
+    told("<binding.jms><destination jndiName='a' type='queue'/></binding.jms>", "");
+    told("<binding.jms uri='jms:jndi:a'><response><destination jndiName='b'/></response></binding.jms>", "");
+    told(
+        "<binding.jms uri='jms:jndi:a'><destination jndiName='b'/></binding.jms>",
+        "3:32 [destination] warning S2054 binding.jms has a `uri`, and a `destination` that says where messages go",
+    );
+}
