@@ -1,6 +1,6 @@
 // Starts `saoms lsp` for composites.
 
-const { commands, window, workspace } = require("vscode");
+const { SnippetString, commands, window, workspace } = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
 
 let client;
@@ -12,6 +12,26 @@ function commandLine(settings) {
   return { command: settings.get("path", "saoms"), args: ["lsp", ...plugins, ...assume] };
 }
 
+// Proposes at once what a proposal that was taken leaves open, as the class in `<implementation.rust class="..."/>`.
+async function propose(document, position, context, token, next) {
+  const found = await next(document, position, context, token);
+  const items = Array.isArray(found) ? found : (found?.items ?? []);
+  for (const item of items.filter((one) => one.insertText instanceof SnippetString)) {
+    item.command = { title: "Propose", command: "editor.action.triggerSuggest", arguments: [{ auto: true }] };
+  }
+  return found;
+}
+
+// Says why the server cannot be started, and leads to the setting that mends it.
+async function complain(command, error) {
+  const settings = "Open settings";
+  const why = error instanceof Error ? error.message : error;
+  const text = `\`${command} lsp\` cannot be started: ${why}. The setting \`saoms.path\` says where the program is.`;
+  if ((await window.showErrorMessage(text, settings)) === settings) {
+    await commands.executeCommand("workbench.action.openSettings", "saoms.path");
+  }
+}
+
 async function start() {
   const folder = workspace.workspaceFolders?.[0]?.uri.fsPath;
   const server = { ...commandLine(workspace.getConfiguration("saoms")), options: { cwd: folder } };
@@ -21,13 +41,12 @@ async function start() {
       // Tables and scenarios beside composites; the server has nothing to say about others.
       { scheme: "file", pattern: "**/*.{csv,txt}" },
     ],
+    middleware: { provideCompletionItem: propose },
   });
   try {
     await client.start();
   } catch (error) {
-    window.showErrorMessage(
-      `\`${server.command} lsp\` cannot be started: ${error instanceof Error ? error.message : error}. The setting \`saoms.path\` says where the program is.`,
-    );
+    complain(server.command, error);
   }
 }
 

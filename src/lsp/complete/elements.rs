@@ -17,7 +17,6 @@ use crate::lsp::syntax::prefix;
 /// Those that most files have come first.
 const USUAL: &[&str] = &[
     "deployable",
-    "implementation.rust",
     "implementation.java",
     "implementation.composite",
     "component",
@@ -135,7 +134,12 @@ fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Ran
         "value" | "documentation" => format!("<{written}>$1</{written}>"),
         _ => format!("<{written}$0/>"),
     };
-    let rank = if USUAL.contains(&name) { 3 } else { 7 };
+    let rank = match name {
+        // Classes of SAOMS come before those that Java programs have, and before whole composites.
+        "implementation.rust" => 2,
+        _ if USUAL.contains(&name) => 3,
+        _ => 7,
+    };
     let first = kind.map_or(doc.as_str(), |kind| kind.doc);
     let detail = first.split_inclusive('.').next().unwrap_or_default().trim_end_matches('.');
     Proposal::new(written, CompletionItemKind::CLASS, range)

@@ -39,7 +39,7 @@ fn elements_are_those_that_can_stand_there() {
     assert_eq!(proposed(&composite("<|"))[..6], top);
     assert_eq!(proposed(&composite("|"))[..6], top);
     let inside = proposed(&composite("<component name=\"R\"><|"));
-    assert_eq!(inside[..3], ["implementation.composite", "implementation.java", "implementation.rust"]);
+    assert_eq!(inside[..3], ["implementation.rust", "implementation.composite", "implementation.java"]);
     assert!(inside.contains(&"s:loop".to_owned()), "{inside:?}");
     // There is one implementation, and the class says what has to be given.
     let inside = proposed(&composite(&format!("{ROBOT}<|</component>")));
