@@ -8,7 +8,7 @@ use super::fleet::{Fleet, Kind};
 use super::offer::{Offer, Side};
 use super::report::{Report, escaped, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::expression::has_expression;
+use crate::expression::{has_expression, pattern};
 use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
@@ -107,8 +107,20 @@ impl<'t> Uri<'t> {
                 );
                 return None;
             }
-            let message = format!("there is no component {}", quoted(self.component));
             let at = report.part(text, 0..self.component.len());
+            if let Some([first, ..]) = fleet.group(scope, self.component) {
+                let message =
+                    format!("{} names all replicas, and one component is expected", quoted(self.component));
+                let first = fleet.members[*first].component.name.as_str();
+                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+                let one = one.help(format!("name one of them, such as {}", quoted(first)));
+                report.push(match rule {
+                    Some(rule) => one.rule(rule),
+                    None => one,
+                });
+                return None;
+            }
+            let message = format!("there is no component {}", quoted(self.component));
             if let Some((meant, help)) = misread(text, scope, fleet) {
                 let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
                 let one = one.suggest(replacing(text, &meant), text.location, escaped(&meant)).help(help);
@@ -130,11 +142,16 @@ impl<'t> Uri<'t> {
     }
 }
 
-/// What a URI means that is written as other languages write it, and why: with commas between several, or something else than `/` before the
-/// name of a service.
+/// What a URI means that is written in another way, and why: with the index of a replica where there is none, or as other languages write it, with commas between
+/// several, or something else than `/` before the name of a service.
 fn misread(text: &str, scope: usize, fleet: &Fleet<'_>) -> Option<(String, &'static str)> {
     const LISTED: [char; 3] = [',', ';', '|'];
     const BEHIND: [char; 6] = ['#', '.', ':', '\\', '>', '-'];
+    if text.contains("${") {
+        let group = pattern(text);
+        let is_known = fleet.group(scope, parts(&group).0).is_some();
+        return is_known.then_some((group, "outside of replicas there is no index; `*` names all replicas"));
+    }
     if text.contains(LISTED) {
         let named: Vec<&str> = text.split(LISTED).filter(|name| !name.is_empty()).collect();
         let is_known = |name: &&str| fleet.find(scope, parts(name).0).is_some();

@@ -82,6 +82,22 @@ fn a_star_names_all_replicas() {
 }
 
 #[test]
+fn the_index_of_replicas_and_all_of_them_are_not_for_every_place() {
+    expect![[r#"
+        2:28-30 error S2011: `G*` names all replicas, and one component is expected
+          help: name one of them, such as `G1`
+        4:99-108 error S2011: there is no component `G${index}`
+          help: outside of replicas there is no index; `*` names all replicas
+          fix: replace `G${index}` with `G*` [4:99-108 "G*"]
+    "#]].assert_eq(&of(
+        r#"<service name="s" promote="G*"/>
+<component name="G${index}" saoms:count="2"><implementation.java class="example.Gps"/></component>
+<component name="C"><implementation.java class="example.Conductor"/><reference name="gps" target="G${index}"/></component>"#,
+        &[],
+    ));
+}
+
+#[test]
 fn composites_are_replicated_with_all_that_is_in_them() {
     let hall = part(
         "hall",

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
+use saoms_core::expression::{INDEX, Problem, Value, render};
 use saoms_core::registry::InterfaceDeclaration;
 
 use super::{Proposal, names};
@@ -11,6 +12,7 @@ use crate::lsp::contracts::Contract;
 use crate::lsp::outline::{Component, Implementation, Side};
 use crate::lsp::scene::Scene;
 use crate::lsp::symbol::group;
+use crate::lsp::syntax::local;
 
 /// What can stand at a place of a target, a source or a promotion.
 pub(super) fn complete(
@@ -29,7 +31,17 @@ pub(super) fn complete(
         true => Side::Reference,
         false => Side::Service,
     };
-    let asked = Asked { side, interface: interface(scene, element, attribute) };
+    let reference = (attribute == "target").then(|| calling(scene, element)).flatten();
+    let asked = Asked {
+        side,
+        interface: reference.as_ref().and_then(|one| one.interface),
+        takes_several: match &reference {
+            Some(one) => one.multiplicity.is_none_or(|many| many.ends_with('n')),
+            None => !promotes || in_reference,
+        },
+    };
+    // What a replica says can hold its index.
+    let in_replica = scene.component_around(element).is_some_and(|one| one.is_replicated);
     // What a reference of the composite targets is around the composite.
     let is_outer = attribute == "target" && in_reference && scene.component_around(element).is_none();
     let scopes = if is_outer { scene.users(0).to_vec() } else { vec![0] };
@@ -64,25 +76,53 @@ pub(super) fn complete(
             None => "",
         };
         let range = word.start..end;
-        let mut add = |label: String, detail: String, rank: u8| {
-            all.push(Proposal::new(label, CompletionItemKind::VARIABLE, &range).detail(detail).rank(rank));
+        let parts = match fitting {
+            Fitting::Several(parts) => parts,
+            _ => Vec::new(),
         };
-        if let Some(all_of_them) = group(name) {
-            // A replica that names its own group means the others.
-            add(all_of_them, format!("all replicas: {shown}"), 4);
-        }
-        match fitting {
-            // A component that calls itself is a mistake; a replica may call another one.
-            _ if is_own && group(name).is_none() => {}
-            Fitting::Several(parts) => {
-                for part in parts {
-                    add(format!("{name}/{part}"), shown.to_owned(), 4);
+        let mut add = |name: String, detail: &str, rank: u8| {
+            let named =
+                |label| Proposal::new(label, CompletionItemKind::VARIABLE, &range).detail(detail).rank(rank);
+            match &parts[..] {
+                [] => all.push(named(name)),
+                parts => all.extend(parts.iter().map(|part| named(format!("{name}/{part}")))),
+            }
+        };
+        // A component that calls itself is a mistake; a replica may call another one.
+        let rank = if is_own { 8 } else { 4 };
+        match group(name) {
+            Some(group) => {
+                if in_replica {
+                    add(name.clone(), shown, rank);
+                }
+                // A replica that names its own group means the others.
+                if asked.takes_several {
+                    add(group, &format!("all replicas: {shown}"), 4);
+                } else if !in_replica && let Some(first) = first_replica(scene, of) {
+                    add(first, &format!("one of the replicas: {shown}"), 4);
                 }
             }
-            _ => add(name.clone(), shown.to_owned(), if is_own { 8 } else { 4 }),
+            None if is_own => {}
+            None => add(name.clone(), shown, rank),
         }
     }
     all
+}
+
+/// The name of the first of the replicas that a component stands for, where it does not depend on what is set from outside.
+fn first_replica(scene: &Scene, (file, component): (usize, &Component)) -> Option<String> {
+    let of = &scene.files[file];
+    let from = of.tree.elements[component.name.element].attributes.iter().find(|one| {
+        let name = &of.text[one.name.clone()];
+        name.contains(':') && local(name) == "from"
+    });
+    let written = from.and_then(|one| one.value.clone()).map(|at| of.text[at].trim());
+    let first = written.map_or(Ok(1), str::parse).ok()?;
+    let mut value = |name: &str| match name {
+        INDEX => Ok(Value::Integer(first)),
+        _ => Err(Problem::new("only the index is known")),
+    };
+    render(&component.name.text, &mut value).ok()
 }
 
 /// The word of a list that a byte touches.
@@ -100,6 +140,8 @@ fn word(text: &str, value: Range<usize>, at: usize) -> Range<usize> {
 struct Asked<'s> {
     side: Side,
     interface: Option<&'s InterfaceDeclaration>,
+    /// Whether it can be several components.
+    takes_several: bool,
 }
 
 /// Which parts of a component are what is asked for.
@@ -130,13 +172,10 @@ impl Asked<'_> {
     }
 }
 
-/// The interface that a reference, or the source of a wire, asks for.
-fn interface<'s>(scene: &'s Scene, element: usize, attribute: &str) -> Option<&'s InterfaceDeclaration> {
+/// The reference that calls what a target names: the one that it is in, or that the wire begins at.
+fn calling<'s>(scene: &'s Scene, element: usize) -> Option<Contract<'s>> {
     let file = scene.file();
     let value = |element: usize, name: &str| Some(&file.text[file.tree.value(&file.text, element, name)?]);
-    if attribute != "target" {
-        return None;
-    }
     let (of, reference) = match file.tree.local(&file.text, element) {
         "wire" => {
             let (component, reference) = value(element, "source")?.split_once('/')?;
@@ -157,5 +196,5 @@ fn interface<'s>(scene: &'s Scene, element: usize, attribute: &str) -> Option<&'
             }
         }
     };
-    scene.contract(of, Side::Reference, reference)?.interface
+    scene.contract(of, Side::Reference, reference)
 }

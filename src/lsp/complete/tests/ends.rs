@@ -17,8 +17,6 @@ fn ends_are_components_and_their_parts() {
     let bound = format!("{ROBOT}<reference name=\"world\"><binding.sca uri=\"|\"/></reference></component>");
     assert_eq!(ends(&bound), ["World"]);
     let worlds = "<component name=\"W${index}\" s:count=\"2\"><implementation.rust class=\"saoms.World\"/></component>";
-    let all = ends(&format!("{worlds}{ROBOT}<reference name=\"world\" target=\"|\"/></component>"));
-    assert!(["W*", "W${index}"].iter().all(|one| all.contains(&(*one).to_owned())), "{all:?}");
     for name in ["W*", "W2", "W${index}"] {
         let of = ends(&format!("{worlds}{ROBOT}<reference name=\"world\" target=\"{name}/|\"/></component>"));
         assert_eq!(of, ["hardware"], "{name}");
@@ -54,6 +52,36 @@ fn what_lacks_what_is_asked_for_is_no_end() {
             "<component name=\"X\"><implementation.java class=\"x.Y\"/></component><wire source=\"R/world\" target=\"|\"/>"
         ),
         ["World", "X"]
+    );
+}
+
+#[test]
+fn replicas_are_named_as_the_place_allows() {
+    let worlds = "<component name=\"W${index:02}\" s:from=\"7\" s:count=\"2\"><implementation.rust class=\"saoms.World\"/></component>";
+    let robots = ROBOT.replace("\"R\"", "\"R${index}\" s:count=\"2\"");
+    let ends = |inside: &str| proposed(&composite(&format!("{worlds}{inside}")));
+    // A robot has one world. A replica can name that of its own index, others only one by its name.
+    assert_eq!(ends(&format!("{ROBOT}<reference name=\"world\" target=\"|\"/></component>")), ["W07"]);
+    assert_eq!(ends(&format!("{robots}<reference name=\"world\" target=\"|\"/>")), ["W${index:02}"]);
+    let robots = format!("{robots}</component>");
+    assert_eq!(ends(&format!("{robots}<wire source=\"R*/world\" target=\"|\"/>")), ["W07"]);
+    // Wires and promotions have no index; several can be promoted by a reference and begin wires.
+    assert_eq!(ends(&format!("{robots}<wire source=\"|\" target=\"W07\"/>")), ["R*/world"]);
+    assert_eq!(ends(&format!("{robots}<reference name=\"r\" promote=\"|\"/>")), ["R*/world"]);
+    assert_eq!(ends(&format!("{robots}<service name=\"s\" promote=\"|\"/>")), ["R1", "W07"]);
+    // Who calls is not known yet.
+    let own =
+        format!("{robots}<component name=\"X${{index}}\" s:count=\"2\"><reference name=\"x\" target=\"|\"/>");
+    let all = ends(&own);
+    assert!(
+        ["R*", "R${index}", "W*", "W${index:02}"].iter().all(|one| all.contains(&(*one).to_owned())),
+        "{all:?}"
+    );
+    // Where the first depends on what is set, none is known.
+    let open = worlds.replace("\"7\"", "\"first\"");
+    assert_eq!(
+        proposed(&composite(&format!("{open}{ROBOT}<reference name=\"world\" target=\"|\"/></component>"))),
+        [""; 0]
     );
 }
 
