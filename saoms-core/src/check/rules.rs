@@ -31,9 +31,16 @@ pub(super) fn check<'s>(
     report: &mut Report<'_>,
 ) {
     let mut places = Vec::with_capacity(fleet.members.len());
+    // One of each class is enough, and one for all of which nobody knows the class.
     let mut missing = Vec::new();
+    let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
+    let mut miss = |class: Option<&'s ClassIndex<'_>>| {
+        if known.insert(class.map(std::ptr::from_ref)) {
+            missing.push(class.map(declarations));
+        }
+    };
     if fleet.scopes.iter().any(|scope| scope.is_faulty) {
-        missing.push(None);
+        miss(None);
     }
     let mut subjects: Vec<Subject<'s>> = Vec::new();
     let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
@@ -44,7 +51,7 @@ pub(super) fn check<'s>(
         let (true, Some(resolved), Some(class)) = (member.runs(), resolved, class) else {
             places.push(None);
             if member.runs() {
-                missing.push(class.map(declarations));
+                miss(class);
             }
             continue;
         };
@@ -55,12 +62,10 @@ pub(super) fn check<'s>(
     let Some(first) = subjects.first().copied() else { return };
     let is_whole = missing.is_empty();
     if has_open_wires {
+        let open = parts.iter().filter(|(place, ..)| wiring.of(*place).any(<[_]>::is_empty));
         let mut known: HashSet<*const ClassIndex<'_>> = HashSet::new();
-        for (place, _, class) in &parts {
-            if wiring.of(*place).any(<[_]>::is_empty) && known.insert(*class) {
-                missing.push(Some(declarations(class)));
-            }
-        }
+        let open = open.filter(|(.., class)| known.insert(*class));
+        missing.extend(open.map(|(.., class)| Some(declarations(class))));
     }
     let mut lists = Lists::default();
     let views: Vec<ComponentView<'_>> = parts

@@ -28,7 +28,7 @@ pub(super) struct Resolved<'a> {
     /// In their order; components that say nothing about them share those of their class.
     pub(super) specs: Arc<[LoopSpec]>,
     /// Those that the composite says something about.
-    changed: Vec<Changed<'a>>,
+    changed: Box<[Changed<'a>]>,
 }
 
 /// A loop that the composite says something about.
@@ -98,7 +98,7 @@ pub(super) fn resolve<'a>(
         if let Some((with, specs)) = plain.as_ref().and_then(|plain| usual.get(plain)) {
             let specs = Arc::clone(specs);
             fleet.members[place].kind = Kind::Class(*with);
-            all.push(Some(Resolved { specs, changed: Vec::new() }));
+            all.push(Some(Resolved { specs, changed: Box::default() }));
             continue;
         }
         let (loops, is_planned) = list::plan(member, class, checked, registry, report);
@@ -154,7 +154,7 @@ fn resolved<'a>(
         }
         specs.push(spec);
     }
-    (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed })
+    (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed: changed.into() })
 }
 
 /// Looks at where the properties of loops without a class take their values from.
