@@ -154,6 +154,7 @@ fn examine<T>(
     let report = &mut Report::new(sources, diagnostics);
     report.assumes = options.assume_classes;
     report.tells_echoes = severities.mentions(&codes::NOT_UNIQUE);
+    report.lowers_attributes = severities.mentions(&codes::UNKNOWN_ATTRIBUTE);
     let replicas = Arena::new();
     let mut fleet = unfold::unfold(contribution, options, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);

@@ -42,7 +42,7 @@ impl<'a> Plan<'a> {
         report: &mut Report<'_>,
     ) -> Option<Self> {
         let Some(written) = &replicas.count else {
-            if is_misspelt(component, document) {
+            if is_told(component, document, report) {
                 return None;
             }
             let (what, at) = match (&replicas.from, &replicas.overrides) {
@@ -216,10 +216,28 @@ pub(super) fn first_index(replicas: &Replicas, names: &Names) -> Option<i64> {
     parse(from).and_then(|one| integer(&one, &mut |name| names.value(name))).ok()
 }
 
-/// Whether a component has an attribute that `count` may be meant by, which is reported.
-fn is_misspelt(component: &Component, document: &Document) -> bool {
+/// Whether a component has an attribute that `count` may be meant by, and that is told as an error, which nobody can lower: with it
+/// nothing is known of the replicas.
+fn is_told(component: &Component, document: &Document, report: &mut Report<'_>) -> bool {
+    let file = document.file();
     let mut attributes = component.origin.element(document).attributes();
-    attributes.any(|attribute| nearest(attribute.local_name(), ["count"]).is_some())
+    let meant = attributes.find(|attribute| nearest(attribute.local_name(), ["count"]).is_some());
+    let Some(meant) = meant else { return false };
+    let at = meant.name_span().in_file(file);
+    let is_error = |one: &Diagnostic| one.location == at && one.severity == Severity::Error;
+    if !report.lowers_attributes && report.diagnostics().iter().any(is_error) {
+        return true;
+    }
+    // Its namespace may be nearly that of SAOMS.
+    let is_near = report.has_told_of(&codes::NAMESPACE_NEAR, file, meant.namespace());
+    if is_near {
+        let why = format!(
+            "{} in it says how many replicas there are, and they cannot be made without",
+            quoted(meant.name())
+        );
+        report.escalate(&codes::NAMESPACE_NEAR, file, &why);
+    }
+    is_near
 }
 
 /// Checks that the name of a replicated component differs from replica to replica.

@@ -30,6 +30,8 @@ pub(super) struct Report<'a> {
     pub(super) assumes: bool,
     /// Whether what comes of a value that components share is told beside that: where sharing is let pass, it counts.
     pub(super) tells_echoes: bool,
+    /// Whether somebody lets attributes pass that are not known.
+    pub(super) lowers_attributes: bool,
     escalated: HashSet<(&'static str, FileId)>,
     /// What was said where: a composite that implements several components has its faults once.
     said: HashSet<(&'static str, Location, u64)>,
@@ -62,6 +64,7 @@ impl<'a> Report<'a> {
             withdrawals: WITHDRAWALS,
             assumes: false,
             tells_echoes: false,
+            lowers_attributes: false,
             escalated: HashSet::new(),
             said: HashSet::new(),
             copy: None,
@@ -74,6 +77,14 @@ impl<'a> Report<'a> {
     pub(super) fn has_told(&self, code: &'static Code, at: Location) -> bool {
         self.known_copies.contains_key(&(code.id, at))
             || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
+    }
+
+    /// Whether something of this code was told of this text anywhere in a file.
+    pub(super) fn has_told_of(&self, code: &'static Code, file: FileId, text: &str) -> bool {
+        let is_it = |one: &Diagnostic| {
+            one.code == code && one.location.file == file && self.sources.snippet(one.location) == text
+        };
+        self.diagnostics.iter().any(is_it)
     }
 
     /// Whether something of this code was told of several replicas at this place.

@@ -107,6 +107,36 @@ fn replicas_that_lack_their_index_get_it() {
     "#]].assert_eq(&of("<component name=\"G\" saoms:if=\"index &lt; 3\"><implementation.java class=\"example.Gps\"/></component>"));
 }
 
+/// Without their number no replicas can be made, so that something has to say so as an error.
+#[test]
+fn a_count_that_is_none_is_an_error() {
+    let robots = |around: &str, count: &str, more: &str| {
+        let robot = format!(
+            "<component name=\"G${{index}}\" {count}><implementation.java class=\"example.Gps\"/></component>{more}"
+        );
+        outcome(&[&part("c", around, &robot)], &[])
+    };
+    expect![[r#"
+        1:127-138 error S1013: what is in the namespace `urn:saoms:0` is passed over: it is nearly `urn:saoms:1`
+          help: `s:count` in it says how many replicas there are, and they cannot be made without
+          fix: replace it with `urn:saoms:1` [1:127-138 "urn:saoms:1"]
+    "#]].assert_eq(&robots("xmlns:s='urn:saoms:0'", "s:count='3'", ""));
+    expect![[r#"
+        2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
+          help: add `saoms:count="..."`
+    "#]].assert_eq(&robots("xmlns:s='urn:other'", "s:count='3'", ""));
+    expect![[r#"
+        2:29-34 error S1007: `component` has no attribute `count`
+          help: it is an attribute of SAOMS: write `saoms:count`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
+    "#]].assert_eq(&robots("", "count='3'", ""));
+    let allowed =
+        "<s:severity xmlns:s='urn:saoms:1' code='S1007' level='allow' reason='tools put their own there'/>";
+    expect![[r#"
+        2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
+          help: add `saoms:count="..."`
+    "#]].assert_eq(&robots("", "count='3'", allowed));
+}
+
 #[test]
 fn a_component_that_is_pasted_again_is_told_once() {
     let one = robot("R", "<property name=\"number\">1</property>");
