@@ -115,11 +115,11 @@ impl Checker {
 
     /// The fleets that one file is part of, and of each whether others elsewhere may use it; then what it is itself.
     fn fleets(&mut self, path: &Path) -> (Vec<(Vec<PathBuf>, bool)>, Sort) {
-        let files = self.workspace.around(path);
-        if files.first().is_none_or(|first| first.path != path) {
+        let around = self.workspace.around(path);
+        if around.files.first().is_none_or(|first| first.path != path) {
             return (Vec::new(), Sort::Composite);
         }
-        let scene = Scene::new(files, self.registries.of(path, &[]));
+        let scene = Scene::new(around, self.registries.of(path, &[]));
         let paths = |fleet: &Fleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
         let fleets = scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect();
         let sort = match scene.file() {

@@ -162,7 +162,7 @@ mod tests {
             // What is known of it is what a file with that text would show.
             let mut workspace = Workspace::default();
             workspace.set_open(all.texts());
-            let around = workspace.around(&all.get(uri).unwrap().path);
+            let around = workspace.around(&all.get(uri).unwrap().path).files;
             let read = File::new("/fleet.composite".into(), expected.into());
             prop_assert_eq!(format!("{:?}", around[0].outline), format!("{:?}", read.outline));
             prop_assert_eq!(format!("{:?}", around[0].tree), format!("{:?}", read.tree));

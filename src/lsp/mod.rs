@@ -17,6 +17,7 @@ mod fixes;
 mod hover;
 #[cfg(test)]
 mod laws;
+mod links;
 mod loops;
 mod navigate;
 mod occurrences;
@@ -28,6 +29,7 @@ mod requests;
 mod rpc;
 mod scene;
 mod server;
+mod shape;
 mod symbol;
 mod symbols;
 mod syntax;

@@ -75,6 +75,16 @@ pub(super) fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(Plac
 /// Why something cannot be given another name.
 fn refusal(scene: &Scene, symbol: &Symbol) -> Option<String> {
     match symbol {
+        // Who else there uses it is not known here.
+        Symbol::Component { file, .. }
+        | Symbol::Parameter { file, .. }
+        | Symbol::Promoted { file, .. }
+        | Symbol::Composite { file }
+            if scene.is_imported(*file) =>
+        {
+            let path = scene.files[*file].path.display();
+            Some(format!("this has its name from another contribution, in `{path}`"))
+        }
         Symbol::Class { name } => Some(format!("the class `{name}` has its name from its author")),
         Symbol::Part { name, .. } => Some(format!("`{name}` has its name from the class of the component")),
         Symbol::Loop { file, component, name } => {

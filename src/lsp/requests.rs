@@ -9,9 +9,10 @@ use lsp_server::ErrorCode;
 use lsp_types::request::{self as ask, Request};
 use lsp_types::{
     CompletionList, CompletionParams, CompletionResponse, DocumentFormattingParams, DocumentHighlight,
-    DocumentHighlightParams, DocumentSymbolParams, DocumentSymbolResponse, GotoDefinitionParams,
-    GotoDefinitionResponse, Hover, HoverContents, HoverParams, LinkedEditingRangeParams, LinkedEditingRanges,
-    Location, MarkupContent, MarkupKind, PrepareRenameResponse, ReferenceParams, RenameParams,
+    DocumentHighlightParams, DocumentLink, DocumentLinkParams, DocumentSymbolParams, DocumentSymbolResponse,
+    FoldingRange, FoldingRangeParams, GotoDefinitionParams, GotoDefinitionResponse, Hover, HoverContents,
+    HoverParams, LinkedEditingRangeParams, LinkedEditingRanges, Location, MarkupContent, MarkupKind,
+    Position, PrepareRenameResponse, ReferenceParams, RenameParams, SelectionRange, SelectionRangeParams,
     SymbolInformation, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit, WorkspaceSymbolResponse,
 };
 use saoms_core::format::{WIDTH, format};
@@ -22,10 +23,12 @@ use serde_json::value::RawValue;
 
 use super::complete::{Proposal, complete};
 use super::hover::hover;
+use super::links::links;
 use super::navigate::{Goal, definition, references};
 use super::rename::{prepare, rename};
 use super::scene::Scene;
 use super::server::{Refusal, Server, written};
+use super::shape;
 use super::symbol::Place;
 use super::symbols::{matching, symbols};
 use super::syntax::Cursor;
@@ -62,6 +65,15 @@ impl<W: Write> Server<W> {
             }
             ask::CodeActionRequest::METHOD => {
                 answered::<ask::CodeActionRequest>(params, |params| self.fixes(&params).map(Some))
+            }
+            ask::FoldingRangeRequest::METHOD => {
+                answered::<ask::FoldingRangeRequest>(params, |params| self.folds(&params))
+            }
+            ask::SelectionRangeRequest::METHOD => {
+                answered::<ask::SelectionRangeRequest>(params, |params| self.selections(&params))
+            }
+            ask::DocumentLinkRequest::METHOD => {
+                answered::<ask::DocumentLinkRequest>(params, |params| self.links(&params))
             }
             ask::Formatting::METHOD => answered::<ask::Formatting>(params, |params| self.formatting(&params)),
             _ => Err(Refusal(ErrorCode::MethodNotFound, format!("`{method}` is not known"))),
@@ -196,6 +208,38 @@ impl<W: Write> Server<W> {
         let both = [one.name.clone(), tag.start + 2..tag.start + 2 + one.name.len()];
         let ranges = both.map(|at| file.lines.range(&file.text, at)).into();
         Ok(Some(LinkedEditingRanges { ranges, word_pattern: None }))
+    }
+
+    fn folds(&mut self, params: &FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>, Refusal> {
+        let scene = self.scene(&params.text_document.uri)?;
+        Ok(Some(shape::folds(scene.file())))
+    }
+
+    fn selections(&mut self, params: &SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>, Refusal> {
+        let scene = self.scene(&params.text_document.uri)?;
+        let file = scene.file();
+        let one = |place: &Position| {
+            let around = shape::around(file, file.lines.offset(&file.text, *place));
+            let widest_first = around.into_iter().rev();
+            let nested = widest_first.fold(None, |parent, range| {
+                let range = file.lines.range(&file.text, range);
+                Some(SelectionRange { range, parent: parent.map(Box::new) })
+            });
+            let nothing = || SelectionRange { range: lsp_types::Range::new(*place, *place), parent: None };
+            nested.unwrap_or_else(nothing)
+        };
+        Ok(Some(params.positions.iter().map(one).collect()))
+    }
+
+    fn links(&mut self, params: &DocumentLinkParams) -> Result<Option<Vec<DocumentLink>>, Refusal> {
+        let scene = self.scene(&params.text_document.uri)?;
+        let file = scene.file();
+        let all = links(&scene).into_iter().filter_map(|(at, path)| {
+            let target = Some(Uri::from_str(&self.uri_of(&path)).ok()?);
+            let range = file.lines.range(&file.text, at);
+            Some(DocumentLink { range, target, tooltip: None, data: None })
+        });
+        Ok(Some(all.collect()))
     }
 
     /// The layout of `saoms fmt`; a text that is not well-formed stays as it is.

@@ -13,11 +13,15 @@ use super::file::File;
 use super::outline::{Component, End, Implementation, Named};
 use super::symbol::Symbol;
 use super::syntax::local;
+use super::workspace::Around;
 
-/// A file and those around it: composites, then the files beside them that hold values. Files are named by their places; that of the file itself is 0.
+/// A file and those around it: composites, then the files beside them that hold values, then composites of other contributions. Files are named by their places;
+/// that of the file itself is 0.
 #[derive(Debug)]
 pub(super) struct Scene {
     pub(super) files: Vec<Arc<File>>,
+    /// How many of the files are of the contribution of the first one.
+    own: usize,
     pub(super) registry: Arc<Registry>,
     /// By the local names of their composites.
     by_name: HashMap<String, Vec<usize>>,
@@ -51,7 +55,7 @@ struct Unit {
 
 impl Scene {
     /// These files, of which the first is asked about.
-    pub(super) fn new(files: Vec<Arc<File>>, registry: Arc<Registry>) -> Self {
+    pub(super) fn new(Around { files, own }: Around, registry: Arc<Registry>) -> Self {
         let mut by_name: HashMap<String, Vec<usize>> = HashMap::new();
         for (place, file) in files.iter().enumerate() {
             if let Some(name) = &file.outline.name {
@@ -61,9 +65,14 @@ impl Scene {
         let units = files.iter().map(|_| OnceLock::new()).collect();
         let users = files.iter().map(|_| OnceLock::new()).collect();
         let beside = beside(&files);
-        let mut scene = Self { files, registry, by_name, includes: Vec::new(), units, users, beside };
+        let mut scene = Self { files, own, registry, by_name, includes: Vec::new(), units, users, beside };
         scene.includes = (0..scene.files.len()).map(|file| scene.included(file)).collect();
         scene
+    }
+
+    /// Whether a file belongs to another contribution than the first one.
+    pub(super) fn is_imported(&self, file: usize) -> bool {
+        file >= self.own
     }
 
     /// The file of values that a composite calls so.
@@ -113,7 +122,7 @@ impl Scene {
         });
         let deployed: BTreeSet<usize> = described.collect();
         let is_alone = |one: &usize| users[*one].is_empty() && !deployed.contains(one);
-        let composites = (0..self.files.len()).filter(|one| self.files[*one].outline.name.is_some());
+        let composites = (0..self.own).filter(|one| self.files[*one].outline.name.is_some());
         let others = composites.filter(is_alone).count();
         let may_be_part = others + usize::from(!deployed.is_empty()) > 1;
         let start: Vec<usize> = match self.file() {
@@ -121,7 +130,7 @@ impl Scene {
             // A description is wrong or right whatever runs.
             one if one.is_description() => match deployed.first() {
                 Some(first) => vec![*first],
-                None => (0..self.files.len()).find(|one| is_alone(one) && *one > 0).into_iter().collect(),
+                None => (1..self.own).find(is_alone).into_iter().collect(),
             },
             _ => vec![0],
         };
@@ -139,7 +148,7 @@ impl Scene {
         if fleets.is_empty() { vec![Fleet { files: vec![start[0]], may_be_part: false }] } else { fleets }
     }
 
-    /// The composites that each file names, by includes and implementations, and those that name it.
+    /// The composites that each file names, by includes and implementations, and those of the contribution that name it.
     fn naming(&self) -> (Vec<Vec<usize>>, Vec<Vec<usize>>) {
         let (mut names, mut users) = (Vec::new(), vec![Vec::new(); self.files.len()]);
         for place in 0..self.files.len() {
@@ -150,7 +159,8 @@ impl Scene {
             });
             let named: BTreeSet<usize> =
                 self.includes[place].iter().copied().chain(implementations).collect();
-            named.iter().filter(|one| **one != place).for_each(|one| users[*one].push(place));
+            let others = named.iter().filter(|one| **one != place && !self.is_imported(place));
+            others.for_each(|one| users[*one].push(place));
             names.push(named.into_iter().collect());
         }
         (names, users)

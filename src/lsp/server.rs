@@ -308,9 +308,9 @@ impl<W: Write> Server<W> {
                 return Err(Refusal(ErrorCode::InvalidParams, text));
             }
         };
-        let files = self.workspace.around(&path);
-        let libraries = files.first().map(|file| file.outline.libraries.clone()).unwrap_or_default();
-        Ok(Scene::new(files, self.registries.of(&path, &libraries)))
+        let around = self.workspace.around(&path);
+        let libraries = around.files.first().map(|file| file.outline.libraries.clone()).unwrap_or_default();
+        Ok(Scene::new(around, self.registries.of(&path, &libraries)))
     }
 }
 

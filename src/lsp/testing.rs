@@ -9,10 +9,13 @@ use super::complete::complete;
 use super::file::File;
 use super::hover::hover;
 use super::laws;
+use super::links::links;
 use super::navigate::{definition, references};
 use super::rename::rename;
 use super::scene::Scene;
+use super::shape::{self, folds};
 use super::symbols::symbols;
+use super::workspace::Around;
 
 static REGISTRY: LazyLock<Arc<Registry>> = LazyLock::new(|| Arc::new(Registry::linked().unwrap()));
 
@@ -39,12 +42,16 @@ fn scene_named(name: &str, text: &str, others: &[(&str, &str)]) -> Scene {
         let make = if is_xml { File::new } else { File::beside };
         Arc::new(make(PathBuf::from("/fleet").join(name), text.into()))
     });
-    Scene::new(files.collect(), Arc::clone(&REGISTRY))
+    made(files.collect())
 }
 
 /// The scene of a text that is in a file on disk, or would be.
 pub(super) fn scene_at(path: &Path, text: &str) -> Scene {
-    Scene::new(vec![Arc::new(File::new(path.to_owned(), text.into()))], Arc::clone(&REGISTRY))
+    made(vec![Arc::new(File::new(path.to_owned(), text.into()))])
+}
+
+fn made(files: Vec<Arc<File>>) -> Scene {
+    Scene::new(Around { own: files.len(), files }, Arc::clone(&REGISTRY))
 }
 
 /// A composite of 1.1 with this inside.
@@ -78,6 +85,13 @@ pub(super) fn ask_everything_in(name: &str, text: &str, at: usize, others: &[(&s
     }
     scene.fleets();
     symbols(file);
+    links(&scene);
+    assert!(folds(file).iter().all(|one| one.start_line < one.end_line));
+    let around = shape::around(file, at);
+    assert!(around.iter().all(|range| text.get(range.clone()).is_some()));
+    assert!(
+        around.is_sorted_by(|one, wider| wider.start <= one.start && one.end <= wider.end && one != wider)
+    );
     let near = file.lines.offset(text, file.lines.position(text, at));
     assert_eq!(file.lines.offset(text, file.lines.position(text, near)), near);
 }

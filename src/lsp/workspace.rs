@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
-use saoms_core::load::{MAX_SIZE, composites_near, description_near};
+use saoms_core::load::{MAX_SIZE, composites_near, description_near, imported_near};
 use saoms_core::source::{OpenTexts, identity};
 
 use super::file::File;
@@ -25,11 +25,20 @@ pub(super) struct Workspace {
     listings: HashMap<PathBuf, (Instant, Listing)>,
 }
 
-/// The composites around a folder, and what describes their contribution.
+/// The composites around a folder, what describes their contribution, and what that imports.
 #[derive(Clone, Debug, Default)]
 struct Listing {
     composites: Vec<PathBuf>,
     description: Option<PathBuf>,
+    imported: Vec<PathBuf>,
+}
+
+/// A file, first, and those that it has to do with.
+#[derive(Clone, Debug)]
+pub(super) struct Around {
+    pub(super) files: Vec<Arc<File>>,
+    /// How many of them are of its contribution; those behind are imported.
+    pub(super) own: usize,
 }
 
 /// By what a change on disk shows.
@@ -77,9 +86,9 @@ impl Workspace {
     }
 
     /// The composites that one in this file can name, and it itself, first; then what describes their contribution, and the files that they take
-    /// values from. Around such a file are the composites around one that takes values from it.
-    pub(super) fn around(&mut self, path: &Path) -> Vec<Arc<File>> {
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    /// values from; last the composites that the contribution imports. Around such a file are the composites around one that takes values from it.
+    pub(super) fn around(&mut self, path: &Path) -> Around {
+        let mut folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let mut others = self.composites_in(&folder, path);
         let holds_values = |others: &[Arc<File>]| written(others).iter().any(|one| identity(one) == path);
         let is_table = path.extension().is_some_and(|ending| VALUES.iter().any(|known| ending == *known));
@@ -92,6 +101,7 @@ impl Workspace {
                 known.filter(|file| holds_values(std::slice::from_ref(file))).map(|file| &file.path).min();
             if let Some(owner) = owner.and_then(|owner| owner.parent()).map(Path::to_owned) {
                 others = self.composites_in(&owner, path);
+                folder = owner;
             }
         }
         let mut all: Vec<Arc<File>> = self.file(path, is_beside).into_iter().chain(others).collect();
@@ -101,7 +111,13 @@ impl Workspace {
                 all.extend(self.file(&path, true));
             }
         }
-        all
+        let own = all.len();
+        for path in self.listing(&folder).imported {
+            if known.insert(path.clone()) {
+                all.extend(self.file(&path, false));
+            }
+        }
+        Around { files: all, own }
     }
 
     /// All composites in these folders, and those around the files that are open.
@@ -117,16 +133,25 @@ impl Workspace {
 
     /// The composites that one in a folder can name, and what describes its contribution, but for one file.
     fn composites_in(&mut self, folder: &Path, but: &Path) -> Vec<Arc<File>> {
-        let is_fresh = |(then, _): &(Instant, Listing)| then.elapsed() < FRESH;
-        if !self.listings.get(folder).is_some_and(is_fresh) {
-            let composites = composites_near(folder, &self.open);
-            let description = description_near(folder).map(|path| identity(&path));
-            let found = Listing { composites, description };
-            self.listings.insert(folder.to_owned(), (Instant::now(), found));
-        }
-        let listed = self.listings.get(folder).map(|(_, found)| found.clone()).unwrap_or_default();
+        let listed = self.listing(folder);
         let others = listed.composites.iter().chain(&listed.description).filter(|other| *other != but);
         others.filter_map(|one| self.file(one, false)).collect()
+    }
+
+    fn listing(&mut self, folder: &Path) -> Listing {
+        let is_fresh = |(then, _): &&(Instant, Listing)| then.elapsed() < FRESH;
+        if let Some((_, known)) = self.listings.get(folder).filter(is_fresh) {
+            return known.clone();
+        }
+        let composites = composites_near(folder, &self.open);
+        let description = description_near(folder).map(|path| identity(&path));
+        let imported = match &description {
+            Some(_) => imported_near(folder, &self.open).iter().map(|path| identity(path)).collect(),
+            None => Vec::new(),
+        };
+        let found = Listing { composites, description, imported };
+        self.listings.insert(folder.to_owned(), (Instant::now(), found.clone()));
+        found
     }
 }
 

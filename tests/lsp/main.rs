@@ -5,6 +5,7 @@
 mod beside;
 mod disk;
 mod editor;
+mod imported;
 mod random;
 
 use std::fs;
@@ -13,8 +14,8 @@ use serde_json::{Value, json};
 
 use editor::Editor;
 
-const OUTER: &str = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"outer\" targetNamespace=\"urn:f\">
-  <include name=\"inner\"/>
+const OUTER: &str = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"outer\" targetNamespace=\"urn:f\" xmlns:tns=\"urn:f\">
+  <include name=\"tns:inner\"/>
 </composite>
 ";
 const INNER: &str = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"inner\" targetNamespace=\"urn:f\">

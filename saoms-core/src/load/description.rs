@@ -55,6 +55,11 @@ impl Entry {
     pub(super) fn is(&self, kind: Kind, what: &str) -> bool {
         self.kind == kind && self.what == what
     }
+
+    /// The namespace that it is about.
+    pub(super) fn namespace(&self) -> Option<&str> {
+        (self.kind == Kind::Namespace).then_some(&self.what)
+    }
 }
 
 impl Deployable {

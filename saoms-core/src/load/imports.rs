@@ -4,10 +4,11 @@ use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::MAX_SIZE;
 use super::description::{self, Description, Kind};
-use super::shelf::Shelf;
+use super::shelf::{self, Shelf};
 use crate::diagnostic::{Diagnostics, quoted};
-use crate::source::{Sources, identity};
+use crate::source::{OpenTexts, Sources, identity};
 
 /// Folders beside a contribution in which those that it imports from are looked for.
 const MOST_BESIDE: usize = 1_000;
@@ -151,6 +152,25 @@ impl Imports {
             .or_insert_with(|| Description::of(root, max_size, sources, diagnostics));
         known.as_ref()
     }
+}
+
+/// The files of the composites that the contribution of `folder` imports from others, which export them. What is wrong with their descriptions is not told.
+pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
+    let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
+    let mut imports = Imports::new(Vec::new(), MAX_SIZE);
+    let root = shelf::root(folder);
+    let description = imports.description(&root, &mut sources, &mut diagnostics);
+    let entries = description.into_iter().flat_map(|one| &one.imports);
+    let namespaces: Vec<String> = entries.filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
+    let mut shelf = Shelf::new(open.clone());
+    let mut all = Vec::new();
+    for namespace in namespaces {
+        for other in imports.exporters(&root, Kind::Namespace, &namespace, &mut sources, &mut diagnostics) {
+            let composites = shelf.contribution(&other).0.into_iter();
+            all.extend(composites.filter(|path| shelf.is_of(path, &namespace)));
+        }
+    }
+    all
 }
 
 /// The folders of contributions in the folder that a contribution is in.

@@ -37,6 +37,7 @@ use std::sync::Arc;
 
 pub use component_type::load_component_type;
 pub use folder::{FolderFleet, composites_below, load_folder};
+pub use imports::imported_near;
 pub use named::load_named;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 pub use shelf::{composites_near, description_near};

@@ -232,6 +232,11 @@ impl Shelf {
         listing
     }
 
+    /// Whether a file holds a composite of this namespace.
+    pub(super) fn is_of(&mut self, path: &Path, namespace: &str) -> bool {
+        self.head(path).as_ref().is_some_and(|head| head.namespace == namespace)
+    }
+
     fn head(&mut self, path: &Path) -> &Option<Head> {
         self.heads.entry(path.to_owned()).or_insert_with(|| head(path, &self.open))
     }
@@ -268,7 +273,7 @@ pub(super) fn describes(folder: &Path) -> bool {
 }
 
 /// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.
-fn root(folder: &Path) -> PathBuf {
+pub(super) fn root(folder: &Path) -> PathBuf {
     // The folder that we are in, which an empty path means, has no absolute one by that name.
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(absolute) = std::path::absolute(here) else { return folder.to_owned() };

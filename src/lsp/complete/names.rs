@@ -207,7 +207,10 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
     let deployed = file.outline.deployables.iter().filter(|one| one.element != element);
     let deployed: Vec<usize> = deployed.filter_map(|one| scene.composite(0, one)).collect();
     let root = file.tree.elements.first().map(|root| root.name.end);
-    let others = scene.files.iter().enumerate().skip(1);
+    let default = file.tree.resolve(&file.text, element, "");
+    // What a contribution runs is its own.
+    let is_known = |place: usize| !(file.is_description() && scene.is_imported(place));
+    let others = scene.files.iter().enumerate().skip(1).filter(|(place, _)| is_known(*place));
     others
         .filter_map(|(place, other)| {
             let name = &other.outline.name.as_ref()?.text;
@@ -215,6 +218,8 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
             let bound =
                 file.tree.prefix_of(&file.text, element, namespace).filter(|prefix| !prefix.is_empty());
             let written = bound.map_or_else(|| name.clone(), |prefix| format!("{prefix}:{name}"));
+            // Without a prefix it is of the default namespace.
+            let is_plain = namespace.is_empty() || default == Some(namespace.as_str());
             // A name that would lead elsewhere, or nowhere, is of no use.
             let meant = Named { element, text: written.clone(), at: range.clone() };
             let leads = scene.composite(0, &meant) == Some(place);
@@ -226,11 +231,13 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
             };
             match root {
                 _ if deployed.contains(&place) => None,
-                _ if leads => Some(one(written)),
-                Some(root) if bound.is_none() && !namespace.is_empty() => {
-                    let prefix = free_prefix(scene, element, namespace);
+                _ if leads && (bound.is_some() || is_plain) => Some(one(written)),
+                Some(root) if bound.is_none() && !is_plain => {
+                    let is_own = *namespace == file.outline.namespace;
+                    let prefix = free_prefix(scene, element, if is_own { "tns" } else { namespace });
                     let declaration = format!(" xmlns:{prefix}=\"{namespace}\"");
-                    Some(one(format!("{prefix}:{name}")).also(root, declaration).rank(6))
+                    let rank = if is_own { 5 } else { 6 };
+                    Some(one(format!("{prefix}:{name}")).also(root, declaration).rank(rank))
                 }
                 _ => None,
             }

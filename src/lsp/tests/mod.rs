@@ -7,5 +7,6 @@ mod hover;
 mod marked;
 mod names;
 mod session;
+mod shape;
 mod sound;
 mod topics;

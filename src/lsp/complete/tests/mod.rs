@@ -194,13 +194,14 @@ fn composites_of_other_files_are_known() {
         ("else.composite", "<composite name=\"else\" targetNamespace=\"urn:e\"/>"),
     ];
     let among = |inside: &str| proposed_among(&composite(inside), &others);
-    // One of another namespace cannot be named without a prefix, which is declared.
-    assert_eq!(among("<include name=\"|\"/>"), ["inner", "e:else"]);
+    // Without a prefix a name is of the default namespace, so that prefixes are declared.
+    assert_eq!(among("<include name=\"|\"/>"), ["tns:inner", "e:else"]);
+    assert_eq!(among("<include xmlns=\"urn:e\" name=\"|\"/>"), ["else", "tns:inner"]);
     let (scene, at) = scene(&composite("<include name=\"|\"/>"), &others);
     let found = complete(&scene, at).into_iter().find(|one| one.label == "e:else").unwrap();
     let more = found.into_item(scene.file(), false).additional_text_edits.unwrap();
     assert_eq!(more[0].new_text, " xmlns:e=\"urn:e\"");
-    assert_eq!(among("<include xmlns:e=\"urn:e\" name=\"|\"/>"), ["e:else", "inner"]);
+    assert_eq!(among("<include xmlns:e=\"urn:e\" name=\"|\"/>"), ["e:else", "tns:inner"]);
     let uses = "<component name=\"I\"><implementation.composite name=\"inner\"/>";
     assert_eq!(among(&format!("{uses}<property name=\"|\"/>")), ["size"]);
     assert_eq!(among(&format!("{uses}<reference name=\"|\"/>")), ["power"]);
