@@ -8,10 +8,10 @@ use super::global;
 use super::offer::Side;
 use super::parameters::{Found, Parameters, Place};
 use super::raw::Piece;
-use super::report::{Report, list};
+use super::report::{Report, escaped, list, replacing};
 use super::target::parts;
 use super::value_type::{self, Match, Typed};
-use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Component, ComponentType, ImplementationKind, Multiplicity, Part, Property, Reference};
 use crate::source::{Location, Text};
 
@@ -51,7 +51,8 @@ impl<'a> Fleet<'a> {
         names
     }
 
-    /// Reports the name of a service or reference that such a component does not have, as far as anybody knows.
+    /// Reports the name of a service or reference that such a component does not have, as far as anybody knows. Where nobody does, one that is
+    /// nearly a name that the component itself has is probably that one.
     pub(super) fn unknown_name(
         &self,
         member: usize,
@@ -60,18 +61,44 @@ impl<'a> Fleet<'a> {
         (name, at): (&str, Location),
         report: &mut Report<'_>,
     ) {
-        let Some(known) = self.known(member) else { return };
         let component = self.members[member].component;
         // Those that the component has itself are held against the file where they are written.
         let is_own = match side {
             Side::Service => component.service(name).is_some(),
             Side::Reference => component.reference(name).is_some(),
         };
-        if !is_own {
-            let names: Vec<&str> = known.names(side).collect();
-            known.lacks((code, rule), side.name(), (&component.name, name, at), &names, report);
+        if is_own || self.members[member].kind != Kind::Given {
+            return;
         }
+        let known = self.known(member).map(|known| (known, known.names(side).collect::<Vec<_>>()));
+        if let Some((known, names)) = known.filter(|(known, names)| known.is_whole || !names.is_empty()) {
+            return known.lacks((code, rule), side.name(), (&component.name, name, at), &names, report);
+        }
+        let own = self.written_names(member, side);
+        let Some(meant) = nearest(name, own).filter(|meant| is_slip(name, meant)) else { return };
+        let what = side.name();
+        let message = format!("component {} declares no {what} {}", quoted(&component.name), quoted(name));
+        let mut one = Diagnostic::new(code, at, message).severity(Severity::Warning);
+        let declared = match side {
+            Side::Service => component.service(meant).map(|one| &one.name),
+            Side::Reference => component.reference(meant).map(|one| &one.name),
+        };
+        if let Some(declared) = declared {
+            one = one.label(declared.location, "what it declares");
+        }
+        one = one.suggest(replacing(name, meant), at, escaped(meant));
+        one = one.help("if its class has both, declare this one in the component as well");
+        report.push(match rule {
+            Some(rule) => one.rule(rule),
+            None => one,
+        });
     }
+}
+
+/// Whether a name that is like another one may be meant for it: not where only their numbers differ, or one adds a word to the other.
+fn is_slip(name: &str, meant: &str) -> bool {
+    let without = |name: &str| name.replace(|c: char| c.is_ascii_digit(), "");
+    name.len().abs_diff(meant.len()) <= 2 && without(name) != without(meant)
 }
 
 impl<'a> Known<'a> {

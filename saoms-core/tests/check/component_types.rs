@@ -281,3 +281,36 @@ fn what_has_to_be_supplied_has_a_value() {
     "#]]
     .assert_eq(&found(wrong, &[("Run.componentType", types)], true));
 }
+
+#[test]
+fn a_slip_in_a_name_that_a_component_of_an_unknown_class_declares_is_told() {
+    let inside = |service: &str, reference: &str, target: &str, source: &str| {
+        format!(
+            r#"<service name="s" promote="A/{service}"/>
+<reference name="r" promote="A/{reference}"/>
+<component name="A"><implementation.java class="x.Unknown"/><service name="ItemCollection"/>
+  <reference name="stockQuotes" multiplicity="0..1"/><reference name="next" multiplicity="0..1"/></component>
+<component name="B"><implementation.java class="x.Unknown"/><reference name="out" target="A/{target}"/></component>
+<wire source="A/{source}" target="B"/>"#
+        )
+    };
+    let near = inside("ItemColection", "stokQuotes", "ItemsCollection", "nxt");
+    let more = "help: if its class has both, declare this one in the component as well";
+    expect![[r#"
+        2:30-43 warning S2021: component `A` declares no service `ItemColection`
+          4:76-90 what it declares
+          fix: replace `ItemColection` with `ItemCollection` [2:30-43 "ItemCollection"]
+        3:32-42 warning S2021: component `A` declares no reference `stokQuotes`
+          5:20-31 what it declares
+          fix: replace `stokQuotes` with `stockQuotes` [3:32-42 "stockQuotes"]
+        6:93-108 warning S2012: component `A` declares no service `ItemsCollection`
+          4:76-90 what it declares
+          fix: replace `ItemsCollection` with `ItemCollection` [6:93-108 "ItemCollection"]
+        7:17-20 warning S2016: component `A` declares no reference `nxt`
+          5:71-75 what it declares
+          fix: replace `nxt` with `next` [7:17-20 "next"]
+    "#]]
+    .assert_eq(&found(&near, &[], true).replace(&format!("  {more}\n"), ""));
+    let apart = inside("ItemCollection2", "other", "LocalItemCollection", "stockQuotes");
+    expect![""].assert_eq(&found(&apart, &[], true));
+}
