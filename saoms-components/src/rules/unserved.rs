@@ -1,5 +1,7 @@
 //! Scenarios of which nothing comes, so that a run would wait for ever.
 
+use std::ops::Range;
+
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
 use super::robots::{Known, may_be_others, publishes_beside_robots, robots};
@@ -28,37 +30,50 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let scenarios = fleet.all::<Environment>();
     let scenarios: Vec<(usize, Happenings)> =
         scenarios.map(|(index, properties)| (index, Happenings::of(&properties.scenario))).collect();
-    let is_awaked = scenarios.iter().any(|(_, has)| has.airplanes);
+    let is_awaked = scenarios.iter().any(|(_, has)| has.airplanes.is_some());
     let judged = scenarios.iter().filter_map(|(index, has)| {
-        let (message, help) = judge(fleet, has, is_awaked).or_else(|| airplanes(fleet, has))?;
-        Some(Finding::new(Place::property("scenario").in_component(*index), message).help(help))
+        let (first, message, help) = judge(fleet, has, is_awaked).or_else(|| airplanes(fleet, has))?;
+        let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
+        Some(Finding::new(place, message).help(help))
     });
     judged.collect()
 }
 
+/// Where a scenario says first that something happens: which of its texts, and the bytes of the word.
+type First = (usize, Range<usize>);
+
 /// What happens in a scenario.
 struct Happenings {
-    events: bool,
-    luggage: bool,
-    airplanes: bool,
+    events: Option<First>,
+    luggage: Option<First>,
+    airplanes: Option<First>,
 }
+
+/// What is wrong, where, and what to do.
+type Judged<'h> = (&'h First, &'static str, &'static str);
 
 impl Happenings {
     fn of(texts: &[String]) -> Happenings {
         let (scenario, _) = Scenario::read_partly(texts);
-        let any = |is: fn(&Happening) -> bool| scenario.lines().iter().any(|line| is(&line.happening));
+        let first = |is: fn(&Happening) -> bool| {
+            let line = scenario.lines().iter().find(|line| is(&line.happening))?;
+            Some((line.text, line.bytes.clone()))
+        };
         Happenings {
-            events: any(|one| *one != Happening::End),
-            luggage: any(|one| matches!(one, Happening::Luggage { .. })),
-            airplanes: any(|one| matches!(one, Happening::Landing(_) | Happening::Takeoff(_))),
+            events: first(|one| *one != Happening::End),
+            luggage: first(|one| matches!(one, Happening::Luggage { .. })),
+            airplanes: first(|one| matches!(one, Happening::Landing(_) | Happening::Takeoff(_))),
         }
     }
 }
 
 /// Why nothing comes of a scenario, and what to do.
-fn judge(fleet: &FleetView<'_>, has: &Happenings, is_awaked: bool) -> Option<(&'static str, &'static str)> {
-    if has.events && !publishes_beside_robots(fleet, EVENT_LUGGAGE.name()) {
+fn judge<'h>(fleet: &FleetView<'_>, has: &'h Happenings, is_awaked: bool) -> Option<Judged<'h>> {
+    if let Some(first) = &has.events
+        && !publishes_beside_robots(fleet, EVENT_LUGGAGE.name())
+    {
         return Some((
+            first,
             "nobody passes the events of this scenario on to the robots",
             "add a `saoms.MasterEnvironment`",
         ));
@@ -66,28 +81,34 @@ fn judge(fleet: &FleetView<'_>, has: &Happenings, is_awaked: bool) -> Option<(&'
     let robots = robots(fleet);
     // Safe robots awake for luggage by themselves, classic ones do not.
     let comes = |robot: &Known| !robot.properties.asleep || robot.properties.policy == Policy::Safe;
-    if !has.luggage || robots.iter().any(comes) {
+    let first = has.luggage.as_ref()?;
+    if robots.iter().any(comes) {
         return None;
     }
     if robots.is_empty() {
         // One with a fault of its own is there, too.
         let is_none = fleet.indices::<Robot>().next().is_none();
-        return is_none
-            .then_some(("no robot is there to bring the luggage of this scenario", "add a `saoms.Robot`"));
+        return is_none.then_some((
+            first,
+            "no robot is there to bring the luggage of this scenario",
+            "add a `saoms.Robot`",
+        ));
     }
     let message = "all robots sleep, and none is awaked to bring the luggage of this scenario";
     if !publishes_beside_robots(fleet, ROBOT_STATE.name()) {
         let help = "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for landings and take-offs";
-        return Some((message, help));
+        return Some((first, message, help));
     }
     let help =
         "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are awaked";
-    (!is_awaked).then_some((message, help))
+    (!is_awaked).then_some((first, message, help))
 }
 
 /// Airplanes for which nobody does anything.
-fn airplanes(fleet: &FleetView<'_>, has: &Happenings) -> Option<(&'static str, &'static str)> {
-    (has.airplanes && fleet.all::<MasterRobot>().next().is_none()).then_some((
+fn airplanes<'h>(fleet: &FleetView<'_>, has: &'h Happenings) -> Option<Judged<'h>> {
+    let first = has.airplanes.as_ref()?;
+    fleet.all::<MasterRobot>().next().is_none().then_some((
+        first,
         "nobody reacts to the landings and take-offs of this scenario",
         "add a `saoms.MasterRobot`, which awakes robots for them",
     ))

@@ -176,6 +176,8 @@ fn runnable<'a>(component: &'a Component, assume_classes: bool, report: &mut Rep
         ImplementationKind::Other { .. } if assume_classes => None,
         ImplementationKind::Other { kind, .. } => {
             let message = format!("{} cannot run here", quoted(&format!("implementation.{kind}")));
+            // What it lacks does not matter then.
+            report.withdraw(&codes::MISSING_ATTRIBUTE, implementation.tag());
             let one = Diagnostic::new(&codes::IMPLEMENTATION_UNSUPPORTED, implementation.tag(), message);
             report.push(one.help(SUPPORTED));
             None

@@ -14,7 +14,7 @@ use super::properties::Given;
 use super::report::Report;
 use super::value_type::{self, Typed};
 use super::written::type_and_element;
-use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Component, ComponentType, Multiplicity, Part, Property, Reference, Version};
 use crate::source::{Location, Text};
 
@@ -172,7 +172,13 @@ pub(super) fn value(described: &ComponentType, name: &str, given: &Given, report
 pub(super) fn supplied(component: &Component, described: &ComponentType, report: &mut Report<'_>) {
     for property in &described.properties {
         let must = property.must_supply().is_some_and(|must| must.value) && !property.has_value();
-        if must && component.property(&property.name).is_none() {
+        let is_misspelt = || {
+            let unknown = component.properties.iter().filter(|given| {
+                described.properties.iter().all(|declared| declared.name != *given.name.value)
+            });
+            unknown.into_iter().any(|given| nearest(&given.name, [property.name.as_str()]).is_some())
+        };
+        if must && component.property(&property.name).is_none() && !is_misspelt() {
             let message = format!(
                 "component {} lacks the property {}",
                 quoted(&component.name),

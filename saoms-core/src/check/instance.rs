@@ -31,13 +31,19 @@ pub(super) struct Replica {
     pub(super) instance: Instance,
 }
 
+/// What others call the index of replicas.
+pub(super) const COUNTERS: [&str; 8] = ["i", "n", "nr", "no", "num", "idx", "counter", "replica"];
+
 impl Instance {
     /// The value of a name in an expression.
     pub(super) fn value(&self, name: &str) -> Result<Value, Problem> {
         match name {
             INDEX => Ok(Value::Integer(self.index)),
             name => self.names.value(name).map_err(|problem| match nearest(name, [INDEX]) {
-                Some(_) => problem.instead(INDEX),
+                Some(_) => Problem { help: None, ..problem.instead(INDEX) },
+                None if COUNTERS.contains(&name) && problem.instead.is_none() => {
+                    Problem { help: None, ..problem.instead(INDEX) }
+                }
                 None => problem,
             }),
         }

@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::rc::Rc;
 
 use super::instance::Instance;
@@ -79,7 +80,7 @@ impl<'a> Levels<'a> {
             let test =
                 if is_deep { None } else { Some(Test::of(step).ok_or_else(|| no_step(at.clone(), step))?) };
             if let Some(test) = test.as_ref().filter(|_| is_last) {
-                let found = level.find(test).map_err(|message| Fault::new(at, message))?;
+                let found = level.find(at, test)?;
                 return Ok(Raw::of_elements(&found, self.instance));
             }
             let key = (inside.is_some(), path[..at.end].to_owned());
@@ -88,7 +89,7 @@ impl<'a> Levels<'a> {
                 Some(known) => known,
                 None => {
                     let next = match &test {
-                        Some(test) => Level::of(level.find(test).map_err(|message| Fault::new(at, message))?),
+                        Some(test) => Level::of(level.find(at, test)?),
                         None => level.deep(),
                     };
                     let next = Rc::new(next);
@@ -155,7 +156,7 @@ impl<'a> Level<'a> {
     }
 
     /// The elements that a step leads to, or why it leads to none.
-    fn find(&self, test: &Test<'_>) -> Result<Vec<Element<'a>>, String> {
+    fn find(&self, at: Range<usize>, test: &Test<'_>) -> Result<Vec<Element<'a>>, Fault> {
         let named = self.named(test.name);
         let mut found = match &test.predicate {
             None => named.to_vec(),
@@ -172,7 +173,7 @@ impl<'a> Level<'a> {
         if self.is_deep {
             found.sort_unstable_by_key(|one| one.id());
         }
-        if found.is_empty() { Err(test.fault(&self.here, named)) } else { Ok(found) }
+        if found.is_empty() { Err(test.fault(at, &self.here, named)) } else { Ok(found) }
     }
 
     fn by_value(&self, name: Option<&str>, of: &str) -> ByValue<'a> {

@@ -1,6 +1,6 @@
 //! What the names in expressions stand for: the properties of a composite.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 
 use super::options::Options;
@@ -21,6 +21,8 @@ pub(super) struct Names {
 struct Name {
     /// The property, where its value is not of its type.
     mistyped: Option<Property>,
+    /// Whether it has no value, and that is told.
+    is_told: Cell<bool>,
     /// The text of the value and where it stands.
     text: Option<Text>,
     value: Result<Value, Problem>,
@@ -48,7 +50,10 @@ impl Names {
                     let text = given(property, outside, options).or_else(|| property.simple_value().cloned());
                     let value = value(property, text.as_ref());
                     let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
-                    Name { mistyped, text, value }
+                    // What has to be supplied and is not is told where it should be.
+                    let must = property.must_supply().is_some_and(|must| must.value);
+                    let is_told = Cell::new(must && text.is_none() && !property.has_value());
+                    Name { mistyped, is_told, text, value }
                 });
             }
         }
@@ -62,12 +67,15 @@ impl Names {
         found.value.clone()
     }
 
-    /// Whether an expression has no value because that of a name is not of its type: that is told of the value, and once.
-    pub(super) fn tell_mistyped(&self, name: &str, report: &mut Report<'_>) -> bool {
-        let Some(Name { mistyped: Some(property), text: Some(text), .. }) = self.all.get(name) else {
-            return false;
-        };
-        report.of_all(|report| !value_type::holds_by_name(property, text, report))
+    /// Whether an expression has no value because a name has none, or one that is not of its type: that is told, and once.
+    pub(super) fn tell_value(&self, name: &str, report: &mut Report<'_>) -> bool {
+        match self.all.get(name) {
+            Some(Name { mistyped: Some(property), text: Some(text), .. }) => {
+                report.of_all(|report| !value_type::holds_by_name(property, text, report))
+            }
+            Some(Name { is_told, text: None, .. }) => is_told.replace(true),
+            _ => false,
+        }
     }
 
     /// Where the value of a name is written.
@@ -146,9 +154,14 @@ fn given(property: &Property, outside: Option<Outside<'_>>, options: &Options) -
 fn value(property: &Property, text: Option<&Text>) -> Result<Value, Problem> {
     let name = quoted(&property.name);
     let Some(text) = text else {
+        if !property.has_value() {
+            let help = "write it in the file, or give it with `--set`, or in the component that the composite implements";
+            return Err(Problem::new(format!("the property {name} has no value")).help(help));
+        }
         return Err(Problem::new(format!("the property {name} has no simple value")));
     };
-    let of = property.r#type().map(|of| of.rsplit(':').next().unwrap_or(of)).unwrap_or_default();
+    let of = property.r#type().filter(|of| !value_type::is_misspelt(of));
+    let of = of.map(|of| of.rsplit(':').next().unwrap_or(of)).unwrap_or_default();
     let boolean = match text.as_str() {
         "true" => Some(true),
         "false" => Some(false),

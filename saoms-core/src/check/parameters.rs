@@ -10,10 +10,10 @@ use super::levels::Levels;
 use super::options::Options;
 use super::path::{Fault, expression, one_of};
 use super::raw::{Piece, Raw, beside_source, raw};
-use super::report::Report;
+use super::report::{Report, escaped, replacing};
 use super::value_type::{self, Match, Typed};
 use super::{Setting, Variable};
-use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
 
@@ -238,6 +238,19 @@ impl<'a> Parameters<'a> {
         Some(Typed { property: found.property, document: &found.composite.document })
     }
 
+    /// Where the composite property is that a `source` names, and how it can get a value.
+    pub(super) fn supply(&self, unit: usize, source: &str) -> Option<(Location, String)> {
+        let (name, _) = expression(source)?;
+        let Parameter { property, given, .. } = self.units[unit].by_name.get(name)?;
+        let help = match given {
+            Some(Given::Component(..)) => {
+                format!("give {} a value in the component that the composite implements", quoted(name))
+            }
+            _ => from_outside(property),
+        };
+        Some((property.name.location, help))
+    }
+
     /// What `source` stands for in this unit. Faults are reported.
     pub(super) fn resolve(
         &mut self,
@@ -292,9 +305,17 @@ impl<'a> Parameters<'a> {
         parameter.is_used = true;
         let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
         let start = name.len() + 1;
-        let fault = |Fault { step, message, is_understood }: Fault, report: &mut Report<'_>| {
-            let at = report.part(source, start + step.start..start + step.end);
-            let one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
+        let fault = |Fault { step, message, is_understood, instead }: Fault, report: &mut Report<'_>| {
+            let step = start + step.start..start + step.end;
+            let at = report.part(source, step.clone());
+            let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
+            if let Some((name, meant)) = instead
+                && let Some(place) = source[step.clone()].find(&name)
+            {
+                let place = step.start + place;
+                let place = report.part(source, place..place + name.len());
+                one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
+            }
             report.push(if is_understood { one } else { taken_as_given(one, report.assumes) });
         };
         if let (Some(levels), Some(path)) = (&parameter.levels, path.filter(|path| path.starts_with('/'))) {
@@ -359,7 +380,7 @@ impl<'a> Parameters<'a> {
         let used = all.filter(|parameter| parameter.is_used).map(|parameter| parameter.property.origin);
         let used: HashSet<_> = used.map(|origin| (origin.file(), origin.element)).collect();
         for (unit, declared) in fleet.units.iter().zip(&self.units).filter(|(unit, _)| !unit.is_absent) {
-            let owner = fleet.scopes[unit.scope].owner.map(|owner| fleet.members[owner].component);
+            let owner = fleet.scopes[unit.scope].owner.map(|owner| &fleet.members[owner]);
             for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
                 let Some(parameter) = declared.by_name.get(property.name.as_str()) else { continue };
                 if !std::ptr::eq(parameter.property, property) {
@@ -367,8 +388,12 @@ impl<'a> Parameters<'a> {
                 }
                 let name = &property.name;
                 let must = property.must_supply().is_some_and(|must| must.value);
-                if must && !property.has_value() && parameter.given.is_none() {
-                    report.push(missing(name, owner, report.assumes));
+                let is_given =
+                    parameter.given.is_some() || owner.is_some_and(|owner| is_misspelt(name, owner, unit));
+                if must && !property.has_value() && !is_given {
+                    owner.into_iter().for_each(|owner| report.about(owner));
+                    report.push(missing(property, owner.map(|owner| owner.component), report.assumes));
+                    report.about_all();
                 }
                 let origin = property.origin;
                 let is_open = declared.has_wrong_source || fleet.scopes[unit.scope].is_faulty;
@@ -385,7 +410,6 @@ impl<'a> Parameters<'a> {
     }
 }
 
-/// The properties of a composite and of what it includes. Repeated ones are reported.
 /// Whoever runs a composite of another program may understand more of XPath.
 fn taken_as_given(one: Diagnostic, assumes: bool) -> Diagnostic {
     match assumes {
@@ -396,6 +420,7 @@ fn taken_as_given(one: Diagnostic, assumes: bool) -> Diagnostic {
     }
 }
 
+/// The properties of a composite and of what it includes. Repeated ones are reported.
 fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
     let mut all = Declared::default();
     let properties = unit
@@ -421,12 +446,23 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
     all
 }
 
+/// Whether the component that a composite implements gives this property under a misspelt name, which is reported.
+fn is_misspelt(name: &str, owner: &Member<'_>, unit: &Unit<'_>) -> bool {
+    let is_known = |given: &Property| {
+        let declared = unit.composites.iter().flat_map(|composite| &composite.properties);
+        declared.into_iter().any(|declared| declared.name == given.name.as_str())
+    };
+    let given = owner.component.properties.iter();
+    given.into_iter().any(|given| nearest(&given.name, [name]).is_some() && !is_known(given))
+}
+
 /// A composite property that has to be given a value, by the component that the composite implements where there is one.
-fn missing(name: &Text, owner: Option<&Component>, assumes: bool) -> Diagnostic {
+fn missing(property: &Property, owner: Option<&Component>, assumes: bool) -> Diagnostic {
+    let name = &property.name;
     let Some(owner) = owner else {
         let message = format!("the property {} of the composite has to be given a value", quoted(name));
         let one = Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, name.location, message)
-            .help(format!("write it in the file, or give `--set {name}=...`"));
+            .help(from_outside(property));
         // Where classes are taken as given, so is the component that this composite may implement.
         return match assumes {
             true => one
@@ -443,4 +479,16 @@ fn missing(name: &Text, owner: Option<&Component>, assumes: bool) -> Diagnostic 
     Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, owner.name.location, message)
         .label(name.location, "declared here, without a value")
         .help(format!("add `<property name=\"{name}\">...</property>`"))
+}
+
+/// How a property of a composite that runs by itself gets a value.
+fn from_outside(property: &Property) -> String {
+    let name = &property.name;
+    match property.env() {
+        Some(variable) => format!(
+            "write it in the file, give `--set {name}=...`, or set {} in the environment",
+            quoted(variable)
+        ),
+        None => format!("write it in the file, or give `--set {name}=...`"),
+    }
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::raw::{Piece, Raw};
 use super::report::list;
-use crate::diagnostic::quoted;
+use crate::diagnostic::{nearest, quoted};
 use crate::xml::{Attribute, Element};
 
 /// What is understood, for those who wrote something else.
@@ -25,16 +25,24 @@ pub(super) struct Fault {
     pub(super) message: String,
     /// Whether it is understood what is asked for.
     pub(super) is_understood: bool,
+    /// A name in the step, and the one that is probably meant by it.
+    pub(super) instead: Option<(String, String)>,
 }
 
 impl Fault {
     pub(super) fn new(step: Range<usize>, message: impl Into<String>) -> Self {
-        Self { step, message: message.into(), is_understood: true }
+        Self { step, message: message.into(), is_understood: true, instead: None }
     }
 
     /// Of a step of another form.
     fn unknown(step: Range<usize>, message: String) -> Self {
-        Self { step, message, is_understood: false }
+        Self { step, message, is_understood: false, instead: None }
+    }
+
+    /// With the name among those that there are which is nearly this one.
+    fn near<'n>(mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> Self {
+        self.instead = nearest(name, known).map(|meant| (name.to_owned(), meant.to_owned()));
+        self
     }
 }
 
@@ -161,8 +169,8 @@ impl<'p> Test<'p> {
         Some(Self { name, predicate })
     }
 
-    /// Why it leads to none of these, of which some have its name.
-    pub(super) fn fault(&self, all: &[Element<'_>], named: &[Element<'_>]) -> String {
+    /// Why it, at these bytes, leads to none of these, of which some have its name.
+    pub(super) fn fault(&self, at: Range<usize>, all: &[Element<'_>], named: &[Element<'_>]) -> Fault {
         if named.is_empty() {
             let mut known: Vec<&str> = Vec::new();
             for one in all.iter().take(MOST_LOOKED_AT).map(|one| one.local_name()) {
@@ -171,17 +179,22 @@ impl<'p> Test<'p> {
                 }
             }
             let asked = self.name.map_or(String::new(), |name| format!(" {}", quoted(name)));
-            return match known.is_empty() {
+            let message = match known.is_empty() {
                 true => format!("there is no part{asked}: there are no parts here"),
-                false => format!("there is no part{asked}; the parts are {}", list(known)),
+                false => format!("there is no part{asked}; the parts are {}", list(known.iter().copied())),
             };
+            return Fault::new(at, message).near(self.name.unwrap_or_default(), known);
         }
         let (name, value) = match &self.predicate {
             Some(Predicate::Attribute(name, value)) => (name, value),
             Some(Predicate::Part(name, value)) => {
-                return format!("no part here has {} as its part {}", quoted(value), quoted(name));
+                let message = format!("no part here has {} as its part {}", quoted(value), quoted(name));
+                return Fault::new(at, message);
             }
-            _ => return format!("there {}, from `[1]` on", is_counted(named.len(), self.name)),
+            _ => {
+                let message = format!("there {}, from `[1]` on", is_counted(named.len(), self.name));
+                return Fault::new(at, message);
+            }
         };
         let values = named.iter().take(MOST_LOOKED_AT).filter_map(|one| attribute(*one, name)).take(50);
         let values: Vec<_> = values.map(|one| one.value()).collect();
@@ -189,7 +202,8 @@ impl<'p> Test<'p> {
             true => "none has it".to_owned(),
             false => format!("its values are {}", list(values.iter().map(|value| &**value))),
         };
-        format!("no part here has {} as its {}: {known}", quoted(value), quoted(name))
+        let message = format!("no part here has {} as its {}: {known}", quoted(value), quoted(name));
+        Fault::new(at, message).near(value, values.iter().map(|value| &**value))
     }
 }
 
@@ -246,11 +260,11 @@ fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> Fault {
             known.push(one);
         }
     }
-    let known = match known.is_empty() {
+    let said = match known.is_empty() {
         true => "there are none here".to_owned(),
-        false => format!("the attributes are {}", list(known)),
+        false => format!("the attributes are {}", list(known.iter().copied())),
     };
-    Fault::new(at, format!("there is no attribute {}; {known}", quoted(name)))
+    Fault::new(at, format!("there is no attribute {}; {said}", quoted(name))).near(local(name), known)
 }
 
 /// A name without its prefix.

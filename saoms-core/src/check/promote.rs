@@ -257,7 +257,7 @@ fn find<'f>(
     report: &mut Report<'_>,
 ) -> Option<Place<'f>> {
     let uri = Uri::of(text, 2, (unit.scope, fleet), report)?;
-    let member = uri.member(text, unit.scope, fleet, Some(side.rule()), report)?;
+    let member = uri.member(text, (unit.scope, None), fleet, Some(side.rule()), report)?;
     let names = match side {
         Side::Service => fleet.service_names(member, classes),
         Side::Reference => fleet.reference_names(member, classes),

@@ -264,7 +264,15 @@ pub(super) fn check<'a>(
             Some(property) if unset.contains(&&property.name) => {
                 let message = format!("the property {} has no value: its source has none", quoted(name));
                 let at = property.source().map_or(property.tag(), |source| source.location);
-                report.push(Diagnostic::new(&codes::PROPERTY_MISSING, at, message));
+                let one = Diagnostic::new(&codes::PROPERTY_MISSING, at, message);
+                report.push(
+                    match property.source().and_then(|source| parameters.supply(member.unit, source)) {
+                        Some((declared, help)) => {
+                            one.label(declared, "declared here, without a value").help(help)
+                        }
+                        None => one,
+                    },
+                );
             }
             Some(_) => {}
         }
@@ -370,7 +378,14 @@ fn report_missing(
         }
         other => nearest(other, ["property"]).is_some(),
     };
-    if giver.properties.iter().any(is_meant) || element.children().any(is_property) {
+    // As an attribute, which SCA 1.0 lets pass.
+    let is_attribute = || {
+        let implementation = giver.member.component.implementation.as_ref();
+        let mut elements = std::iter::once(element)
+            .chain(implementation.map(|implementation| implementation.origin.element(document)));
+        giver.member.composite.version.is_1_1() && elements.any(|one| one.attribute(name).is_some())
+    };
+    if giver.properties.iter().any(is_meant) || element.children().any(is_property) || is_attribute() {
         // It is there, misspelt, and that is reported.
         return;
     }

@@ -49,6 +49,14 @@ pub(super) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
     (pairs, faults)
 }
 
+/// A pair with another separator, as it is meant.
+pub(super) fn pair_of(text: &str) -> Option<String> {
+    let (old, new) = ["->", "=", ":", ";"].iter().find_map(|separator| text.split_once(separator))?;
+    let (old, new) = (old.trim(), new.trim());
+    let is_name = |name: &str| !name.is_empty() && !name.contains([':', ',', '=', '-', ';', '>', '<', '&']);
+    (is_name(old) && is_name(new)).then(|| format!("{old},{new}"))
+}
+
 /// The pieces of `text[range]` between separators.
 fn split(text: &str, range: Range<usize>, separator: &str) -> Vec<Range<usize>> {
     let base = range.start;

@@ -264,6 +264,11 @@ fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) 
 
 /// A text of replicas that lacks their index, with it: in place of what looks like it, or else at the end.
 pub(super) fn with_index(text: &str) -> String {
+    as_index(text).unwrap_or_else(|| format!("{text}${{index}}"))
+}
+
+/// A text with the index in place of what looks like it.
+pub(super) fn as_index(text: &str) -> Option<String> {
     /// How others write it.
     const WRITTEN: [(&str, &str); 6] = [
         ("#{index", "${index"),
@@ -274,7 +279,7 @@ pub(super) fn with_index(text: &str) -> String {
         ("[index]", "${index}"),
     ];
     let found = WRITTEN.iter().find(|(written, _)| text.contains(written));
-    found.map_or_else(|| format!("{text}${{index}}"), |(written, meant)| text.replace(written, meant))
+    found.map(|(written, meant)| text.replace(written, meant))
 }
 
 /// The number that an attribute comes to. Faults are reported.
@@ -297,7 +302,7 @@ pub(super) fn condition(
 /// Reports what is wrong with an expression in a text.
 pub(super) fn tell(text: &Text, parts: &Parts, fault: &Fault, names: &Names, report: &mut Report<'_>) {
     let written = text.get(fault.at.clone()).unwrap_or_default();
-    if !names.tell_mistyped(written.trim(), report) {
+    if !names.tell_value(written.trim(), report) {
         report.push(wrong(text, parts, fault, names));
     }
 }

@@ -33,12 +33,14 @@ pub(super) struct Report<'a> {
     /// Whether somebody lets attributes pass that are not known.
     pub(super) lowers_attributes: bool,
     escalated: HashSet<(&'static str, FileId)>,
+    /// The prefixes of types that are bound to nothing, by their files.
+    unbound: HashSet<(FileId, String)>,
     /// What was said where: a composite that implements several components has its faults once.
     said: HashSet<(&'static str, Location, u64)>,
     /// The replica that is looked at.
     copy: Option<Copied>,
     /// What was said of replicas, by its code and place: of the first, and of how many more.
-    copies: Vec<(Diagnostic, Copied, usize)>,
+    copies: Vec<Told>,
     known_copies: HashMap<(&'static str, Location), usize>,
 }
 
@@ -47,6 +49,15 @@ pub(super) struct Report<'a> {
 struct Copied {
     path: Box<str>,
     index: Option<i64>,
+}
+
+/// What was said of replicas at one place.
+struct Told {
+    one: Diagnostic,
+    first: Copied,
+    last: Copied,
+    /// Of how many more than the first.
+    more: usize,
 }
 
 /// How many diagnostics about replicas are kept together; further ones are told as they come.
@@ -66,6 +77,7 @@ impl<'a> Report<'a> {
             tells_echoes: false,
             lowers_attributes: false,
             escalated: HashSet::new(),
+            unbound: HashSet::new(),
             said: HashSet::new(),
             copy: None,
             copies: Vec::new(),
@@ -119,6 +131,11 @@ impl<'a> Report<'a> {
         self.copy = Some(Copied { path: name.into(), index: Some(index) });
     }
 
+    /// Whether what follows is about a replica that has an index of its own.
+    pub(super) fn has_index(&self) -> bool {
+        self.copy.as_ref().is_some_and(|copy| copy.index.is_some())
+    }
+
     /// Lets what follows be about the fleet.
     pub(super) fn about_all(&mut self) {
         self.copy = None;
@@ -134,7 +151,7 @@ impl<'a> Report<'a> {
 
     /// Tells what was said of replicas.
     pub(super) fn finish(&mut self) {
-        for (mut one, Copied { path, index }, more) in std::mem::take(&mut self.copies) {
+        for Told { mut one, first: Copied { path, index }, more, .. } in std::mem::take(&mut self.copies) {
             let path = quoted(&path);
             let mut about = if one.message.contains(&path) { Vec::new() } else { vec![format!("in {path}")] };
             about.extend(index.map(|index| format!("index {index}")));
@@ -153,8 +170,11 @@ impl<'a> Report<'a> {
     fn push_copy(&mut self, mut one: Diagnostic, copy: Copied) {
         let key = (one.code.id, one.location);
         if let Some(known) = self.known_copies.get(&key) {
-            let (_, last, more) = &mut self.copies[*known];
-            if *last != copy {
+            let Told { first, last, more, .. } = &mut self.copies[*known];
+            // What is found again from components inside of a replica is of that one.
+            let depth = |copy: &Copied| copy.path.matches('/').count();
+            if *last != copy && depth(first) == depth(&copy) {
+                *last = copy;
                 *more += 1;
             }
             return;
@@ -172,7 +192,7 @@ impl<'a> Report<'a> {
         one.suggestions = suggestions;
         one.help.extend(of_all.into_iter().map(|suggestion| suggestion.description));
         self.known_copies.insert(key, self.copies.len());
-        self.copies.push((one, copy, 0));
+        self.copies.push(Told { one, first: copy.clone(), last: copy, more: 0 });
     }
 
     /// Adds a diagnostic, unless the same was said of the same place.
@@ -185,6 +205,11 @@ impl<'a> Report<'a> {
         if self.said.len() >= REMEMBERED || self.said.insert(said) {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Whether a prefix is the first one of its name in its file that is told to be bound to nothing.
+    pub(super) fn is_first_unbound(&mut self, file: FileId, prefix: &str) -> bool {
+        self.unbound.insert((file, prefix.to_owned()))
     }
 
     /// Makes errors of all warnings of one code in one file.
@@ -205,7 +230,7 @@ impl<'a> Report<'a> {
 
     /// How many errors there are, as far as they are told.
     pub(super) fn errors(&self) -> usize {
-        let of_copies = self.copies.iter().filter(|(one, ..)| one.severity == Severity::Error);
+        let of_copies = self.copies.iter().filter(|told| told.one.severity == Severity::Error);
         self.diagnostics.errors() + of_copies.count()
     }
 

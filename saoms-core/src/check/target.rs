@@ -85,10 +85,12 @@ impl<'t> Uri<'t> {
     }
 
     /// The component, which has to exist in the scope.
+    ///
+    /// `own` is the component that names it: another one is meant.
     pub(super) fn member(
         &self,
         text: &Text,
-        scope: usize,
+        (scope, own): (usize, Option<usize>),
         fleet: &Fleet<'_>,
         rule: Option<&'static str>,
         report: &mut Report<'_>,
@@ -131,7 +133,9 @@ impl<'t> Uri<'t> {
                 return None;
             }
             let groups = fleet.group_names(scope);
-            let known = ("the components are", fleet.names(scope).chain(groups));
+            let own = own.map(|own| fleet.members[own].component.name.as_str());
+            let names = fleet.names(scope).filter(|name| Some(*name) != own);
+            let known = ("the components are", names.chain(groups));
             let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known);
             report.push(match rule {
                 Some(rule) => one.rule(rule),
@@ -181,12 +185,12 @@ pub(super) fn spread<'t>(
     itself.into_iter().chain(named)
 }
 
-/// The service that a target in a scope leads to, for a reference with this interface, or with any. Faults are reported.
+/// The service that a target in a scope leads to, for a reference of a component with this interface, or with any. Faults are reported.
 ///
 /// Without the name of a service the component has to have exactly one with the interface.
 pub(super) fn target(
     text: &Text,
-    scope: usize,
+    (scope, own): (usize, Option<usize>),
     interface: Option<&InterfaceDeclaration>,
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
@@ -200,10 +204,12 @@ pub(super) fn target(
     let is_elsewhere =
         || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
     if scope == 0 && report.assumes && is_elsewhere() {
-        elsewhere(text, uri.component, fleet, report);
+        elsewhere(text, (uri.component, own), fleet, report);
         return Target::Open;
     }
-    let Some(member) = uri.member(text, scope, fleet, None, report) else { return Target::Wrong };
+    let Some(member) = uri.member(text, (scope, own), fleet, None, report) else {
+        return Target::Wrong;
+    };
     let component = fleet.members[member].component;
     let Some((name, at)) = uri.part.clone() else {
         return match interface {
@@ -359,10 +365,16 @@ fn is_address(text: &str) -> bool {
 }
 
 /// Says that a target is not in the composites at hand. Where things are taken as given, it may be in others of its domain.
-fn elsewhere(text: &Text, component: &str, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+fn elsewhere(
+    text: &Text,
+    (component, own): (&str, Option<usize>),
+    fleet: &Fleet<'_>,
+    report: &mut Report<'_>,
+) {
     let message = format!("there is no component {} in these composites", quoted(component));
     let at = report.part(text, 0..component.len());
-    let known = ("the components are", fleet.names(0));
+    let own = own.map(|own| fleet.members[own].component.name.as_str());
+    let known = ("the components are", fleet.names(0).filter(|name| Some(*name) != own));
     let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, component, known);
     report.push(
         one.severity(Severity::Warning)

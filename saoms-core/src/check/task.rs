@@ -7,7 +7,7 @@ use saoms_api::{PropertyField, PropertyValue};
 use super::classes::ClassIndex;
 use super::properties::Checked;
 use super::renames::{Listed, Unused};
-use super::report::{Report, list};
+use super::report::{Report, list, replacing};
 use super::{endpoint, rename};
 use crate::assembly::{Restart, TaskSettings};
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -181,12 +181,18 @@ fn renames<'a>(
     let (pairs, faults) = rename::parse(text);
     let parts = report.parts(text);
     for fault in faults {
-        let at = parts.part(fault.at);
+        let at = parts.part(fault.at.clone());
         let mut one =
             Diagnostic::new(&codes::TOPIC_RENAME, at, format!("bad `topicRename`: {}", fault.message));
         match fault.other {
             Some((other, what)) => one = one.label(parts.part(other), what),
-            None => one = one.help("write `OLD,new` for each topic, and `::` between two of them"),
+            None => {
+                one = one.help("write `OLD,new` for each topic, and `::` between two of them");
+                let pair = text.get(fault.at.clone()).unwrap_or_default();
+                if let Some(meant) = rename::pair_of(pair) {
+                    one = one.suggest(replacing(pair, &meant), at, meant);
+                }
+            }
         }
         report.push(one);
     }

@@ -2,10 +2,10 @@
 
 use super::lexical::{self, is_digits};
 use super::report::{Report, replacing};
-use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
 use crate::model::{Part, Property};
-use crate::source::{Location, Text};
+use crate::source::{Location, Span, Text};
 use crate::xml::Document;
 
 /// Which type of XML Schema is made of which other one.
@@ -256,11 +256,12 @@ fn derives(name: &str, from: &str) -> bool {
 pub(super) fn named(property: &Property, document: &Document, report: &mut Report<'_>) {
     let Some(of) = property.r#type().filter(|of| !of.is_empty()) else { return };
     let (prefix, local) = of.split_once(':').unwrap_or(("", of));
-    if BUILT_IN_TYPES.contains(&local) {
-        return;
-    }
     let element = document.element(property.origin().element);
-    if element.resolve_prefix(prefix).is_none_or(|namespace| namespace != XML_SCHEMA) {
+    let namespace = element.resolve_prefix(prefix);
+    if namespace.is_none() && !prefix.is_empty() {
+        return unbound(of, (prefix, local), document, report);
+    }
+    if BUILT_IN_TYPES.contains(&local) || namespace.is_none_or(|namespace| namespace != XML_SCHEMA) {
         return;
     }
     let message = format!("XML Schema has no type {}", quoted(local));
@@ -272,4 +273,26 @@ pub(super) fn named(property: &Property, document: &Document, report: &mut Repor
         }
         None => one.help("its types are `string`, `boolean`, `int`, `double` and so on; a type of your own has the prefix of its own namespace"),
     });
+}
+
+/// Reports a type whose prefix is bound to no namespace. It counts as that of its name all the same.
+fn unbound(of: &Text, (prefix, local): (&str, &str), document: &Document, report: &mut Report<'_>) {
+    if !report.is_first_unbound(document.file(), prefix) {
+        return;
+    }
+    let message = format!("the prefix {} of this type is bound to no namespace", quoted(prefix));
+    let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message).severity(Severity::Warning);
+    if !BUILT_IN_TYPES.contains(&local) {
+        return report.push(one.help(format!("declare it: `xmlns:{prefix}=\"...\"`")));
+    }
+    let declaration = format!("xmlns:{prefix}=\"{XML_SCHEMA}\"");
+    let end = Span::empty(document.root().name_span().end).in_file(document.file());
+    let description = format!("declare it in the root element: {}", quoted(&declaration));
+    report.push(one.suggest(description, end, format!(" {declaration}")));
+}
+
+/// Whether a type is one of XML Schema with a slip in its name, which is reported.
+pub(super) fn is_misspelt(of: &str) -> bool {
+    let local = local(of);
+    !BUILT_IN_TYPES.contains(&local) && nearest(local, BUILT_IN_TYPES.iter().copied()).is_some()
 }

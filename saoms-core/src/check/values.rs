@@ -6,11 +6,12 @@ use std::fmt;
 use saoms_api::PropertyValue;
 use saoms_api::declaration::{PropertyKind, parse_scalar};
 
-use super::instance::Instance;
+use super::instance::{COUNTERS, Instance};
 use super::raw::{Piece, Raw};
+use super::replicas::as_index;
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
-use crate::expression::{has_expression, is_name};
+use crate::expression::{INDEX, has_expression, is_name};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
@@ -155,7 +156,7 @@ impl<'a> Values<'a> {
     ) -> Option<PropertyValue> {
         for declaration in declarations {
             if let Err(message) = declaration.allows(text) {
-                let one = wrong(text, path, declaration, &message);
+                let one = wrong(text, path, declaration, &message, report.has_index());
                 self.report(one, path, declaration, used, report);
                 return None;
             }
@@ -262,7 +263,13 @@ fn about(path: Path<'_>, declaration: &PropertyDeclaration) -> Option<String> {
 }
 
 /// A text that is not what the declaration asks for, as its rule says it.
-fn wrong(text: &Text, path: Path<'_>, declaration: &PropertyDeclaration, message: &str) -> Diagnostic {
+fn wrong(
+    text: &Text,
+    path: Path<'_>,
+    declaration: &PropertyDeclaration,
+    message: &str,
+    has_index: bool,
+) -> Diagnostic {
     // The rule repeats all of the text, however long.
     let rest = message.strip_prefix(&format!("`{}`", text.trim()));
     let said = rest.map_or_else(|| message.to_owned(), |rest| format!("{}{rest}", quoted(text.trim())));
@@ -270,6 +277,16 @@ fn wrong(text: &Text, path: Path<'_>, declaration: &PropertyDeclaration, message
     let one = Diagnostic::new(code, text.location, format!("property {}: {said}", quoted_path(path)));
     if let Some(meant) = meant(text.trim(), declaration) {
         return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
+    }
+    let is_counter = text.trim() == INDEX || has_index && COUNTERS.contains(&text.trim());
+    let by_index = if is_counter { Some(format!("${{{INDEX}}}")) } else { as_index(text.trim()) };
+    match by_index.filter(|meant| meant != text.trim()) {
+        Some(meant) if has_index => return one.suggest(replacing(text, &meant), text.location, meant),
+        Some(meant) => {
+            return one
+                .help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant)));
+        }
+        None => {}
     }
     if has_expression(text) {
         return one.help("`${...}` stands for a number in components with a `saoms:count` alone");
@@ -316,6 +333,8 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
         (PropertyKind::Integer | PropertyKind::Float, _) => {
             let unit = declaration.unit.as_deref().unwrap_or_default();
             let text = text.strip_suffix(unit).unwrap_or(text).trim();
+            let is_whole = declaration.kind == PropertyKind::Integer;
+            let text = text.strip_suffix(".0").filter(|_| is_whole).unwrap_or(text);
             without_unit(text).unwrap_or(text).replace(',', ".")
         }
         (PropertyKind::Duration, _) => duration(&lower).unwrap_or_else(|| lower.replace(',', ".")),

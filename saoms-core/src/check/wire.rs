@@ -60,7 +60,7 @@ pub(super) fn wires<'f>(
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
                     // Both ends can be wrong. All replicas of a group have the same faults.
                     if let Some((to, _)) = spread(to, scope, fleet).next() {
-                        target(&to, scope, None, fleet, classes, report);
+                        target(&to, (scope, None), None, fleet, classes, report);
                     }
                     continue;
                 };
@@ -104,7 +104,7 @@ fn source_of<'f>(
     report: &mut Report<'_>,
 ) -> Option<(usize, &'f str)> {
     let uri = Uri::of(source, 2, (scope, fleet), report)?;
-    let member = uri.member(source, scope, fleet, None, report)?;
+    let member = uri.member(source, (scope, None), fleet, None, report)?;
     let named = parts(written).1.unwrap_or_default();
     let Some(names) = fleet.reference_names(member, classes) else {
         if let Some((name, at)) = &uri.part {

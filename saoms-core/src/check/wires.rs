@@ -200,7 +200,7 @@ impl<'f, 'a> Wires<'f, 'a> {
                 }
             }
             for wire in self.wires_of(member).iter().filter(|wire| component.reference(wire.name).is_none()) {
-                target(wire.target, wire.scope, None, fleet, self.classes, report);
+                target(wire.target, (wire.scope, Some(member)), None, fleet, self.classes, report);
             }
             return;
         };
@@ -332,7 +332,7 @@ impl<'f, 'a> Wires<'f, 'a> {
             if replica.is_some() && replica == own {
                 continue;
             }
-            match target(&one, scope, interface, self.fleet, self.classes, report) {
+            match target(&one, (scope, own), interface, self.fleet, self.classes, report) {
                 Target::Service(provider) if counts => {
                     level.ends.all.push(End { provider, place: text.location });
                 }

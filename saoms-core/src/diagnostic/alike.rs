@@ -61,6 +61,7 @@ fn others(others: &[&Diagnostic], sources: &Sources) -> String {
         ([most @ .., last], 0) => {
             format!("and {count} more like it, in lines {} and {last}", most.join(", "))
         }
+        (all, 1) => format!("and {count} more like it, in lines {} and another one", all.join(", ")),
         (all, more) => format!("and {count} more like it, in lines {} and {more} others", all.join(", ")),
     }
 }

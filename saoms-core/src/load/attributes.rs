@@ -4,9 +4,9 @@ use std::borrow::Cow;
 
 use super::Loader;
 use super::vocabulary::{self, Kind, Known};
-use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, Policy, SAOMS_NAMESPACE, Version};
-use crate::source::{Located, Text};
+use crate::source::{Located, Span, Text};
 use crate::xml::{Attribute, Element};
 
 /// How long a list can be: a fleet has no more components.
@@ -122,14 +122,15 @@ impl Loader<'_> {
                 one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
             }
             Some(meant) => one.help(given_already(meant)),
-            None if vocabulary::own_names(kind).any(|known| known == name) => one.help(format!(
-                "it is an attribute of SAOMS: write `saoms:{name}`, and `xmlns:saoms=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
-            )),
+            None if vocabulary::own_names(kind).any(|known| known == name) => {
+                own_without_prefix(one, attribute, element)
+            }
             None if kind.has(name, Version::Osoa10) => one.help("it is one of SCA 1.0 alone: remove it"),
             None if kind.names(self.version).next().is_none() => one.help("it has no attributes"),
             None => {
                 let names: Vec<String> = kind.names(self.version).map(quoted).collect();
-                one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", ")))
+                let one = one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", ")));
+                if passes { one } else { as_property(one, element, attribute) }
             }
         };
         self.report(one);
@@ -320,6 +321,50 @@ impl Loader<'_> {
         }
         self.report(one);
     }
+}
+
+/// What to do about an attribute of SAOMS without the prefix of its namespace.
+fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Element<'_>) -> Diagnostic {
+    let root = element.document().root();
+    let file = element.document().file();
+    let bound =
+        root.namespace_declarations().find(|one| one.value() == SAOMS_NAMESPACE && one.name() != "xmlns");
+    let whole = format!("{}:{}", bound.map_or("saoms", |bound| bound.local_name()), attribute.name());
+    let name = attribute.name_span().in_file(file);
+    let mut edits = vec![Edit { location: name, replacement: whole.clone() }];
+    if bound.is_none() {
+        let end = Span::empty(root.name_span().end).in_file(file);
+        let declaration = format!(" xmlns:saoms=\"{SAOMS_NAMESPACE}\"");
+        edits.insert(0, Edit { location: end, replacement: declaration });
+    }
+    one.help(format!("it is an attribute of SAOMS, of the namespace `{SAOMS_NAMESPACE}`"))
+        .suggest_edits(format!("replace {} with {}", quoted(attribute.name()), quoted(&whole)), edits)
+}
+
+/// What to do about an attribute that may be meant as a property of a component.
+fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) -> Diagnostic {
+    let (text, file) = (element.document().text(), element.document().file());
+    let (start, end) = match element.local_name() {
+        "component" if element.start_tag_span() != element.span() => {
+            (element.span().start, element.start_tag_span().end)
+        }
+        "implementation.java" | "implementation.rust" => (element.span().start, element.span().end),
+        _ => return one,
+    };
+    let line = text[..start as usize].rfind('\n').map_or(0, |at| at + 1);
+    let indent = Some(&text[line..start as usize]).filter(|indent| indent.trim().is_empty());
+    let deeper = if element.local_name() == "component" { "  " } else { "" };
+    let gap = indent.map(|indent| format!("\n{indent}{deeper}")).unwrap_or_default();
+    let prefix = element.prefix().map(|prefix| format!("{prefix}:")).unwrap_or_default();
+    let (name, value) = (attribute.name(), attribute.raw_value());
+    let written = format!("<{prefix}property name=\"{name}\">{value}</{prefix}property>");
+    let before = text[..attribute.name_span().start as usize].trim_end().len() as u32;
+    let whole = Span::new(before, attribute.value_span().end + 1).in_file(file);
+    let edits = vec![
+        Edit { location: whole, replacement: String::new() },
+        Edit { location: Span::empty(end).in_file(file), replacement: format!("{gap}{written}") },
+    ];
+    one.suggest_edits(format!("write it as a property: {}", quoted(&written)), edits)
 }
 
 /// What to do about an attribute that seems to be meant for one that the element has.

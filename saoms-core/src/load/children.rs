@@ -64,17 +64,24 @@ impl Loader<'_> {
         }
     }
 
-    /// Reports an element of SCA, or of SAOMS, that cannot be where it is.
-    pub(super) fn unexpected(&mut self, element: Element<'_>, parent: &'static Kind, family: Family) {
+    /// Reports an element of SCA, or of SAOMS, that cannot be where it is. Gives the name that is meant where it is misspelt, to be read on as
+    /// what has that.
+    pub(super) fn unexpected(
+        &mut self,
+        element: Element<'_>,
+        parent: &'static Kind,
+        family: Family,
+    ) -> Option<&'static str> {
         let name = element.local_name();
         if family == Family::Sca && element.namespace() != self.namespace {
             // Of another version, which is reported: nobody knows what it would be in this one.
-            return;
+            return None;
         }
         if family == Family::Sca && is_own_alone(name) {
-            return self.own_without_namespace(element);
+            self.own_without_namespace(element);
+            return None;
         }
-        let known: Vec<&str> = match family {
+        let known: Vec<&'static str> = match family {
             Family::Own => OWN_ELEMENTS.to_vec(),
             _ => vocabulary::children(parent).collect(),
         };
@@ -82,8 +89,8 @@ impl Loader<'_> {
         let is_misplaced = is_own || (family == Family::Sca && vocabulary::is_known(name));
         let code = if is_misplaced { &codes::MISPLACED_ELEMENT } else { &codes::UNKNOWN_ELEMENT };
         let location = element.name_location();
-        if self.diagnostics.skip(code, Severity::Error, location) {
-            return;
+        if self.is_swallowed(element) || self.diagnostics.skip(code, Severity::Error, location) {
+            return None;
         }
         let place = quoted(parent.name);
         let holds = || {
@@ -96,13 +103,14 @@ impl Loader<'_> {
         if is_misplaced {
             let message = format!("{} cannot stand in {place}", quoted(element.name()));
             let one = Diagnostic::new(code, location, message);
-            return self.report(one.help(holds()));
+            self.report(one.help(holds()));
+            return None;
         }
         let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
         let message = format!("{whose} has no element {}", quoted(name));
         let one = Diagnostic::new(code, location, message);
         // Of `implementation.python` nobody means all but the last letters.
-        let near = match name.split_once('.') {
+        let slip = match name.split_once('.') {
             Some((kind, variant)) if known.iter().any(|one| one.split('.').next() == Some(kind)) => {
                 let variants =
                     known.iter().filter(|one| one.split_once('.').is_some_and(|(of, _)| of == kind));
@@ -113,9 +121,10 @@ impl Loader<'_> {
                         .find(|one| one.ends_with(meant) && one.len() == kind.len() + 1 + meant.len())
                 })
             }
-            _ => word(name).filter(|meant| known.contains(meant)).or_else(|| nearest(name, known)),
+            _ => nearest(name, known.iter().copied()),
         };
-        self.report(match near {
+        let word = word(name).filter(|meant| known.contains(meant));
+        self.report(match word.or(slip) {
             Some(meant) => {
                 let description = format!("replace {} with {}", quoted(name), quoted(meant));
                 one.suggest_edits(description, renaming(element, element.prefix(), meant))
@@ -125,6 +134,7 @@ impl Loader<'_> {
             }
             None => one.help(holds()),
         });
+        slip.filter(|_| word.is_none())
     }
 
     /// Checks the children of an element none of whose children the model holds.
@@ -146,7 +156,7 @@ impl Loader<'_> {
                 continue;
             }
             if matches!(family, Family::Sca | Family::Own) && !(family == Family::Sca && is_known) {
-                self.unexpected(child, kind, family);
+                _ = self.unexpected(child, kind, family);
             }
         }
     }
@@ -168,7 +178,9 @@ impl Loader<'_> {
     pub(super) fn no_text(&mut self, element: Element<'_>) {
         let Some(span) = element.text_span() else { return };
         let location = span.in_file(element.document().file());
-        if self.diagnostics.skip(&codes::MISPLACED_TEXT, Severity::Error, location) {
+        if self.is_closed_early(element)
+            || self.diagnostics.skip(&codes::MISPLACED_TEXT, Severity::Error, location)
+        {
             return;
         }
         let message = format!("text in {}, which holds no text", quoted(element.name()));
@@ -177,6 +189,8 @@ impl Loader<'_> {
             one = one.help("the class is named by the attribute `class`");
         } else if element.local_name() == "reference" && element.attribute("target").is_none() {
             one = one.help("the component that it calls is named by the attribute `target`");
+        } else {
+            one = as_comment(one, element, span);
         }
         self.report(one);
     }
@@ -230,6 +244,19 @@ impl Loader<'_> {
             );
         }
         self.report(one);
+    }
+}
+
+/// What text between elements is meant to be: a comment, as other languages write them.
+fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
+    let text = &element.document().text()[span.start as usize..span.end as usize];
+    let remark = ["#", "//", ";"].iter().find_map(|mark| text.strip_prefix(mark)).map(str::trim);
+    match remark.filter(|remark| !remark.contains(['<', '\n']) && !remark.contains("--")) {
+        Some(remark) => {
+            let place = span.in_file(element.document().file());
+            one.suggest("write it as a comment", place, format!("<!-- {remark} -->"))
+        }
+        None => one.help("remove it; comments stand between `<!--` and `-->`"),
     }
 }
 

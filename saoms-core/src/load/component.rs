@@ -13,7 +13,7 @@ use crate::model::{
     SAOMS_NAMESPACE,
 };
 use crate::source::Text;
-use crate::xml::Element;
+use crate::xml::{Element, Tangle};
 
 impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> Component {
@@ -49,50 +49,64 @@ impl Loader<'_> {
         let mut has_faulty = false;
         for child in element.children() {
             let (family, name) = self.meaning(child);
-            match (family, name) {
-                (Family::Sca, "property") => {
-                    component.properties.push(self.property(child, &COMPONENT_PROPERTY));
-                }
-                (Family::Sca, "service") => {
-                    component.services.push(self.service(child, &COMPONENT_SERVICE));
-                }
-                (Family::Sca, "reference") => {
-                    component.references.push(self.reference(child, &COMPONENT_REFERENCE));
-                }
-                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
-                (Family::Sca | Family::Own | Family::Foreign, name)
-                    if name.starts_with("implementation.") =>
-                {
-                    let made = self.implementation(child, family, name);
-                    match (&component.implementation, made) {
-                        (Some(first), _) => {
-                            self.repeated(child, first.origin.tag, &COMPONENT, "implementation");
-                        }
-                        (None, made) => {
-                            has_faulty |= made.is_none();
-                            component.implementation = made;
-                        }
-                    }
-                }
-                (Family::Own, "loop") => {
-                    let one = self.looping(child);
-                    component.details.get_or_insert_default().loops.push(one);
-                }
-                (Family::Own, "severity") => self.severity(child, element),
-                (Family::Foreign, _) => {}
-                (Family::Nobody, name) => has_faulty |= name.starts_with("implementation"),
-                (_, name) => {
-                    has_faulty |= name.starts_with("impl");
-                    self.unexpected(child, &COMPONENT, family);
-                }
-            }
+            has_faulty |= self.part_of(element, (child, family, name), &mut component);
         }
         self.is_replicated = false;
         // An element that was not read to its end may have had one.
-        if component.implementation.is_none() && !has_faulty && element.is_closed() {
+        let is_whole = element.is_closed() && self.tangle != Some(Tangle::ClosedEarly(element.id()));
+        if component.implementation.is_none() && !has_faulty && is_whole {
             self.missing_implementation(element, &component.name);
         }
         component
+    }
+
+    /// Reads what is directly inside, as an element of this name. Gives whether it is an implementation with a fault.
+    fn part_of(
+        &mut self,
+        element: Element<'_>,
+        (child, family, name): (Element<'_>, Family, &str),
+        component: &mut Component,
+    ) -> bool {
+        match (family, name) {
+            (Family::Sca, "property") => {
+                component.properties.push(self.property(child, &COMPONENT_PROPERTY));
+            }
+            (Family::Sca, "service") => {
+                component.services.push(self.service(child, &COMPONENT_SERVICE));
+            }
+            (Family::Sca, "reference") => {
+                component.references.push(self.reference(child, &COMPONENT_REFERENCE));
+            }
+            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+            (Family::Sca | Family::Own | Family::Foreign, name) if name.starts_with("implementation.") => {
+                let made = self.implementation(child, family, name);
+                match (&component.implementation, made) {
+                    (Some(first), _) => {
+                        self.repeated(child, first.origin.tag, &COMPONENT, "implementation");
+                    }
+                    (None, made) => {
+                        let is_faulty = made.is_none();
+                        component.implementation = made;
+                        return is_faulty;
+                    }
+                }
+            }
+            (Family::Own, "loop") => {
+                let one = self.looping(child);
+                component.details.get_or_insert_default().loops.push(one);
+            }
+            (Family::Own, "severity") => self.severity(child, element),
+            (Family::Foreign, _) => {}
+            (Family::Nobody, name) => return name.starts_with("implementation"),
+            (_, name) => {
+                let meant = self.unexpected(child, &COMPONENT, family).filter(|meant| *meant != name);
+                return match meant.filter(|_| family == Family::Sca) {
+                    Some(meant) => self.part_of(element, (child, family, meant), component),
+                    None => name.starts_with("impl"),
+                };
+            }
+        }
+        false
     }
 
     /// What a component says about its replicas.
@@ -138,12 +152,16 @@ impl Loader<'_> {
                 ImplementationKind::Rust { class, library: self.optional(element, "library").map(Box::new) }
             }
             (Family::Own, _) => {
-                self.unexpected(element, &COMPONENT, family);
+                _ = self.unexpected(element, &COMPONENT, family);
                 return None;
             }
             (Family::Sca, _) if !self.is_defined(element) => {
-                self.unexpected(element, &COMPONENT, family);
-                return None;
+                let meant = self.unexpected(element, &COMPONENT, family)?;
+                let is_read = matches!(
+                    meant,
+                    "implementation.java" | "implementation.rust" | "implementation.composite"
+                );
+                return is_read.then(|| self.implementation(element, family, meant))?;
             }
             _ => {
                 self.extension(element, family);

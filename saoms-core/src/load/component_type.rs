@@ -38,7 +38,7 @@ pub fn load_component_type(
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<ComponentType> {
-    let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
+    let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
     if let Some(fault) = fault {
         diagnostics.push(fault);
         return None;
@@ -70,7 +70,7 @@ pub fn load_component_type(
             (Family::Sca, "property") => made.properties.push(loader.property(child, &COMPOSITE_PROPERTY)),
             // What else a component type can say is for the containers of other languages.
             (Family::Sca, name) if vocabulary::children(&COMPONENT_TYPE).any(|known| known == name) => {}
-            (Family::Sca | Family::Own, _) => loader.unexpected(child, &COMPONENT_TYPE, family),
+            (Family::Sca | Family::Own, _) => _ = loader.unexpected(child, &COMPONENT_TYPE, family),
             _ => {}
         }
     }

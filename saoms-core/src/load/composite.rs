@@ -14,7 +14,7 @@ use crate::xml::{Attribute, Document, Element};
 
 impl Loader<'_> {
     /// Reads the whole composite.
-    pub(super) fn composite(mut self, document: &Arc<Document>) -> Composite {
+    pub(super) fn composite(&mut self, document: &Arc<Document>) -> Composite {
         let root = document.root();
         self.check_attributes(root, &COMPOSITE);
         self.no_text(root);
@@ -42,42 +42,56 @@ impl Loader<'_> {
         };
         for child in root.children() {
             let (family, name) = self.meaning(child);
-            match (family, name) {
-                (Family::Foreign | Family::Nobody, _) => {}
-                (Family::Sca, "component") => {
-                    let component = self.component(child);
-                    if !component.is_nothing() {
-                        composite.components.push(component);
-                    }
-                }
-                (Family::Sca, "include") => {
-                    let include = self.include(child);
-                    if !include.name.is_empty() || include.uri.is_some() {
-                        composite.includes.push(include);
-                    }
-                }
-                (Family::Sca, "wire") => {
-                    let wire = self.wire(child);
-                    if wire.source.is_some() || wire.target.is_some() {
-                        composite.wires.push(wire);
-                    }
-                }
-                (Family::Sca, "property") => {
-                    composite.properties.push(self.property(child, &COMPOSITE_PROPERTY));
-                }
-                (Family::Sca, "service") => {
-                    composite.services.push(self.service(child, &COMPOSITE_SERVICE));
-                }
-                (Family::Sca, "reference") => {
-                    composite.references.push(self.reference(child, &COMPOSITE_REFERENCE));
-                }
-                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
-                (Family::Own, "severity") => self.severity(child, root),
-                _ => self.unexpected(child, &COMPOSITE, family),
-            }
+            self.part(child, family, name, &mut composite);
         }
         composite.severities = std::mem::take(&mut self.severities);
         composite
+    }
+
+    /// Reads what is directly inside, as an element of this name.
+    fn part(&mut self, child: Element<'_>, family: Family, name: &str, composite: &mut Composite) {
+        match (family, name) {
+            (Family::Foreign | Family::Nobody, _) => {}
+            (Family::Sca, "component") => {
+                let component = self.component(child);
+                if !component.is_nothing() {
+                    composite.components.push(component);
+                }
+            }
+            (Family::Sca, "include") => {
+                let include = self.include(child);
+                if !include.name.is_empty() || include.uri.is_some() {
+                    composite.includes.push(include);
+                }
+            }
+            (Family::Sca, "wire") => {
+                let wire = self.wire(child);
+                if wire.source.is_some() || wire.target.is_some() {
+                    composite.wires.push(wire);
+                }
+            }
+            (Family::Sca, "property") => {
+                composite.properties.push(self.property(child, &COMPOSITE_PROPERTY));
+            }
+            (Family::Sca, "service") => {
+                composite.services.push(self.service(child, &COMPOSITE_SERVICE));
+            }
+            (Family::Sca, "reference") => {
+                composite.references.push(self.reference(child, &COMPOSITE_REFERENCE));
+            }
+            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+            (Family::Own, "severity") => {
+                if let Some(parent) = child.parent() {
+                    self.severity(child, parent);
+                }
+            }
+            _ => {
+                let meant = self.unexpected(child, &COMPOSITE, family).filter(|meant| *meant != name);
+                if let Some(meant) = meant.filter(|_| family == Family::Sca) {
+                    self.part(child, family, meant, composite);
+                }
+            }
+        }
     }
 
     fn target_namespace(&mut self, root: Element<'_>) -> Option<Text> {

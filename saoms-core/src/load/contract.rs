@@ -115,7 +115,7 @@ impl Loader<'_> {
                 }
                 (Family::Foreign, _) => {}
                 (Family::Own, "severity") => self.severity(child, element),
-                _ => self.unexpected(child, kind, family),
+                _ => _ = self.unexpected(child, kind, family),
             }
         }
         contract.bindings.shrink_to_fit();
@@ -209,7 +209,7 @@ impl Loader<'_> {
                 }
                 (Family::Foreign, _) => {}
                 (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
-                _ => self.unexpected(child, &CALLBACK, family),
+                _ => _ = self.unexpected(child, &CALLBACK, family),
             }
         }
         let (name, policy) = (self.optional(element, "name"), self.policy(element));

@@ -103,7 +103,7 @@ impl Description {
     fn read(path: PathBuf, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
         let mut made = Self { path, ..Self::default() };
         let Some(file) = read(&made.path, max_size, sources, diagnostics) else { return made };
-        let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
+        let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
         if let Some(fault) = fault {
             diagnostics.push(fault);
             return made;
@@ -134,7 +134,7 @@ impl Description {
             let is_extension = (name.starts_with("import.") || name.starts_with("export."))
                 && nearest(name, CONTRIBUTION.children.iter().copied()).is_none();
             if !is_extension && !CONTRIBUTION.children.contains(&name) {
-                loader.unexpected(child, &CONTRIBUTION, family);
+                _ = loader.unexpected(child, &CONTRIBUTION, family);
             }
             return;
         };

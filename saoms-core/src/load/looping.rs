@@ -18,7 +18,7 @@ impl Loader<'_> {
                 (Family::Sca, "property") => properties.push(self.property(child, &COMPONENT_PROPERTY)),
                 (Family::Own, "property") => self.property_of_sca(child),
                 (Family::Sca, "documentation") | (Family::Foreign | Family::Nobody, _) => {}
-                _ => self.unexpected(child, &LOOP, family),
+                _ => _ = self.unexpected(child, &LOOP, family),
             }
         }
         Loop {

@@ -26,6 +26,7 @@ mod severity;
 mod shelf;
 mod table;
 mod tags;
+mod tangle;
 #[cfg(test)]
 mod tests;
 mod value_file;
@@ -43,6 +44,7 @@ pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 pub use shelf::{composites_near, description_near};
 pub use table::table;
 use tags::Tag;
+use tangle::Swallowed;
 pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -80,24 +82,24 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
         diagnostics.push(read::empty(file));
         return None;
     }
-    let xml::Parsed { document, fault } = xml::parse(file, text);
-    let mut composite = None;
+    let xml::Parsed { document, fault, tangle } = xml::parse(file, text);
+    let (mut composite, mut swallowed) = (None, None);
     if let Some(document) = document {
         let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
+        loader.tangle = tangle;
         if loader.root(document.root()) {
             loader.near_namespaces(&document);
             composite = Some(loader.composite(&Arc::new(document)));
+            swallowed = loader.swallowed;
         }
     }
-    match fault {
-        None => composite,
-        Some(fault) => {
-            if !contradicts(&fault, sources, diagnostics) {
-                diagnostics.push(fault);
-            }
-            None
-        }
+    let Some(fault) = fault else { return composite };
+    match composite.zip(swallowed) {
+        Some((composite, swallowed)) => diagnostics.push(swallowed.fault(&composite.document, &fault)),
+        None if contradicts(&fault, sources, diagnostics) => {}
+        None => diagnostics.push(fault),
     }
+    None
 }
 
 /// Whether a fault is that an end tag does not fit a start tag, whose name is told to be wrong, and of which the end tag has the right one.
@@ -129,6 +131,9 @@ struct Loader<'d> {
     severities: Vec<SeverityRule>,
     /// What is known of each shape of start tags of the document.
     tags: Vec<Tag>,
+    /// Why its tags do not fit, where they do not.
+    tangle: Option<xml::Tangle>,
+    swallowed: Option<Swallowed>,
 }
 
 impl<'d> Loader<'d> {
@@ -142,6 +147,8 @@ impl<'d> Loader<'d> {
             newer: Vec::new(),
             severities: Vec::new(),
             tags: Vec::new(),
+            tangle: None,
+            swallowed: None,
         }
     }
 

@@ -21,7 +21,11 @@ impl Loader<'_> {
             let is_sca = child.namespace() == self.namespace;
             match child.local_name() {
                 "value" if is_sca => values.push(value(child)),
-                other if is_sca && self.is_slip(other) => self.unexpected(child, kind, Family::Sca),
+                other if is_sca && self.is_slip(other) => {
+                    if self.unexpected(child, kind, Family::Sca) == Some("value") {
+                        values.push(value(child));
+                    }
+                }
                 _ => content.push(child.id()),
             }
         }

@@ -26,7 +26,7 @@ pub(super) fn read(file: FileId, text: Text, sources: &Sources, diagnostics: &mu
     if !text.starts_with('<') {
         return FileValue { text: Some(text), document: None };
     }
-    let xml::Parsed { document, fault } = xml::parse(file, sources.get(file).text());
+    let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
     let document = match (document, fault) {
         (Some(document), None) => Arc::new(document),
         (_, fault) if is_meant_as_values(&text) => {

@@ -14,7 +14,9 @@ mod parse;
 mod prolog;
 mod reference;
 mod shape;
+mod slips;
 mod tag;
+mod tangle;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -22,7 +24,7 @@ mod unbound;
 mod value;
 
 pub use element::{Attribute, Element};
-pub use parse::{Parsed, parse};
+pub use parse::{Parsed, Tangle, parse};
 pub use tree::{Document, ElementId};
 pub(crate) use value::Writing;
 

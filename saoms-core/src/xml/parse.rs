@@ -11,9 +11,9 @@ use super::fault::{Checked, Fault, Input};
 use super::namespaces::{Namespaces, refusal};
 use super::shape::Known;
 use super::tag::RawAttribute;
-use super::tree::{Declared, Document, NO_NAMESPACE, NONE, Node, XMLNS};
+use super::tree::{Declared, Document, ElementId, NO_NAMESPACE, NONE, Node, XMLNS};
 use super::{prolog, reference, tag, unbound, value};
-use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{FileId, Span};
 
 /// What a text is as XML.
@@ -23,6 +23,17 @@ pub struct Parsed {
     pub document: Option<Document>,
     /// The first thing that is not well-formed.
     pub fault: Option<Diagnostic>,
+    /// Why start tags and end tags do not fit, where that is the fault.
+    pub tangle: Option<Tangle>,
+}
+
+/// Why start tags and end tags do not fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tangle {
+    /// An element that is open has no end tag.
+    LeftOpen,
+    /// This element ends in its start tag, and an end tag comes for it.
+    ClosedEarly(ElementId),
 }
 
 /// Reads a text of less than 4 GiB as XML 1.0 with namespaces.
@@ -49,7 +60,8 @@ pub fn parse(file: FileId, text: &Arc<String>) -> Parsed {
         (Err(fault), None) => Some(fault.into_diagnostic()),
         (Ok(()), None) => None,
     };
-    Parsed { document: parser.into_document(text), fault }
+    let tangle = parser.tangle;
+    Parsed { document: parser.into_document(text), fault, tangle }
 }
 
 /// How many elements there are, or somewhat more: a list that grows has room for twice as many. The shortest start tag is `<a>`.
@@ -69,25 +81,26 @@ fn elements(text: &str) -> usize {
 
 /// An element whose end tag has not come yet.
 #[derive(Debug)]
-struct Open {
-    node: u32,
+pub(super) struct Open {
+    pub(super) node: u32,
     /// The last of its children so far.
-    last_child: u32,
+    pub(super) last_child: u32,
     /// Declarations of namespaces in scope outside it.
     outside: u32,
 }
 
-struct Parser<'a> {
-    input: Input<'a>,
+pub(super) struct Parser<'a> {
+    pub(super) input: Input<'a>,
     /// Where the event being read starts.
     start: u32,
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
     values: Vec<Span>,
     shapes: Known,
     /// Those of the tag at hand, when it is read name by name.
     attributes: Vec<RawAttribute>,
     namespaces: Namespaces<'a>,
-    open: Vec<Open>,
+    pub(super) open: Vec<Open>,
+    pub(super) tangle: Option<Tangle>,
 }
 
 impl<'a> Parser<'a> {
@@ -101,6 +114,7 @@ impl<'a> Parser<'a> {
             attributes: Vec::new(),
             namespaces: Namespaces::new(),
             open: Vec::new(),
+            tangle: None,
         }
     }
 
@@ -291,38 +305,14 @@ impl<'a> Parser<'a> {
         end
     }
 
-    fn name(&self, node: &Node) -> &'a str {
+    pub(super) fn name(&self, node: &Node) -> &'a str {
         let name = self.name_span(node);
         self.input.slice(name.start, name.end)
     }
 
-    fn name_span(&self, node: &Node) -> Span {
+    pub(super) fn name_span(&self, node: &Node) -> Span {
         let start = node.start + 1;
         Span::new(start, start + self.shapes.shapes.get(node.shape).name_len)
-    }
-
-    fn mismatch(&self, found: &str, start: u32, end: u32) -> Fault {
-        let names = || {
-            let open = self.open.iter().rev().map(|open| &self.nodes[open.node as usize]);
-            open.map(|node| (self.name(node), node.start))
-        };
-        let (expected, at) = names().next().unwrap_or_default();
-        let file = self.input.file;
-        let message = format!(
-            "{} found where {} is expected",
-            quoted(&format!("</{found}>")),
-            quoted(&format!("</{expected}>"))
-        );
-        let tag = Span::new(at + 1, at + 1 + expected.len() as u32).in_file(file);
-        let one = self.input.fault(&codes::XML_TAG_MISMATCH, start, end, message);
-        let one = one.label(tag, format!("{} is open", quoted(expected)));
-        let close = format!("</{expected}>");
-        let close_first = format!("close {} first", quoted(expected));
-        if names().skip(1).any(|(name, _)| name == found) && nearest(found, [expected]).is_none() {
-            return one.suggest(close_first, Span::empty(start).in_file(file), close).into();
-        }
-        let description = format!("replace it with {}", quoted(&close));
-        one.suggest(description, Span::new(start, end).in_file(file), close).into()
     }
 
     fn text(&mut self, start: u32) -> Checked<u32> {
@@ -409,11 +399,12 @@ impl<'a> Parser<'a> {
             .into()
     }
 
-    fn finish(&self) -> Checked<()> {
+    fn finish(&mut self) -> Checked<()> {
         let input = self.input;
         if let Some(open) = self.open.last() {
             let Span { start, end } = self.name_span(&self.nodes[open.node as usize]);
             let name = quoted(input.slice(start, end));
+            self.tangle = Some(Tangle::LeftOpen);
             return Err(input.ended(&codes::XML_UNCLOSED, start, end, format!("{name} is never closed")));
         }
         if self.nodes.is_empty() {

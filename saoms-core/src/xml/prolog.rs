@@ -2,6 +2,7 @@
 
 use super::fault::{Checked, Fault, Input};
 use super::names::{is_local_name, name_length};
+use super::slips;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Span;
 
@@ -42,11 +43,12 @@ pub(super) fn comment(input: Input<'_>, start: u32, end: u32) -> Checked<()> {
     let at = inside.find("--").or_else(|| inside.ends_with('-').then(|| inside.len() - 1));
     let Some(at) = at else { return Ok(()) };
     let at = start + 4 + at as u32;
-    Err(input
+    let edits = slips::dashes(inside, start + 4, input);
+    let one = input
         .fault(&codes::XML_SYNTAX, at, at + 2, "`--` inside a comment")
         .label(Span::new(start, start + 4).in_file(input.file), "the comment starts here")
-        .help("XML allows `--` only in the `-->` that ends the comment")
-        .into())
+        .help("XML allows `--` only in the `-->` that ends the comment");
+    Err(if edits.is_empty() { one } else { one.suggest_edits("write single dashes", edits) }.into())
 }
 
 /// The fault in markup at `start` that quick-xml could not read to its end.

@@ -6,6 +6,7 @@ use super::curly;
 use super::fault::{Checked, Input};
 use super::names::{is_qualified_name, name_length, scan};
 use super::reference;
+use super::slips;
 use super::tree::{NO_NAMESPACE, XMLNS};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Span;
@@ -126,13 +127,19 @@ fn attribute(input: Input<'_>, tag: u32, tag_name_end: u32, start: u32) -> Check
         Some(b'=') => {}
         None => return Err(unclosed(input, tag, tag_name_end)),
         Some(_) => {
+            if let Some(one) = slips::colon(input, start, name_end, equals) {
+                return Err(one.into());
+            }
             check_name(input, start, name_end, "attribute")?;
             let name = input.slice(start, name_end);
             let message = format!("the attribute {} has no value", quoted(name));
-            return Err(input
-                .fault(&codes::XML_ATTRIBUTE, start, name_end, message)
-                .help(format!("write {}", quoted(&format!("{name}=\"...\""))))
-                .into());
+            let one = input.fault(&codes::XML_ATTRIBUTE, start, name_end, message);
+            let has_quote = matches!(bytes.get(equals as usize), Some(b'"' | b'\''));
+            return Err(match has_quote {
+                true => one.suggest("insert `=`", Span::new(name_end, equals).in_file(input.file), "="),
+                false => one.help(format!("write {}", quoted(&format!("{name}=\"...\"")))),
+            }
+            .into());
         }
     }
     if !name.is_plain {
@@ -175,13 +182,8 @@ fn value_end(input: Input<'_>, start: u32, name_end: u32, quote_at: u32, quote: 
                 if let Some(curly) = curly::closing(input, quote_at, at) {
                     return Err(curly.into());
                 }
-                let name = quoted(input.slice(start, name_end));
-                let message = format!("`<` in the value of {name}");
-                return Err(input
-                    .fault(&codes::XML_ATTRIBUTE, at, at + 1, message)
-                    .label(Span::new(quote_at, quote_at + 1).in_file(input.file), "the value starts here")
-                    .help("close the value before, or write `&lt;` for the character itself")
-                    .into());
+                let name = input.slice(start, name_end);
+                return Err(slips::open_value(input, name, quote_at, at).into());
             }
             _ => return Ok(at),
         }
@@ -240,6 +242,9 @@ fn check_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Checked<()>
     if is_qualified_name(name) {
         return Ok(());
     }
+    if let Some(one) = slips::odd_space(input, start, name, what) {
+        return Err(one.into());
+    }
     let message = format!("{} is no name for an {what}", quoted(name));
     let help = if name.contains(':') {
         "a name has at most one colon, with a prefix before and a name behind it"
@@ -275,6 +280,9 @@ fn misplaced(input: Input<'_>, tag: u32, name_end: u32, at: u32, in_attributes: 
         if let Some(curly) = opened.and_then(|opened| curly::closing(input, opened, at - 1)) {
             return curly;
         }
+        if let Some(open) = opened.and_then(|opened| slips::open_before(input, opened, at - 1)) {
+            return open;
+        }
         let message = "white space is missing between two attributes";
         let location = Span::empty(at).in_file(input.file);
         return input.fault(&codes::XML_ATTRIBUTE, at, end, message).suggest("insert a blank", location, " ");
@@ -288,9 +296,13 @@ fn misplaced(input: Input<'_>, tag: u32, name_end: u32, at: u32, in_attributes: 
             .help("close it with `>` or `/>`");
     }
     let message = format!("{what} is misplaced in the start tag of {name}");
-    input
-        .fault(&codes::XML_SYNTAX, at, end, message)
-        .help("attributes are written `name=\"value\"`; the tag ends with `>` or `/>`")
+    let one = input.fault(&codes::XML_SYNTAX, at, end, message);
+    if matches!(next, b',' | b';') {
+        let has_space = input.bytes().get(end as usize).is_some_and(u8::is_ascii_whitespace);
+        let place = Span::new(at, end).in_file(input.file);
+        return one.suggest(format!("remove {what}"), place, if has_space { "" } else { " " });
+    }
+    one.help("attributes are written `name=\"value\"`; the tag ends with `>` or `/>`")
 }
 
 fn unquoted(input: Input<'_>, start: u32, name_end: u32, at: u32) -> Diagnostic {

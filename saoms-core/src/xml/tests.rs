@@ -107,7 +107,11 @@ fn what_is_not_well_formed_is_found_at_its_place() {
 <a                             => 1:2 [a] S0103 the start tag of `a` is never closed
 <a b='                         => 1:6 ['] S0103 the value of `b` is never closed
 <a>x                           => 1:2 [a] S0103 `a` is never closed
-<a><b></a>                     => 1:7 [</a>] S0102 `</a>` found where `</b>` is expected | close `b` first
+<a><b></a>                     => 1:7 [</a>] S0102 `</a>` found where `</b>` is expected | end `b` with `/>`
+<a><b>x</a>                    => 1:8 [</a>] S0102 `</a>` found where `</b>` is expected | close `b` first
+<a><b/></b></a>                => 1:8 [</b>] S0102 `</b>` found where `</a>` is expected | remove it
+<a><long/></long></a>          => 1:11 [</long>] S0102 `</long>` found where `</a>` is expected | remove it
+<a><long/>x</long></a>         => 1:12 [</long>] S0102 `</long>` found where `</a>` is expected | remove its `/`
 <a></A>                        => 1:4 [</A>] S0102 `</A>` found where `</a>` is expected | replace it with `</a>`
 <a/></a>                       => 1:5 [</a>] S0102 `</a>` closes nothing: no element is open
 <a/><b/>                       => 1:6 [b] S0104 a second root element: a file is one element
@@ -118,7 +122,16 @@ x y <a/>                       => 1:1 [x y] S0104 text outside of the root eleme
 <!-- c -->                     => 1:11 [] S0101 the file holds no element
 <a b='1' b='2'/>               => 1:10 [b] S0106 the attribute `b` is given twice | remove the second `b`
 <a xmlns:p='u' xmlns:q='u' p:b='' q:b=''/> => 1:35 [q:b] S0106 the attribute `q:b` is given twice: both prefixes are of `u` | remove the second `q:b`
-<a b='<'/>                     => 1:7 [<] S0105 `<` in the value of `b`
+<a b='<'/>                     => 1:7 [<] S0105 `<` in the value of `b` | replace `<` with `&lt;`
+<a b='1 < 2/></a>              => 1:9 [<] S0105 `<` in the value of `b`
+<a b='1><c/></a>               => 1:6 ['1] S0105 the value of `b` is not closed | close it with `'`
+<a b='1\"/><c/></a>            => 1:6 ['1\"] S0105 the value of `b` is not closed | replace `\"` with `'`
+<a b='1 c='2'/>                => 1:6 ['1] S0105 this value is not closed before `c` | close it with `'`
+<a b '1'/>                     => 1:4 [b] S0105 the attribute `b` has no value | insert `=`
+<a b: '1'/>                    => 1:5 [:] S0105 `:` stands between `b` and its value, and not `=` | replace `:` with `=`
+<a b='1', c='2'/>              => 1:9 [,] S0101 `,` is misplaced in the start tag of `a` | remove `,`
+<a\u{a0}b='1'/>                => 1:3 [\u{a0}] S0107 U+00A0, which looks like a blank, in the name of an element | replace it with a blank
+<a b\u{200b}='1'/>             => 1:5 [\u{200b}] S0107 U+200B, which looks like nothing, in the name of an attribute | remove it
 <a b/>                         => 1:4 [b] S0105 the attribute `b` has no value
 <a b=c/>                       => 1:6 [c] S0105 the value of `b` is not in quotes | put it in quotes
 <a b='1'c='2'/>                => 1:9 [c] S0105 white space is missing between two attributes | insert a blank
@@ -142,8 +155,8 @@ x y <a/>                       => 1:1 [x y] S0104 text outside of the root eleme
 <a>&#X41;</a>                  => 1:4 [&#X41;] S0109 `&#X41;` is no character that XML allows
 <a>&#1114112;</a>              => 1:4 [&#1114112;] S0109 `&#1114112;` is no character that XML allows
 <a>]]></a>                     => 1:4 []]>] S0101 `]]>` in text, which XML allows only to end a CDATA section | replace it with `]]&gt;`
-<a><!-- x -- y --></a>         => 1:11 [--] S0101 `--` inside a comment
-<a><!-- x ---></a>             => 1:11 [--] S0101 `--` inside a comment
+<a><!-- x -- y --></a>         => 1:11 [--] S0101 `--` inside a comment | write single dashes
+<a><!-- x ---></a>             => 1:11 [--] S0101 `--` inside a comment | write single dashes
 <a><!-- x </a>                 => 1:4 [<!--] S0103 this comment is never closed
 <a><![CDATA[ x </a>            => 1:4 [<![CDATA[] S0103 this CDATA section is never closed
 <a><?p x </a>                  => 1:4 [<?] S0103 this processing instruction is never closed

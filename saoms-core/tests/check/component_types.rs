@@ -127,6 +127,7 @@ fn what_a_file_cannot_say_is_told() {
         run.componentType:3:2-11 error S1005: `component` cannot stand in `componentType`
           help: `componentType` can hold `implementation.*`, `service`, `reference`, `property`, `requires`, `policySetAttachment`, `documentation`, `extensions`
         run.componentType:3:22-26 error S1012: text in `componentType`, which holds no text
+          help: remove it; comments stand between `<!--` and `-->`
         run.componentType:3:27-34 error S1004: `service` is in no namespace
           help: elements of SCA are in the namespace of the composite, extensions in one of their own
         run.componentType:4:2-11 error S1003: `o:service` is of SCA 1.0, and the componentType is of SCA 1.1

@@ -296,7 +296,7 @@ fn diagnostics_are_at_what_they_name() {
 /// no well-formed XML, in which a place is at what is not understood.
 fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
     let text = sources.get(place.file).text();
-    let xml::Parsed { document: Some(document), fault: None } = xml::parse(place.file, text) else {
+    let xml::Parsed { document: Some(document), fault: None, .. } = xml::parse(place.file, text) else {
         return Some(Vec::new());
     };
     let element = document.element_at(place.span.start);

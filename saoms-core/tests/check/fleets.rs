@@ -147,7 +147,6 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
           2:23-28 `site` is this
           help: `docs/fleets.md` says what expressions are
         8:21-26 error S2045: the composite has no property `inedx` (in `F${inedx}`, index 1)
-          help: its properties are `many`, `robots` and `site`
           fix: replace `inedx` with `index` [8:21-26 "index"]
         9:18-27 error S3006: component `G-1` lacks the property `number` (index -1)
           help: add `<property name="number">...</property>`: a whole number from 1 to 99
@@ -165,7 +164,8 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
         13:29-40 error S1007: `component` has no attribute `saoms:cuont`
           fix: replace `saoms:cuont` with `saoms:count` [13:29-40 "saoms:count"]
         14:45-50 error S1007: `component` has no attribute `count`
-          help: it is an attribute of SAOMS: write `saoms:count`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
+          help: it is an attribute of SAOMS, of the namespace `urn:saoms:1`
+          fix: replace `count` with `saoms:count` [14:45-50 "saoms:count"]
         15:42-43 error S2046: the indices go beyond 64 bits
           help: choose a smaller `saoms:from`
         16:18-27 error S3006: component `N1` lacks the property `ID` (index 1)
@@ -218,7 +218,7 @@ fn what_is_said_of_many_replicas_is_told_once() {
         3:138-143 error S3007: property `awake`: `maybe` is not a boolean: expected `true` or `false` (in `R01`, index 1, and in 11 more)
           help: the default is `true`
         4:31-40 error S2011: there is no component `G1` (in `R01`, index 1, and in 11 more)
-          help: the components are `R01`, `R02`, `R03`, `R04`, `R05`, `R06`, `R07`, `R08`, `R09`, `R10`, `R11`, `R12`, `X01`, `X02`, `X03`, `R*` and `X*`
+          help: the components are `R02`, `R03`, `R04`, `R05`, `R06`, `R07`, `R08`, `R09`, `R10`, `R11`, `R12`, `X01`, `X02`, `X03`, `R*` and `X*`
         5:76-90 error S3001: there is no class `example.Robott` (in `X01`, index 1, and in 2 more)
           help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           fix: replace `example.Robott` with `example.Robot` [5:76-90 "example.Robot"]
@@ -449,6 +449,8 @@ fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
 <component xmlns:saoms="urn:saoms:1" name="R${index}" saoms:count="robots + 1" saoms:if="day and index > 0"><implementation.java class="example.Robot"/>
 <property name="ID">R${index}</property><property name="period">100</property><property name="number">${robots}</property></component>"#;
     expect![[r#"
+        2:31-38 warning S2050: the prefix `xsd` of this type is bound to no namespace
+          fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
         2:92-99 error S2042: the property `day` is of the type `xsd:boolean`: found `perhaps`, expected `true` or `false`
           2:79-90 the type
           help: change the value, or the type

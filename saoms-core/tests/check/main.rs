@@ -13,6 +13,7 @@ mod findings;
 mod fleets;
 mod loop_classes;
 mod loops;
+mod meant;
 mod mutations;
 mod names;
 mod nested;

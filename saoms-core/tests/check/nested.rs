@@ -278,7 +278,7 @@ fn a_target_of_a_composites_reference_is_a_service_around_the_composite() {
     assert!(found.contains("x/A (example.Gps) other->I/position"), "{found}");
     expect![[r#"
         inner:2:65-66 error S2011: there is no component `H`
-          help: the components are `x`, `G` and `I`
+          help: the components are `G` and `I`
           help: what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`
     "#]]
     .assert_eq(&outcome(&[&fleet(""), &inner("H")], &[]));
@@ -353,7 +353,7 @@ fn what_is_taken_as_given_has_no_fault_of_its_own() {
         3:53-59 warning S2031: there is no composite `else` in the namespace `urn:t`
           help: name the file of the composite beside this one
         6:30-31 warning S2011: there is no component `D` in these composites
-          help: the components are `A`, `B`, `C` and `N`
+          help: the components are `A`, `C` and `N`
           help: it is taken as given: another composite of the domain may have it
     "#]]
     .assert_eq(&found);

@@ -35,6 +35,7 @@ fn sources_lead_to_composite_properties() {
           2:17-22 the first
           help: give each its own name
         11:41-47 error S2023: there is no part `plaice`; the parts are `place`
+          fix: replace `plaice` with `place` [11:41-47 "place"]
         12:39-47 error S2023: `place[x]` is not understood: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         13:33-37 error S2024: the composite has no property `sped`
           fix: replace `sped` with `speed` [13:33-37 "speed"]
@@ -45,6 +46,8 @@ fn sources_lead_to_composite_properties() {
         16:33-35 error S2023: `/x` names no property of the composite
           help: write `$name`, or `$name/part` for a part of a complex property
         19:33-41 error S3006: the property `period` has no value: its source has none
+          5:17-24 declared here, without a value
+          help: write it in the file, or give `--set nothing=...`
     "#]].assert_eq(&faults(&format!(
         r#"<property name="speed">quick</property>
 <property name="where"><value><place xmlns="urn:x"><x>300</x><y/></place></value></property>

@@ -6,18 +6,18 @@ use crate::files::checked;
 use crate::support::{faults_of, fleet, fleet_1_0, nested, outcome, part, shown};
 
 /// What is wrong with a fleet with the prefix of SAOMS.
-fn of(inside: &str) -> String {
+pub(crate) fn of(inside: &str) -> String {
     outcome(&[&part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside)], &[])
 }
 
 /// A robot of this name, with this besides what it needs.
-fn robot(name: &str, inside: &str) -> String {
+pub(crate) fn robot(name: &str, inside: &str) -> String {
     format!(
         "<component name=\"{name}\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">{name}</property><property name=\"period\">1</property>\n{inside}</component>"
     )
 }
 
-const GPS: &str = "<component name=\"G\"><implementation.java class=\"example.Gps\"/></component>";
+pub(crate) const GPS: &str = "<component name=\"G\"><implementation.java class=\"example.Gps\"/></component>";
 
 #[test]
 fn the_nearest_class_comes_first() {
@@ -251,7 +251,7 @@ fn targets_are_written_as_sca_writes_them() {
           help: several stand between blanks
           fix: replace `G;` with `G` [4:99-101 "G"]
         4:102-103 error S2011: there is no component `X`
-          help: the components are `G`, `H` and `C`
+          help: the components are `G` and `H`
     "#]]
     .assert_eq(&conductor("G; X"));
     expect![[r#"
@@ -278,7 +278,7 @@ fn targets_are_written_as_sca_writes_them() {
     .assert_eq(&conductor("/G H/"));
     expect![[r#"
         4:99-102 error S2011: there is no component `a.b`
-          help: the components are `G`, `H` and `C`
+          help: the components are `G` and `H`
     "#]]
     .assert_eq(&conductor("a.b"));
 }

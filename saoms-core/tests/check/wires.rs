@@ -50,7 +50,7 @@ fn targets_lead_to_services() {
     expect![[r#"
         Q
         3:34-35 error S2011: there is no component `Q`
-          help: the components are `N`, `R`, `G`, `T` and `O`
+          help: the components are `R`, `G`, `T` and `O`
         r
         3:34-35 error S2011: there is no component `r`
           fix: replace `r` with `R` [3:34-35 "R"]

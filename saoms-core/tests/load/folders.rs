@@ -116,6 +116,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         sca-contribution.xml:9:2 [imports] error S1004 SCA 1.1 has no element `imports`
           replace `imports` with `import`
         sca-contribution.xml:10:1 [text] error S1012 text in `contribution`, which holds no text
+          remove it; comments stand between `<!--` and `-->`
         sca-contribution.xml:10:6 [import.resource] error S1008 `import.resource` needs the attribute `uri`
           write `<import.resource uri="..."`
         sca-contribution.xml:11:43 [component] error S1005 `component` cannot stand in `contribution`

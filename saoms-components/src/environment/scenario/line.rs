@@ -59,13 +59,14 @@ pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFa
     let given = if words.peek_second() == Some("times") { Some(times(&mut words)?) } else { None };
     let until =
         if words.take("until") { Some(until(&mut words, every.is_some(), start, time)?) } else { None };
+    let bytes = words.bytes(words.peek().unwrap_or_default());
     let happening = event::read(&mut words)?;
     if let Some(more) = words.peek() {
         return Err(words.wrong(more, "the end of the line, or `;` before the next event"));
     }
     let times = if every.is_none() { Some(given.unwrap_or(1)) } else { given };
     let every = every.unwrap_or(Drawn::fixed(Duration::ZERO));
-    Ok(Line { text: 0, time, follows: start == "then", every, times, until, happening })
+    Ok(Line { text: 0, time, follows: start == "then", every, times, until, happening, bytes })
 }
 
 fn every(words: &mut Words<'_>) -> Result<Drawn<Duration>, TextFault> {
@@ -121,7 +122,21 @@ fn time(words: &mut Words<'_>) -> Result<Duration, TextFault> {
             format!("found `{span}`, which is before the start of the scenario: expected a time from 0s on");
         return Err(words.fault(span, message).instead(Some(positive.trim())));
     }
-    parse_duration(span).map_err(|message| words.fault(span, message))
+    parse_duration(span).map_err(|message| words.fault(span, message).instead(short(span)))
+}
+
+/// A time whose unit is written out.
+fn short(span: &str) -> Option<String> {
+    let number = span.trim_end_matches(|letter: char| letter.is_ascii_alphabetic());
+    let unit = match &span[number.len()..] {
+        "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => "ms",
+        "sec" | "secs" | "second" | "seconds" => "s",
+        "mins" | "minute" | "minutes" => "min",
+        "hr" | "hrs" | "hour" | "hours" => "h",
+        _ => return None,
+    };
+    let short = format!("{}{unit}", number.trim());
+    parse_duration(&short).is_ok().then_some(short)
 }
 
 /// One value, or two with `..` between them, from which one is drawn.

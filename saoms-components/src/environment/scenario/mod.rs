@@ -48,6 +48,8 @@ pub struct Line {
     pub until: Option<Duration>,
     /// What happens.
     pub happening: Happening,
+    /// The bytes of the word that says so.
+    pub bytes: Range<usize>,
 }
 
 /// Something that can happen.

@@ -243,7 +243,7 @@ fn unknown_names_come_with_the_nearest() {
     );
     faults_1_1(
         &format!("<component name='a' colour='red'>{JAVA}</component>"),
-        "2:21 [colour] error S1007 `component` has no attribute `colour`",
+        "2:21 [colour] error S1007 `component` has no attribute `colour` | write it as a property: `<property name=\"colour\">red</property>`",
     );
     faults_1_1(
         &format!("<component name='a' constrainingType='t'>{JAVA}</component>"),

@@ -61,3 +61,67 @@ fn the_end_tag_of_a_misspelt_element_is_right() {
         "2:55 [</componnt>] error S0102 `</componnt>` found where `</component>` is expected | replace it with `</component>`",
     );
 }
+
+#[test]
+fn an_element_that_is_closed_too_late_or_too_early_is_told_once() {
+    let component = |inside: &str| {
+        format!("<component name='a'>{inside}</component>\n<component name='b'>{JAVA}</component>")
+    };
+    faults_1_1(
+        &component(
+            "<implementation.java class='x.Y'><property name='p'>1</property><property name='q'>2</property>",
+        ),
+        "2:22 [implementation.java] error S0103 `implementation.java` is not closed before `property` | end `implementation.java` with `/>`",
+    );
+    faults_1_1(
+        &component(&format!("{JAVA}<property name='p'>1<property><property name='q'>2</property>")),
+        "2:75 [<property>] error S0102 `<property>` found where `</property>` is expected | replace it with `</property>`",
+    );
+    faults_1_1(
+        &component(&format!("{JAVA}<property name='p'>1<property name='q'>2</property>")),
+        "2:56 [property] error S0103 `property` is not closed before `property` | close `property`",
+    );
+    faults_1_1(
+        &format!(
+            "<component name='a'>{JAVA}\n<component name='b'>{JAVA}</component><component name='c'>{JAVA}</component>"
+        ),
+        "2:2 [component] error S0103 `component` is not closed before `component` | close `component`",
+    );
+    faults_1_1(
+        &format!("<component name='a'/>{JAVA}<property name='p'>1</property>\n</component>"),
+        "3:1 [</component>] error S0102 `</component>` found where `</composite>` is expected | remove its `/`",
+    );
+    faults_1_1(
+        &component(&format!("{JAVA}<property name='p'/>1</property><property name='q'>2</property>")),
+        "2:76 [</property>] error S0102 `</property>` found where `</component>` is expected | remove its `/`",
+    );
+    // A fault of another kind leaves elements open as well.
+    faults_1_1(
+        &format!("<component name='a'>{JAVA}<component name='b'/>&nbsp;</component>"),
+        "2:56 [component] error S1005 `component` cannot stand in `component`\n\
+         2:76 [&nbsp;] error S0109 `&nbsp;` is no entity that is known here",
+    );
+}
+
+#[test]
+fn a_misspelt_element_is_read_on() {
+    let content = format!(
+        "<componant name='a'>{JAVA}<porperty name='p'><valeu>1</valeu></porperty><Reference name='r' target='b'/></componant>"
+    );
+    let text = format!("<composite xmlns='{OASIS}' name='c' targetNamespace='u'>{content}</composite>");
+    let (composite, faults) = super::loaded(&text);
+    assert_eq!(faults.lines().count(), 4, "{faults}");
+    let component = &composite.unwrap().components[0];
+    assert_eq!(component.class().unwrap(), &"x.Y");
+    assert_eq!(component.property("p").unwrap().values().len(), 1);
+    assert_eq!(component.reference("r").unwrap().targets[0].as_str(), "b");
+}
+
+#[test]
+fn a_remark_as_other_languages_write_it_becomes_a_comment() {
+    faults_1_1(
+        "# the hall",
+        "2:1 [# the hall] error S1012 text in `composite`, which holds no text | write it as a comment",
+    );
+    faults_1_1("the hall", "2:1 [the hall] error S1012 text in `composite`, which holds no text");
+}

@@ -1,0 +1,141 @@
+//! What is meant by values and names that lead nowhere: each is told once, also of replicas, with what to write.
+
+use expect_test::expect;
+
+use crate::slips::{GPS, of, robot};
+use crate::support::{outcome, part};
+
+/// What is wrong with three halls of two robots: with what the component that a hall implements says, and the property of the hall.
+fn halls(given: &str, property: &str) -> String {
+    let namespaces = "xmlns:saoms=\"urn:saoms:1\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    let robots = "<component name=\"Robot${index}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"period\">1</property>\n<property name=\"ID\">R${hall * 10 + index}</property>\n<property name=\"number\">${hall * 10 + index}</property></component>";
+    let reference = "<reference name=\"gps\" promote=\"Robot*/gps\"/>";
+    let hall = part("hall", namespaces, &format!("{property}\n{reference}\n{robots}"));
+    let component = format!(
+        "<component name=\"Hall${{index}}\" saoms:count=\"3\"><implementation.composite name=\"t:hall\"/>\n{given}</component>"
+    );
+    let fleet = part("fleet", namespaces, &format!("{GPS}\n{component}"));
+    outcome(&[&fleet, &hall], &[])
+}
+
+#[test]
+fn one_mistake_in_replicas_of_composites_is_told_once() {
+    let must = "<property name=\"hall\" type=\"xsd:int\" mustSupply=\"true\"/>";
+    let wired = "<reference name=\"gps\" target=\"G\"/>";
+    let right = "<property name=\"hall\">${index}</property>";
+    expect![[r#"
+        4:17-20 error S3004: composite `hall` has no property `hal` (in `Hall1`, index 1, and in 2 more)
+          fix: replace `hal` with `hall` [4:17-20 "hall"]
+    "#]]
+    .assert_eq(&halls(&format!("{}{wired}", right.replace("hall", "hal")), must));
+    expect![[r#"
+        3:18-30 error S2025: component `Hall1` has to give the property `hall` of its composite a value (index 1, and in 2 more)
+          hall:2:17-21 declared here, without a value
+          help: add `<property name="hall">...</property>`
+    "#]].assert_eq(&halls(wired, must));
+    expect![[r#"
+        4:72-74 error S2011: there is no component `Gg` (in `Hall1`, index 1, and in 2 more)
+          fix: replace `Gg` with `G` [4:72-74 "G"]
+    "#]]
+    .assert_eq(&halls(&format!("{right}<reference name=\"gps\" target=\"Gg\"/>"), must));
+    // A property without a value is told where an expression first uses it.
+    expect![[r#"
+        hall:5:24-28 error S2045: the property `hall` has no value (in `Robot1`, index 1)
+          help: write it in the file, or give it with `--set`, or in the component that the composite implements
+    "#]]
+    .assert_eq(&halls(wired, "<property name=\"hall\" type=\"xsd:int\"/>"));
+}
+
+#[test]
+fn the_index_is_meant_by_what_looks_like_it() {
+    let replicas = |number: &str| {
+        of(&format!(
+            "<component name=\"R${{index}}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R${{index}}</property><property name=\"period\">1</property>\n<property name=\"number\">{number}</property></component>"
+        ))
+    };
+    let said = ["$index", "index", "{index}", "i", "${idx}"].map(replicas).concat();
+    expect![[r#"
+        3:25-31 error S3007: property `number`: `$index` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `$index` with `${index}` [3:25-31 "${index}"]
+        3:25-30 error S3007: property `number`: `index` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `index` with `${index}` [3:25-30 "${index}"]
+        3:25-32 error S3007: property `number`: `{index}` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `{index}` with `${index}` [3:25-32 "${index}"]
+        3:25-26 error S3007: property `number`: `i` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `i` with `${index}` [3:25-26 "${index}"]
+        3:27-30 error S2045: the composite has no property `idx` (in `R1`, index 1)
+          fix: replace `idx` with `index` [3:27-30 "index"]
+    "#]].assert_eq(&said);
+    // Not where nothing is counted.
+    expect![[r#"
+        3:25-31 error S3007: property `number`: `$index` is not a whole number: expected a whole number from 1 to 99
+          help: `${index}` is for replicas: give the component a `saoms:count`
+          help: `number`: The number of the robot
+    "#]].assert_eq(&of(&robot("R", "<property name=\"number\">$index</property>")));
+    let promoted = "<service name=\"s\" promote=\"R${index}/gps\"/>";
+    expect![[r#"
+        3:28-37 error S2011: there is no component `R${index}`
+          help: the components are `G`
+    "#]]
+    .assert_eq(&of(&format!("{GPS}\n{promoted}")));
+}
+
+#[test]
+fn no_component_is_told_to_name_itself() {
+    let reference = "<reference name=\"gps\" target=\"Robot\"/>";
+    expect![[r#"
+        3:18-24 error S3006: component `Robots` lacks the property `number`
+          help: add `<property name="number">...</property>`: a whole number from 1 to 99
+        4:31-36 error S2011: there is no component `Robot`
+          help: the components are `G`
+    "#]]
+    .assert_eq(&of(&format!("{GPS}\n{}", robot("Robots", reference))));
+}
+
+#[test]
+fn a_source_that_leads_to_nothing_says_what_gives_it_a_value() {
+    let with = |property: &str, source: &str| {
+        let number = format!("<property name=\"number\" source=\"{source}\"/>");
+        of(&format!("{property}\n{}", robot("R", &number)))
+    };
+    expect![[r#"
+        4:33-35 error S3006: the property `number` has no value: its source has none
+          2:17-18 declared here, without a value
+          help: write it in the file, give `--set n=...`, or set `N` in the environment
+    "#]]
+    .assert_eq(&with("<property name=\"n\" saoms:env=\"N\"/>", "$n"));
+    let complex = "<property name=\"n\"><max at=\"1\">3</max></property>";
+    expect![[r#"
+        4:36-38 error S2023: there is no part `mx`; the parts are `max`
+          fix: replace `mx` with `max` [4:36-38 "max"]
+    "#]]
+    .assert_eq(&with(complex, "$n/mx"));
+    expect![[r#"
+        4:40-42 error S2023: there is no attribute `a`; the attributes are `at`
+          fix: replace `a` with `at` [4:41-42 "at"]
+    "#]]
+    .assert_eq(&with(complex, "$n/max/@a"));
+}
+
+#[test]
+fn a_type_whose_prefix_means_nothing_is_told() {
+    let with = |kind: &str| {
+        let property = format!("<property name=\"n\" type=\"{kind}\">3</property>");
+        of(&format!("{property}\n{}", robot("R", "<property name=\"number\" source=\"$n\"/>")))
+    };
+    expect![[r#"
+        2:26-33 warning S2050: the prefix `xsd` of this type is bound to no namespace
+          fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
+        R (example.Robot) ID=Text("R") number=Text("3") gps->
+    "#]].assert_eq(&with("xsd:int"));
+    expect![[r#"
+        2:26-35 warning S2050: the prefix `my` of this type is bound to no namespace
+          help: declare it: `xmlns:my="..."`
+        R (example.Robot) ID=Text("R") number=Text("3") gps->
+    "#]]
+    .assert_eq(&with("my:number"));
+}
