@@ -1,7 +1,5 @@
 //! Mistakes that people make in a fleet that is right: each is told once, at its place, and what is suggested makes the fleet right again.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
-
 use std::fmt::Write as _;
 
 use expect_test::expect_file;

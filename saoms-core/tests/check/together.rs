@@ -24,7 +24,6 @@ fn a_faulty_expression_hides_nothing_else() {
     let by_id = of(&robot("name=\"R${index}\" saoms:count=\"3\"", "R${inde}"));
     expect![[r#"
         3:24-28 error S2045: the composite has no property `inde` (in `R1`, index 1)
-          help: declare it: `<property name="...">...</property>` in the composite
           fix: replace `inde` with `index` [3:24-28 "index"]
         3:64-68 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R1`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
@@ -64,7 +63,6 @@ fn a_faulty_expression_hides_nothing_else() {
     let by_name = of(&robot("name=\"R${inde}\" saoms:count=\"3\"", "R${index}"));
     expect![[r#"
         2:21-25 error S2045: the composite has no property `inde` (in `R${inde}`, index 1)
-          help: declare it: `<property name="...">...</property>` in the composite
           fix: replace `inde` with `index` [2:21-25 "index"]
         3:65-69 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R${inde}`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
