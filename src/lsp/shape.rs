@@ -36,8 +36,9 @@ pub(super) fn folds(file: &File) -> Vec<FoldingRange> {
 /// What is around a byte, the smallest first: a word, a value, an attribute, a tag, what an element holds, the element, and so on.
 pub(super) fn around(file: &File, at: usize) -> Vec<Range<usize>> {
     let (text, tree) = (&*file.text, &file.tree);
-    let mut all: Vec<Range<usize>> = Vec::from([0..text.len()]);
-    all.extend(tree.opaque.iter().filter(|part| part.start < at && at < part.end).cloned());
+    let opaque = tree.opaque.iter().filter(|part| part.start < at && at < part.end).cloned();
+    let mut all: Vec<Range<usize>> = opaque.collect();
+    all.push(0..text.len());
     let mut here = tree.innermost(at);
     while let Some(element) = here {
         let one = &tree.elements[element];
