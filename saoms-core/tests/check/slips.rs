@@ -124,7 +124,8 @@ fn a_count_that_is_none_is_an_error() {
     expect![[r#"
         2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
           help: add `saoms:count="..."`
-    "#]].assert_eq(&robots("xmlns:s='urn:other'", "s:count='3'", ""));
+    "#]]
+    .assert_eq(&robots("xmlns:s='urn:other'", "s:count='3'", ""));
     expect![[r#"
         2:29-34 error S1007: `component` has no attribute `count`
           help: it is an attribute of SAOMS: write `saoms:count`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
@@ -134,7 +135,8 @@ fn a_count_that_is_none_is_an_error() {
     expect![[r#"
         2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
           help: add `saoms:count="..."`
-    "#]].assert_eq(&robots("", "count='3'", allowed));
+    "#]]
+    .assert_eq(&robots("", "count='3'", allowed));
 }
 
 #[test]
