@@ -70,10 +70,14 @@ impl<W: Write> Server<W> {
         }
     }
 
-    /// What the codes of the diagnostics mean that are shown at a place.
-    pub(super) fn reported_at(&self, path: &Path, at: Position) -> impl Iterator<Item = String> {
-        let all = self.shown.get(path).map(|shown| &shown.all);
-        all.into_iter()
+    /// What the codes of the diagnostics mean that are shown at a place. Those of a text before the last change may be elsewhere by now.
+    pub(super) fn reported_at(&self, uri: &Uri, at: Position) -> impl Iterator<Item = String> {
+        let shown = self.documents.get(uri.as_str()).and_then(|document| {
+            let shown = self.shown.get(&document.path)?;
+            shown.is_of(document.version).then_some(&shown.all)
+        });
+        shown
+            .into_iter()
             .flatten()
             .filter(move |one| overlap(one.shown.range, Range::new(at, at)))
             .map(|one| one.meaning.clone())

@@ -63,8 +63,8 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
         }
         Symbol::Parameter { file, name } => {
             let outline = &scene.files[*file].outline;
-            let one = outline.properties.iter().find(|one| one.text == *name);
-            let value = one.and_then(|one| scene.value_of(*file, one.element));
+            let one = outline.properties.iter().find(|one| one.text == *name)?;
+            let value = scene.value_of(*file, one.element);
             let value = value.map_or_else(String::new, |value| format!(": `{value}`"));
             Some(format!("**{name}**, a property of the composite `{}`{value}", composite_name(scene, *file)))
         }

@@ -108,7 +108,7 @@ impl<W: Write> Server<W> {
         let at = &params.text_document_position_params;
         let (scene, byte) = self.place(at)?;
         let known = hover(&scene, byte);
-        let mut parts: Vec<String> = self.reported_at(&scene.file().path, at.position).collect();
+        let mut parts: Vec<String> = self.reported_at(&at.text_document.uri, at.position).collect();
         let range =
             known.as_ref().map(|(_, range)| scene.file().lines.range(&scene.file().text, range.clone()));
         parts.extend(known.map(|(text, _)| text));

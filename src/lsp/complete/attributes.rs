@@ -22,13 +22,42 @@ pub(super) fn complete(scene: &Scene, element: usize, name: &Range<usize>) -> Ve
         attributes.iter().any(|one| one.name != *name && &file.text[one.name.clone()] == written)
     };
     let version = file.tree.version(&file.text);
-    let own = file.tree.prefix_of(&file.text, element, SAOMS_NAMESPACE).filter(|own| !own.is_empty());
-    let own = own
-        .into_iter()
-        .flat_map(|own| own_attributes(kind).map(move |known| (format!("{own}:{}", known.name), known)));
-    let all = kind.of(version).map(|known| (known.name.to_owned(), known)).chain(own);
+    let own = Own::at(scene, element);
+    let added = own.iter().flat_map(|own| {
+        let free = own_attributes(kind).map(|known| (format!("{}:{}", own.prefix, known.name), known));
+        let free = free.filter(|(written, _)| !is_taken(written));
+        free.map(|(written, known)| own.bound(attribute(written, known, has_value, name)))
+    });
+    let all = kind.of(version).map(|known| (known.name.to_owned(), known));
     let free = all.filter(|(written, _)| !is_taken(written));
-    free.map(|(written, known)| attribute(written, known, has_value, name)).collect()
+    free.map(|(written, known)| attribute(written, known, has_value, name)).chain(added).collect()
+}
+
+/// How the namespace of SAOMS is written at an element.
+pub(super) struct Own<'s> {
+    pub(super) prefix: &'s str,
+    /// Where a declaration is added that is not there yet.
+    at: Option<usize>,
+}
+
+impl<'s> Own<'s> {
+    /// `None` where the usual prefix means something else.
+    pub(super) fn at(scene: &'s Scene, element: usize) -> Option<Self> {
+        let (text, tree) = (&*scene.file().text, &scene.file().tree);
+        if let Some(prefix) = tree.prefix_of(text, element, SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
+            return Some(Self { prefix, at: None });
+        }
+        let is_free = tree.resolve(text, element, "saoms").is_none();
+        is_free.then(|| Self { prefix: "saoms", at: tree.elements.first().map(|root| root.name.end) })
+    }
+
+    /// A proposal that has the prefix, with its declaration where that is lacking.
+    pub(super) fn bound(&self, one: Proposal) -> Proposal {
+        match self.at {
+            Some(at) => one.also(at, format!(" xmlns:{}=\"{SAOMS_NAMESPACE}\"", self.prefix)),
+            None => one,
+        }
+    }
 }
 
 fn attribute(written: String, known: &Known, has_value: bool, range: &Range<usize>) -> Proposal {

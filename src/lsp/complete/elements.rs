@@ -6,8 +6,9 @@ use lsp_types::CompletionItemKind;
 use saoms_core::load::vocabulary::{
     COMPONENT, COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, children, other,
 };
-use saoms_core::model::{SAOMS_NAMESPACE, Version};
+use saoms_core::model::Version;
 
+use super::attributes::Own;
 use super::item::in_snippet;
 use super::{Proposal, names};
 use crate::lsp::describe;
@@ -90,24 +91,25 @@ fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<
                 .snippet(format!("<{sca}property name=\"{}\">${{1:{value}}}</{sca}property>", one.name))
         }));
     }
-    if let Some(own) = tree.prefix_of(text, parent, SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
+    if let Some(own) = Own::at(scene, parent) {
         if std::ptr::eq(kind, &COMPONENT) {
-            all.push(added(&LOOP, &format!("{own}:"), "name=\"$1\"$2", range));
+            all.push(added(&LOOP, &own, "name=\"$1\"$2", range));
         }
         if SEVERITY_PARENTS.contains(&kind.name) {
-            let attributes = "code=\"$1\" level=\"$2\" reason=\"$3\"";
-            all.push(added(&SEVERITY, &format!("{own}:"), attributes, range));
+            all.push(added(&SEVERITY, &own, "code=\"$1\" level=\"$2\" reason=\"$3\"", range));
         }
     }
     all
 }
 
 /// An element that SAOMS adds and SCA's names do not have.
-fn added(kind: &'static Kind, own: &str, attributes: &str, range: &Range<usize>) -> Proposal {
+fn added(kind: &'static Kind, own: &Own<'_>, attributes: &str, range: &Range<usize>) -> Proposal {
     debug_assert!(OWN_ELEMENTS.contains(&kind.name));
-    Proposal::new(format!("{own}{}", kind.name), CompletionItemKind::CLASS, range)
-        .doc(describe::element(kind))
-        .snippet(format!("<{own}{} {attributes}/>", kind.name))
+    let name = format!("{}:{}", own.prefix, kind.name);
+    let snippet = format!("<{name} {attributes}/>");
+    own.bound(
+        Proposal::new(name, CompletionItemKind::CLASS, range).doc(describe::element(kind)).snippet(snippet),
+    )
 }
 
 fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Range<usize>) -> Proposal {

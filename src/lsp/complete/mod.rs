@@ -18,8 +18,8 @@ use std::ops::Range;
 
 use saoms_core::diagnostic::Level;
 use saoms_core::load::vocabulary::{
-    BINDING_SCA, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE,
-    Holds, own_attributes,
+    BINDING_SCA, COMPONENT, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE,
+    COMPOSITE_SERVICE, Holds, own_attributes,
 };
 use saoms_core::model::Multiplicity;
 
@@ -92,7 +92,8 @@ fn value_of(
     let own = || own_attributes(kind).find(|known| name.contains(':') && known.name == local(name));
     let Some(known) = of_sca.or_else(own) else { return Vec::new() };
     let is_of = |other| std::ptr::eq(kind, other);
-    if let Some(inside) = in_template(scene, element, &value, at) {
+    let is_name = is_of(&COMPONENT) && name == "name";
+    if let Some(inside) = in_template(scene, element, is_name, &value, at) {
         return inside;
     }
     match known.holds {
@@ -138,8 +139,15 @@ fn value_of(
 }
 
 /// The names in the `${...}` that a byte is in; `None` where it is in none.
-fn in_template(scene: &Scene, element: usize, range: &Range<usize>, at: usize) -> Option<Vec<Proposal>> {
-    let component = scene.component_around(element).filter(|one| one.is_replicated)?;
+fn in_template(
+    scene: &Scene,
+    element: usize,
+    is_name: bool,
+    range: &Range<usize>,
+    at: usize,
+) -> Option<Vec<Proposal>> {
+    // The name is typed before it is said how many there are.
+    let component = scene.component_around(element).filter(|one| one.is_replicated || is_name)?;
     template(scene, 0, component, range, at)
 }
 
@@ -195,7 +203,7 @@ fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
     let line_start = file.text[..at].rfind(['\n', '\r']).map_or(0, |found| found + 1);
     let line_end = file.text[at..].find(['\n', '\r']).map_or(file.text.len(), |found| at + found);
     let range = range.start.max(line_start)..range.end.min(line_end);
-    if let Some(inside) = in_template(scene, element, &range, at) {
+    if let Some(inside) = in_template(scene, element, false, &range, at) {
         return inside;
     }
     match file.kinds[property] {

@@ -32,6 +32,26 @@ fn expressions_complete_with_properties_and_the_index() {
 }
 
 #[test]
+fn what_saoms_adds_is_proposed_before_its_namespace_is_bound() {
+    let unbound = |inside: &str| composite(inside).replace(" xmlns:s=\"urn:saoms:1\"", "");
+    let declared = |inside: &str, label: &str| {
+        let (scene, at) = scene(&unbound(inside), &[]);
+        let found = complete(&scene, at).into_iter().find(|one| one.label == label).unwrap();
+        let more = found.into_item(scene.file(), true).additional_text_edits.unwrap();
+        more.into_iter().map(|edit| (edit.range.start.character, edit.new_text)).collect::<Vec<_>>()
+    };
+    let declaration = vec![(10, " xmlns:saoms=\"urn:saoms:1\"".to_owned())];
+    assert_eq!(declared("<component name=\"R\" cou|", "saoms:count"), declaration);
+    assert_eq!(declared("<component name=\"R\"><|", "saoms:loop"), declaration);
+    assert_eq!(declared("<|", "saoms:severity"), declaration);
+    // Where the prefix is another one's, nothing can be proposed.
+    let other = proposed(&unbound("<component xmlns:saoms=\"urn:x\" name=\"R\" |"));
+    assert!(!other.iter().any(|label| label.contains(':')), "{other:?}");
+    // The name comes before the number of replicas.
+    assert_eq!(proposed(&unbound("<property name=\"n\"/><component name=\"R${|")), ["index", "n"]);
+}
+
+#[test]
 fn types_are_those_of_xml_schema_with_the_prefix_of_the_file() {
     let bound = composite("<property xmlns:x=\"http://www.w3.org/2001/XMLSchema\" name=\"p\" type=\"|\"/>");
     assert_eq!(proposed(&bound)[..3], ["x:string", "x:int", "x:boolean"]);
