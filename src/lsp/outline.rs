@@ -232,15 +232,13 @@ impl Outline {
         }
         if kind.name == "property"
             && let Some(source) = of.named("source")
-            && let Some(rest) = source.text.strip_prefix('$')
         {
-            // A `/` in an expression divides.
-            let expressions = inside(rest);
-            let is_end = |at: &usize| !expressions.iter().any(|one| one.contains(at));
-            let end = rest.match_indices('/').map(|(at, _)| at).find(is_end).unwrap_or(rest.len());
-            let name = &rest[..end];
-            let at = source.at.start + 1..source.at.start + 1 + name.len();
-            self.sources.push(Named { element: source.element, text: name.to_owned(), at });
+            let (start, element) = (source.at.start, source.element);
+            self.sources.extend(variables(&source.text).into_iter().map(|at| Named {
+                element,
+                text: source.text[at.clone()].to_owned(),
+                at: start + at.start..start + at.end,
+            }));
         }
         self.libraries.extend(of.named("library").map(|one| one.text));
         if kind.name == "property"
@@ -331,4 +329,31 @@ fn end(whole: Named, side: Side) -> End {
     });
     let component = parts.next().unwrap_or_else(|| whole.clone());
     End { side, is_outer: false, component, part: parts.next() }
+}
+
+/// The bytes of the names behind `$` in an XPath, expressions of replicas that are parts of them included.
+fn variables(text: &str) -> Vec<Range<usize>> {
+    let expressions = inside(text);
+    let is_inside = |at: usize| expressions.iter().any(|one| at + 2 >= one.start && at <= one.end);
+    let (mut all, mut quote, mut from): (Vec<Range<usize>>, Option<char>, usize) = (Vec::new(), None, 0);
+    for (at, letter) in text.char_indices() {
+        if at < from || is_inside(at) {
+            continue;
+        }
+        match (letter, quote) {
+            (_, Some(open)) => quote = Some(open).filter(|open| *open != letter),
+            ('\'' | '"', None) => quote = Some(letter),
+            ('$', None) => {
+                let start = at + 1;
+                let is_part =
+                    |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ':');
+                let mut behind = text[start..].char_indices().map(|(place, letter)| (start + place, letter));
+                let end = behind.find(|(place, letter)| !is_inside(*place) && !is_part(*letter));
+                from = end.map_or(text.len(), |(end, _)| end);
+                all.push(start..from);
+            }
+            _ => {}
+        }
+    }
+    all
 }

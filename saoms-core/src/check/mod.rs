@@ -64,6 +64,7 @@ mod variable;
 mod wire;
 mod wires;
 mod written;
+mod xpath;
 
 use std::collections::HashSet;
 

@@ -1,6 +1,8 @@
 //! The properties of composites: what `source="$name"` and `source="$name/path"` stand for.
 
-use std::cell::OnceCell;
+mod sources;
+
+use std::cell::{Cell, OnceCell};
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
@@ -8,9 +10,9 @@ use super::fleet::{Fleet, Member, Unit};
 use super::instance::Instance;
 use super::levels::Levels;
 use super::options::Options;
-use super::path::{Fault, expression, one_of};
-use super::raw::{Piece, Raw, beside_source, raw};
-use super::report::{Report, escaped, replacing};
+use super::path::expression;
+use super::raw::{Raw, beside_source, raw};
+use super::report::Report;
 use super::value_type::{self, Match, Typed};
 use super::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
@@ -23,7 +25,14 @@ pub(super) struct Parameters<'a> {
     units: Vec<Declared<'a>>,
     /// How many more values sources with several can lead to.
     left: usize,
+    /// What sources that are more than a path came to, by their units, and where the first of each stands.
+    found: HashMap<(usize, String), (Location, Raw<'a>)>,
+    /// How many more parts of values these can look at.
+    parts_left: Cell<usize>,
 }
+
+/// Parts of values that sources look at that are more than a path: what would take much longer is a mistake.
+const MOST_PARTS: usize = 4_000_000;
 
 /// Values that sources with several can lead to: each component that takes all of a list has each of its values.
 const MOST_VALUES: usize = 4_000_000;
@@ -90,7 +99,8 @@ impl<'a> Parameters<'a> {
     /// Collects the properties and gives them what counts in place of their own values.
     pub(super) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
         let units = fleet.units.iter().map(|unit| declared(unit, report)).collect();
-        let mut parameters = Self { units, left: MOST_VALUES };
+        let (found, parts_left) = (HashMap::new(), Cell::new(MOST_PARTS));
+        let mut parameters = Self { units, left: MOST_VALUES, found, parts_left };
         for (place, unit) in fleet.units.iter().enumerate() {
             let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];
@@ -274,105 +284,6 @@ impl<'a> Parameters<'a> {
         Ok(raw)
     }
 
-    fn follow(&mut self, place: usize, source: &Text, report: &mut Report<'_>) -> Result<Raw<'a>, ()> {
-        let unit = &mut self.units[place];
-        let Some((name, path)) = expression(source) else {
-            unit.has_wrong_source = true;
-            let message = format!("{} names no property of the composite", quoted(source));
-            let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
-                .help("write `$name`, or `$name/part` for a part of a complex property");
-            if unit.by_name.contains_key(source.as_str()) {
-                one = one.suggest("insert `$`", source.location, format!("${source}"));
-            } else if source.contains('$') {
-                one = taken_as_given(one, report.assumes);
-            }
-            report.push(one);
-            return Err(());
-        };
-        let Some(parameter) = unit.by_name.get_mut(name) else {
-            unit.has_wrong_source = true;
-            let names = unit.names();
-            let at = report.part(source, 1..1 + name.len());
-            let message = format!("the composite has no property {}", quoted(name));
-            let known = ("its properties are", names.iter().copied());
-            let one = report.unknown(&codes::UNKNOWN_SOURCE, at, message, name, known);
-            report.push(match names.is_empty() {
-                true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
-                false => one,
-            });
-            return Err(());
-        };
-        parameter.is_used = true;
-        let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
-        let start = name.len() + 1;
-        let fault = |Fault { step, message, is_understood, instead }: Fault, report: &mut Report<'_>| {
-            let step = start + step.start..start + step.end;
-            let at = report.part(source, step.clone());
-            let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
-            if let Some((name, meant)) = instead
-                && let Some(place) = source[step.clone()].find(&name)
-            {
-                let place = step.start + place;
-                let place = report.part(source, place..place + name.len());
-                one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
-            }
-            report.push(if is_understood { one } else { taken_as_given(one, report.assumes) });
-        };
-        if let (Some(levels), Some(path)) = (&parameter.levels, path.filter(|path| path.starts_with('/'))) {
-            return levels.walk(path).map_err(|one| fault(one, report));
-        }
-        let is_judged = std::mem::replace(&mut parameter.is_judged, true);
-        let typed = Typed { property, document: &composite.document };
-        let mut whole = match given {
-            // One that is not of its type is reported.
-            Some(Given::Setting(Setting { value, .. }) | Given::Variable(Variable { value, .. })) => {
-                if !value_type::is_right(typed, value) {
-                    return Err(());
-                }
-                Raw::one(value)
-            }
-            Some(Given::Component(outside, outer)) => {
-                let raw = self.values(outside, outer, report)?.raw;
-                for piece in raw.0.iter().filter(|_| !is_judged) {
-                    if let Piece::Text(text) = piece {
-                        value_type::given(typed, text, report);
-                    }
-                }
-                raw
-            }
-            None => Raw(Vec::new()),
-        };
-        if whole.0.is_empty() {
-            whole = raw(property, &composite.document, None, report)?;
-        }
-        if whole.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
-            // Reported where it should have been supplied.
-            return Err(());
-        }
-        let Some(path) = path else {
-            // Where the composite does not say it, the component that it implements may.
-            let typed = match given {
-                Some(Given::Component(_, outside)) if property.element().is_none() => outside,
-                _ => property,
-            };
-            return Ok(whole.inside_elements_of(typed));
-        };
-        if whole.0.is_empty() {
-            // What has no value has no parts either.
-            return Ok(whole);
-        }
-        let whole = one_of(whole.split_into_elements_of(property), path).map_err(|one| fault(one, report))?;
-        // Without more steps it is the value itself.
-        let Some(from) = path.find('/') else { return Ok(whole.inside_elements_of(property)) };
-        let levels = Rc::new(Levels::of(whole));
-        if from == 0
-            && let Some(parameter) = self.units[place].by_name.get_mut(name)
-        {
-            parameter.levels = Some(Rc::clone(&levels));
-        }
-        levels.walk(path).map_err(|one| fault(one, report))
-    }
-
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
     pub(super) fn finish(self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
         // A composite may be there several times; what is used in one of them is used.
@@ -407,16 +318,6 @@ impl<'a> Parameters<'a> {
                 }
             }
         }
-    }
-}
-
-/// Whoever runs a composite of another program may understand more of XPath.
-fn taken_as_given(one: Diagnostic, assumes: bool) -> Diagnostic {
-    match assumes {
-        true => {
-            one.severity(Severity::Warning).help("another program may understand it: it is taken as given")
-        }
-        false => one,
     }
 }
 

@@ -1,8 +1,8 @@
 //! Where the `source` of a property leads: `$name`, and the part of its value that a path of steps leads to.
 //!
-//! SCA takes an XPath (Assembly 1.1, 4.1.3). Understood are steps down into elements by name or `*`, each with one predicate, steps to any depth (`//`),
+//! SCA takes an XPath (Assembly 1.1, 4.1.3); this is what most of them are, for which each value is looked through once for all. Understood are steps down into elements by name or `*`, each with one predicate, steps to any depth (`//`),
 //! and at the end an attribute or a text; what steps lead to several elements, leads on from all of them, as in XPath. Prefixes do not count. The work grows with the value and the
-//! length of the path alone: each step looks at each element once.
+//! length of the path alone: each step looks at each element once. Everything else is left to [`xpath`](super::xpath).
 
 use std::ops::Range;
 
@@ -11,7 +11,10 @@ use super::report::list;
 use crate::diagnostic::{nearest, quoted};
 use crate::xml::{Attribute, Element};
 
-/// What is understood, for those who wrote something else.
+/// Of what an XPath can be that is no path.
+const NO_PATH: &str = "this is more than a path";
+
+/// What steps are, for those who wrote none.
 const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
 
 /// Parts that are looked at for what could have been meant.
@@ -34,13 +37,13 @@ impl Fault {
         Self { step, message: message.into(), is_understood: true, instead: None }
     }
 
-    /// Of a step of another form.
-    fn unknown(step: Range<usize>, message: String) -> Self {
-        Self { step, message, is_understood: false, instead: None }
+    /// Of something that another program may understand.
+    pub(super) fn unknown(step: Range<usize>, message: impl Into<String>) -> Self {
+        Self { step, message: message.into(), is_understood: false, instead: None }
     }
 
     /// With the name among those that there are which is nearly this one.
-    fn near<'n>(mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> Self {
+    pub(super) fn near<'n>(mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> Self {
         self.instead = nearest(name, known).map(|meant| (name.to_owned(), meant.to_owned()));
         self
     }
@@ -58,8 +61,7 @@ pub(super) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
 pub(super) fn one_of<'a>(mut whole: Raw<'a>, path: &str) -> Result<Raw<'a>, Fault> {
     let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(whole) };
     let Some(Predicate::Place(wanted)) = predicate(step) else {
-        let message = format!("{} is not understood: behind the name stands `[2]` or `/`", quoted(step));
-        return Err(Fault::unknown(at, message));
+        return Err(Fault::unknown(at, NO_PATH));
     };
     let count = whole.0.len();
     let Some(place) = wanted.of(count) else {
@@ -92,9 +94,9 @@ pub(super) fn ends<'a>(
     is_missing.then(|| Err(Fault::new(step, format!("a step is missing: {FORMS}"))))
 }
 
-/// The fault of a step that is of no form that is understood.
-pub(super) fn no_step(at: Range<usize>, step: &str) -> Fault {
-    Fault::unknown(at, format!("{} is not understood: {FORMS}", quoted(step)))
+/// The fault of a step that is of no form that is understood here.
+pub(super) fn no_step(at: Range<usize>) -> Fault {
+    Fault::unknown(at, NO_PATH)
 }
 
 /// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within quotation marks is none.
@@ -163,6 +165,10 @@ impl<'p> Test<'p> {
             Some((name, rest)) => (name, rest),
             None => step.split_at(step.find('[').unwrap_or(step.len())),
         };
+        // Other axes are no names.
+        if name.contains("::") {
+            return None;
+        }
         let predicate = if rest.is_empty() { None } else { Some(predicate(rest)?) };
         let name =
             if name == "*" { None } else { Some(local(name)).filter(|name| is_name(name)).map(Some)? };

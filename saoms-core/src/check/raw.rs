@@ -10,9 +10,11 @@ use crate::source::{Located, Location, Text};
 use crate::xml::{Document, Element};
 
 /// Every value that a property is given; none when it is given nothing.
+#[derive(Clone)]
 pub(super) struct Raw<'a>(pub(super) Vec<Piece<'a>>);
 
 /// One value.
+#[derive(Clone)]
 pub(super) enum Piece<'a> {
     /// A text.
     Text(Cow<'a, Text>),
@@ -26,6 +28,18 @@ impl<'a> Raw<'a> {
     /// One text.
     pub(super) fn one(text: &'a Text) -> Self {
         Self(vec![Piece::Text(Cow::Borrowed(text))])
+    }
+
+    /// With the texts that are at one place at another one: those that a `source` makes itself are where it is.
+    pub(super) fn moved(mut self, from: Location, to: Location) -> Self {
+        for piece in &mut self.0 {
+            if let Piece::Text(text) = piece
+                && text.location == from
+            {
+                text.to_mut().location = to;
+            }
+        }
+        self
     }
 
     /// What is inside these elements, a value each.

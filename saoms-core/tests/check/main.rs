@@ -31,3 +31,4 @@ mod topics;
 mod wires;
 mod wiring;
 mod written;
+mod xpath;

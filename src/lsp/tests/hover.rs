@@ -62,6 +62,11 @@ fn everything_is_explained() {
         "p",
         &["`100`"],
     );
+    says(
+        "<property name=\"p\">100</property><component name=\"R\"><property name=\"x\" source=\"concat('$p', $q/a[b &lt; 1], $p|[2])\"/>",
+        "p",
+        &["`100`"],
+    );
     says("<s:severity code=\"S40|01\"/>", "S4001", &["task-id-shared"]);
     assert_eq!(said("<!-- comp|onent -->"), None);
     // Of what is not known, what it should be.

@@ -1,0 +1,207 @@
+//! Following a `source`: to a property, into its value, or through an XPath.
+
+use std::rc::Rc;
+
+use super::{Given, Parameters};
+use crate::check::levels::Levels;
+use crate::check::path::{Fault, expression, one_of};
+use crate::check::raw::{Piece, Raw, raw};
+use crate::check::report::{Report, escaped, replacing};
+use crate::check::value_type::{self, Typed};
+use crate::check::xpath::XPath;
+use crate::check::{Setting, Variable};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::source::Text;
+
+impl<'a> Parameters<'a> {
+    /// What a `source` stands for. Faults are reported.
+    pub(super) fn follow(
+        &mut self,
+        place: usize,
+        source: &Text,
+        report: &mut Report<'_>,
+    ) -> Result<Raw<'a>, ()> {
+        let known = &self.units[place].by_name;
+        let simple = expression(source).filter(|(name, _)| known.contains_key(name) || is_name(name));
+        let Some((name, path)) = simple else { return self.by_xpath(place, source, report) };
+        self.named(place, source, (name, 1), report)?;
+        let start = name.len() + 1;
+        let parameter = &self.units[place].by_name[name];
+        let (property, given) = (parameter.property, parameter.given);
+        if let (Some(levels), Some(path)) = (&parameter.levels, path.filter(|path| path.starts_with('/'))) {
+            return match levels.walk(path) {
+                Err(Fault { is_understood: false, .. }) => self.by_xpath(place, source, report),
+                found => found.or_else(|one| malformed(source, start, one, report)),
+            };
+        }
+        let whole = self.whole(place, name, report)?;
+        let Some(path) = path else {
+            // Where the composite does not say it, the component that it implements may.
+            let typed = match given {
+                Some(Given::Component(_, outside)) if property.element().is_none() => outside,
+                _ => property,
+            };
+            return Ok(whole.inside_elements_of(typed));
+        };
+        if whole.0.is_empty() {
+            // What has no value has no parts either.
+            return Ok(whole);
+        }
+        let whole = match one_of(whole.split_into_elements_of(property), path) {
+            Err(Fault { is_understood: false, .. }) => return self.by_xpath(place, source, report),
+            found => found.or_else(|one| malformed(source, start, one, report))?,
+        };
+        // Without more steps it is the value itself.
+        let Some(from) = path.find('/') else { return Ok(whole.inside_elements_of(property)) };
+        let levels = Rc::new(Levels::of(whole));
+        if from == 0
+            && let Some(parameter) = self.units[place].by_name.get_mut(name)
+        {
+            parameter.levels = Some(Rc::clone(&levels));
+        }
+        match levels.walk(path) {
+            Err(Fault { is_understood: false, .. }) => self.by_xpath(place, source, report),
+            found => found.or_else(|one| malformed(source, start, one, report)),
+        }
+    }
+
+    /// Finds the property of a name that a `source` has at a byte, and notes that it is used. One that is not there is reported.
+    fn named(
+        &mut self,
+        place: usize,
+        source: &Text,
+        (name, start): (&str, usize),
+        report: &mut Report<'_>,
+    ) -> Result<(), ()> {
+        let unit = &mut self.units[place];
+        if let Some(parameter) = unit.by_name.get_mut(name) {
+            parameter.is_used = true;
+            return Ok(());
+        }
+        unit.has_wrong_source = true;
+        let names = unit.names();
+        let at = report.part(source, start..start + name.len());
+        let message = format!("the composite has no property {}", quoted(name));
+        let known = ("its properties are", names.iter().copied());
+        let one = report.unknown(&codes::UNKNOWN_SOURCE, at, message, name, known);
+        report.push(match names.is_empty() {
+            true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
+            false => one,
+        });
+        Err(())
+    }
+
+    /// The whole value of a property that is there.
+    fn whole(&mut self, place: usize, name: &str, report: &mut Report<'_>) -> Result<Raw<'a>, ()> {
+        let Some(parameter) = self.units[place].by_name.get_mut(name) else { return Err(()) };
+        let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
+        let is_judged = std::mem::replace(&mut parameter.is_judged, true);
+        let typed = Typed { property, document: &composite.document };
+        let mut whole = match given {
+            // One that is not of its type is reported.
+            Some(Given::Setting(Setting { value, .. }) | Given::Variable(Variable { value, .. })) => {
+                if !value_type::is_right(typed, value) {
+                    return Err(());
+                }
+                Raw::one(value)
+            }
+            Some(Given::Component(outside, outer)) => {
+                let raw = self.values(outside, outer, report)?.raw;
+                for piece in raw.0.iter().filter(|_| !is_judged) {
+                    if let Piece::Text(text) = piece {
+                        value_type::given(typed, text, report);
+                    }
+                }
+                raw
+            }
+            None => Raw(Vec::new()),
+        };
+        if whole.0.is_empty() {
+            whole = raw(property, &composite.document, None, report)?;
+        }
+        if whole.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
+            // Reported where it should have been supplied.
+            return Err(());
+        }
+        Ok(whole)
+    }
+
+    /// What a `source` stands for that is more than a path.
+    fn by_xpath(&mut self, place: usize, source: &Text, report: &mut Report<'_>) -> Result<Raw<'a>, ()> {
+        if !source.contains(['$', '(']) {
+            let unit = &mut self.units[place];
+            unit.has_wrong_source = true;
+            let message = format!("{} names no property of the composite", quoted(source));
+            let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
+                .help("write `$name`, or `$name/part` for a part of a complex property");
+            if unit.by_name.contains_key(source.as_str()) {
+                one = one.suggest("insert `$`", source.location, format!("${source}"));
+            }
+            report.push(one);
+            return Err(());
+        }
+        let key = (place, source.to_string());
+        if let Some((first, found)) = self.found.get(&key) {
+            return Ok(found.clone().moved(*first, source.location));
+        }
+        let xpath = match XPath::parse(source) {
+            Ok(xpath) => xpath,
+            Err(fault) => {
+                self.units[place].has_wrong_source = true;
+                return malformed(source, 0, fault, report);
+            }
+        };
+        let named = xpath.variables();
+        let mut variables = Vec::with_capacity(named.len());
+        for (name, at) in &named {
+            self.named(place, source, (name, at.start), report)?;
+            let property = self.units[place].by_name[name.as_str()].property;
+            variables.push((name.clone(), self.whole(place, name, report)?.split_into_elements_of(property)));
+        }
+        let found = match xpath.evaluate(&variables, &self.parts_left, source.location) {
+            Ok(found) => found,
+            // What has no value has no parts either.
+            Err(_) if !variables.is_empty() && variables.iter().all(|(_, whole)| whole.0.is_empty()) => {
+                return Ok(Raw(Vec::new()));
+            }
+            Err(fault) => return malformed(source, 0, fault, report),
+        };
+        let found = match &named[..] {
+            [(only, _)] => found.inside_elements_of(self.units[place].by_name[only.as_str()].property),
+            _ => found,
+        };
+        self.found.insert(key, (source.location, found.clone()));
+        Ok(found)
+    }
+}
+
+/// Reports a fault of a `source`, whose bytes count from a place in it. Whoever runs a composite of another program may understand more than XPath 1.0.
+fn malformed<T>(source: &Text, start: usize, fault: Fault, report: &mut Report<'_>) -> Result<T, ()> {
+    let Fault { step, message, is_understood, instead } = fault;
+    let step = start + step.start..start + step.end;
+    let at = report.part(source, step.clone());
+    let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
+    if let Some((name, meant)) = instead
+        && let Some(place) = source[step.clone()].find(&name)
+    {
+        let place = step.start + place;
+        let place = report.part(source, place..place + name.len());
+        one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
+    }
+    report.push(match (is_understood, report.assumes) {
+        (true, _) => one,
+        (false, true) => {
+            one.severity(Severity::Warning).help("another program may understand it: it is taken as given")
+        }
+        (false, false) => one.help(
+            "a `source` is `$name`, a path from there as `$name/part[2]/@attribute`, or another XPath 1.0",
+        ),
+    });
+    Err(())
+}
+
+/// Whether it can be the name of a property, as far as that tells it from other parts of an XPath.
+fn is_name(name: &str) -> bool {
+    let is_inner = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ':');
+    !name.is_empty() && name.chars().all(is_inner)
+}
