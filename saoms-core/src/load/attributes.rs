@@ -228,6 +228,9 @@ impl Loader<'_> {
         if let Some(attribute) = self.attribute(element, "name")
             && let Some(name) = attribute.plain_name()
         {
+            if matches!(name.as_bytes()[0], b'0'..=b'9' | b'-' | b'.') {
+                self.no_name(&name);
+            }
             return name;
         }
         let Some(name) = self.required(element, "name") else {
@@ -238,8 +241,24 @@ impl Loader<'_> {
             let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));
             let help = "names are used in targets as `component/service`, and in lists between blanks";
             self.report(Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message).help(help));
+        } else if !name.contains("${") && (name.contains(':') || !name.starts_with(is_first)) {
+            self.no_name(&name);
         }
         name
+    }
+
+    /// Warns of a name that XML does not allow as one (NCName, Namespaces in XML 1.0, 3): it does here what any other does.
+    fn no_name(&mut self, name: &Text) {
+        if self.diagnostics.skip(&codes::ATTRIBUTE_VALUE, Severity::Warning, name.location) {
+            return;
+        }
+        let why = match name.starts_with(is_first) {
+            true => "has a colon in it",
+            false => "does not start with a letter or `_`",
+        };
+        let message = format!("{} {why}: it is no name of XML", quoted(name));
+        let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message);
+        self.report(one.severity(Severity::Warning).help("other programs refuse it"));
     }
 
     /// The value of a boolean attribute.
@@ -365,6 +384,11 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
         Edit { location: Span::empty(end).in_file(file), replacement: format!("{gap}{written}") },
     ];
     one.suggest_edits(format!("write it as a property: {}", quoted(&written)), edits)
+}
+
+/// Whether a name can start with this.
+fn is_first(letter: char) -> bool {
+    letter.is_alphabetic() || letter == '_' || !letter.is_ascii()
 }
 
 /// What to do about an attribute that seems to be meant for one that the element has.

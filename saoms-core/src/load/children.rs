@@ -9,6 +9,11 @@ use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
 use crate::xml::Element;
 
+/// Elements that SCA 1.0 has, and 1.1 has no longer.
+const ONLY_1_0: &[&str] = &["operation"];
+/// Elements that SCA 1.1 added.
+const ONLY_1_1: &[&str] = &["requires", "policySetAttachment", "documentation", "extensions"];
+
 /// Whose vocabulary an element belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
@@ -155,10 +160,32 @@ impl Loader<'_> {
                 self.severity(child, element);
                 continue;
             }
-            if matches!(family, Family::Sca | Family::Own) && !(family == Family::Sca && is_known) {
+            if family == Family::Sca && is_known {
+                self.of_version(child);
+            } else if matches!(family, Family::Sca | Family::Own) {
                 _ = self.unexpected(child, kind, family);
             }
         }
+    }
+
+    /// Tells of an element that another version of SCA alone has, once for all of its name. It changes nothing here.
+    pub(super) fn of_version(&mut self, element: Element<'_>) {
+        let all = [ONLY_1_0, ONLY_1_1];
+        let (own, others) = if self.version.is_1_1() { (all[1], all[0]) } else { (all[0], all[1]) };
+        let Some(name) = others.iter().copied().find(|known| *known == element.local_name()) else { return };
+        // Behind a wrong namespace nobody knows which version is meant.
+        if self.newer.contains(&name) || Version::from_namespace(&self.namespace).is_none() {
+            return;
+        }
+        self.newer.push(name);
+        let (version, other) = if own == ONLY_1_1 { ("SCA 1.1", "SCA 1.0") } else { ("SCA 1.0", "SCA 1.1") };
+        let message = format!("{} is an element of {other}, and this file is of {version}", quoted(name));
+        let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        let one = one.severity(Severity::Warning).help("other programs refuse it");
+        self.report(match name {
+            "documentation" => one.help("write a comment instead"),
+            _ => one,
+        });
     }
 
     /// Reports the second of two elements of which there can be one.

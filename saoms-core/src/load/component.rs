@@ -77,7 +77,9 @@ impl Loader<'_> {
             (Family::Sca, "reference") => {
                 component.references.push(self.reference(child, &COMPONENT_REFERENCE));
             }
-            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
+                self.of_version(child);
+            }
             (Family::Sca | Family::Own | Family::Foreign, name) if name.starts_with("implementation.") => {
                 let made = self.implementation(child, family, name);
                 match (&component.implementation, made) {

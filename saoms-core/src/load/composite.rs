@@ -79,7 +79,9 @@ impl Loader<'_> {
             (Family::Sca, "reference") => {
                 composite.references.push(self.reference(child, &COMPOSITE_REFERENCE));
             }
-            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
+                self.of_version(child);
+            }
             (Family::Own, "severity") => {
                 if let Some(parent) = child.parent() {
                     self.severity(child, parent);

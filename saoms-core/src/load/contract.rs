@@ -99,7 +99,7 @@ impl Loader<'_> {
                 (
                     Family::Sca,
                     "operation" | "requires" | "policySetAttachment" | "documentation" | "extensions",
-                ) => {}
+                ) => self.of_version(child),
                 (Family::Sca, name) if name.starts_with("interface.") && self.is_defined(child) => {
                     self.interface(child, family, kind, &mut contract);
                 }
@@ -208,7 +208,9 @@ impl Loader<'_> {
                     bindings.push(self.binding(child, family));
                 }
                 (Family::Foreign, _) => {}
-                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {}
+                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
+                    self.of_version(child);
+                }
                 _ => _ = self.unexpected(child, &CALLBACK, family),
             }
         }

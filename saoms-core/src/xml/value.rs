@@ -13,11 +13,15 @@ pub(super) fn is_plain(bytes: &[u8]) -> bool {
     !eight::any(bytes, |word| eight::up_to_blank(word) | eight::equal(word, b'&'))
 }
 
-/// Whether the bytes are neither white space, `&` nor `/`, and all ASCII.
+/// Whether the bytes are neither white space, `&`, `:` nor `/`, and all ASCII.
 #[inline]
 pub(super) fn is_plain_name(name: &[u8]) -> bool {
     !eight::any(name, |word| {
-        eight::up_to_blank(word) | eight::equal(word, b'/') | eight::equal(word, b'&') | word & eight::HIGH
+        eight::up_to_blank(word)
+            | eight::equal(word, b'/')
+            | eight::equal(word, b'&')
+            | eight::equal(word, b':')
+            | word & eight::HIGH
     })
 }
 

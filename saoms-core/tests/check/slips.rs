@@ -128,7 +128,8 @@ fn a_count_that_is_none_is_an_error() {
     .assert_eq(&robots("xmlns:s='urn:other'", "s:count='3'", ""));
     expect![[r#"
         2:29-34 error S1007: `component` has no attribute `count`
-          help: it is an attribute of SAOMS: write `saoms:count`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
+          help: it is an attribute of SAOMS, of the namespace `urn:saoms:1`
+          fix: replace `count` with `saoms:count` [1:11-11 " xmlns:saoms=\"urn:saoms:1\""] [2:29-34 "saoms:count"]
     "#]].assert_eq(&robots("", "count='3'", ""));
     let allowed =
         "<s:severity xmlns:s='urn:saoms:1' code='S1007' level='allow' reason='tools put their own there'/>";

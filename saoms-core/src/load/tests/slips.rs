@@ -1,6 +1,6 @@
 //! One slip of the pen is told once, and none is passed over.
 
-use super::{JAVA, OASIS, OSOA, faults, faults_1_1};
+use super::{JAVA, OASIS, OSOA, faults, faults_1_0, faults_1_1};
 
 #[test]
 fn a_namespace_that_is_nearly_one_of_ours_is_told() {
@@ -124,4 +124,35 @@ fn a_remark_as_other_languages_write_it_becomes_a_comment() {
         "2:1 [# the hall] error S1012 text in `composite`, which holds no text | write it as a comment",
     );
     faults_1_1("the hall", "2:1 [the hall] error S1012 text in `composite`, which holds no text");
+}
+
+#[test]
+fn what_one_version_of_sca_alone_has_is_told_once() {
+    let inside = format!(
+        "<documentation>a</documentation><component name='a'>{JAVA}\n<documentation/><service name='s'><operation name='o'/></service><service name='t'><operation name='o'/></service></component>"
+    );
+    faults_1_0(
+        &inside,
+        "2:2 [documentation] warning S1004 `documentation` is an element of SCA 1.1, and this file is of SCA 1.0",
+    );
+    faults_1_1(
+        &inside,
+        "3:36 [operation] warning S1004 `operation` is an element of SCA 1.0, and this file is of SCA 1.1",
+    );
+}
+
+#[test]
+fn names_are_those_of_xml() {
+    let component = |name: &str| format!("<component name='{name}'>{JAVA}</component>");
+    for right in ["a1", "_", "\u{e4}-.", "${artifactId}", "\u{442}"] {
+        faults_1_1(&component(right), "");
+    }
+    let told = |name: &str, why: &str| {
+        let expected = format!("2:18 [{name}] warning S1011 `{name}` {why}: it is no name of XML");
+        faults_1_1(&component(name), &expected);
+        faults_1_0(&component(name), &expected);
+    };
+    told("1a", "does not start with a letter or `_`");
+    told("-a", "does not start with a letter or `_`");
+    told("t:a", "has a colon in it");
 }

@@ -1,6 +1,6 @@
 //! The tables of `sca-contribution.xml` and of component types.
 
-use super::elements::{known, required};
+use super::elements::{known, old, required};
 use super::{Holds, Kind, Known};
 
 const LOCATION: Known = known("location", Holds::Uri, "The folder of the contribution that it comes from.");
@@ -31,7 +31,7 @@ pub(in crate::load) static COMPONENT_TYPE: Kind = Kind {
     name: "componentType",
     doc: "What the implementation of the same name offers, needs and can be told.",
     attributes: &[
-        known("constrainingType", Holds::Text, "The type that this has to conform to. Not looked at."),
+        old("constrainingType", Holds::Text, "The type that this has to conform to. Not looked at."),
         known("requires", Holds::Names, "The intents of policies that apply."),
         known("policySets", Holds::Names, "The policy sets that apply."),
     ],

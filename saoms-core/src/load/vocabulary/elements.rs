@@ -10,7 +10,7 @@ pub(super) const fn required(name: &'static str, holds: Holds, doc: &'static str
     Known { required: true, ..known(name, holds, doc) }
 }
 
-const fn old(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+pub(super) const fn old(name: &'static str, holds: Holds, doc: &'static str) -> Known {
     Known { only_1_0: true, ..known(name, holds, doc) }
 }
 
