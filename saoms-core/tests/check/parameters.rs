@@ -451,7 +451,8 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
         count($c/a/b): Many([Text("2")])
         $c/a/b[position()&gt;1]/w: Many([Text("20"), Text("21")])
         $c/x: 3:100-101 error S2023: there is no part `x`; the parts are `a`
-    "#]].assert_eq(&all);
+    "#]]
+    .assert_eq(&all);
 }
 
 /// Values that are written beside each other are several, as those in `value` are.

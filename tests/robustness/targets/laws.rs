@@ -93,8 +93,9 @@ fn mended(input: &Input, fleet: &Checked<Assembly>, asked: &Asked, registry: &Re
     let after = Input::Text(edited.clone()).checked(check, asked, registry);
     let number =
         |fleet: &Checked<Assembly>| fleet.kinds().iter().filter(|kind_| **kind_ == kind(one)).count();
-    if one.code.id.starts_with("S01") || one.code == &codes::NAMESPACE_NEAR {
-        // Of these the first is told: the same may be wrong again further on.
+    if one.code.id.starts_with("S01") || one.code == &codes::NAMESPACE_NEAR || parsed(text).is_none() {
+        // Of these the first is told, and of a text whose tags do not fit what stands before that is seen: the same may be wrong again
+        // further on.
         let start = |one: &Diagnostic| one.location.span.start as usize;
         let is_further = |next: &Diagnostic| {
             start(next) > start(one) || edited.len() - start(next) < text.len() - start(one)
