@@ -190,8 +190,8 @@ pub(super) fn unwired<'f>(
     }
     let default = component.autowire().map_or(member.autowire, |said| said.value);
     let described = fleet.known(place).map_or(&[][..], |known| &known.described.references);
-    let is_described = |name: &Text| described.iter().any(|one| one.name == *name.value);
-    let own = component.references.iter().filter(|own| !is_described(&own.name));
+    let names: HashSet<&str> = described.iter().map(|one| one.name.as_str()).collect();
+    let own = component.references.iter().filter(|own| !names.contains(own.name.as_str()));
     let described = described.iter().map(|declared| (component.reference(&declared.name), Some(declared)));
     for (own, declared) in described.chain(own.map(|own| (Some(own), None))) {
         let mut both = [own, declared].into_iter().flatten();

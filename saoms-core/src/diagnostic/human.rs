@@ -16,11 +16,25 @@ pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> Str
         if !out.is_empty() {
             out.push('\n');
         }
+        let rendered = render(one, others.as_deref(), sources, &renderer);
+        // Where a part of a line is shown, its place is told before it, and the picture has a place without a name besides.
+        let lines = rendered.lines().filter(|line| !is_nameless_place(line));
         // A blank line that only ends the picture would be two with ours.
-        out.push_str(render(one, others.as_deref(), sources, &renderer).trim_end());
+        out.push_str(lines.collect::<Vec<_>>().join("\n").trim_end());
         out.push('\n');
     }
     out
+}
+
+/// Whether a line has nothing but `:::` in it, which stands before the path of a file.
+fn is_nameless_place(line: &str) -> bool {
+    let mut plain = String::new();
+    let mut rest = line;
+    while let Some((before, behind)) = rest.split_once('\u{1b}') {
+        plain.push_str(before);
+        rest = behind.split_once('m').map_or("", |(_, behind)| behind);
+    }
+    (plain + rest).trim() == ":::"
 }
 
 fn render(one: &Diagnostic, others: Option<&str>, sources: &Sources, renderer: &Renderer) -> String {

@@ -21,7 +21,8 @@ pub struct Diagram {
     pub links: Vec<Link>,
     /// The topics of its components, in the order of their first use.
     pub topics: Vec<Topic>,
-    /// How many wires that autowire makes are left out: there can be as many as the product of all ends.
+    /// How many wires are left out: of those that autowire makes there can be as many as the product of all ends, and those to components that are not
+    /// there have a box each.
     pub left_out: usize,
 }
 

@@ -134,7 +134,10 @@ impl Reader<'_> {
             (names.join(", "), places.first().and_then(|place| of(place).target_namespace.as_ref()));
         let namespace = namespace.map(ToString::to_string);
         let outside = self.open.len();
-        self.open.extend(&places);
+        // Of several that run together one can be inside of another as well.
+        if let [only] = places[..] {
+            self.open.push(only);
+        }
         let view = View::of(self.contribution, self.census, self.around.clone(), places);
         let mut diagram = Diagram {
             name,
@@ -149,7 +152,7 @@ impl Reader<'_> {
         };
         topics::join(&mut diagram, self.times > 1);
         self.open.truncate(outside);
-        wiring::link(&view, &mut diagram, outside > 0);
+        wiring::link(&view, &mut diagram, !self.around.is_empty());
         diagram
     }
 

@@ -149,8 +149,41 @@ fn a_picture_has_a_part_of_very_many_wires_of_autowire_and_says_so() {
     let diagram = diagram(&format!(" autowire='true'>{}", (0..200).map(component).collect::<String>()));
     assert_eq!((diagram.links.len(), diagram.left_out), (20_000, 200 * 199 - 20_000));
     for drawn in [svg(&diagram), mermaid(&diagram), dot(&diagram)] {
-        assert!(drawn.contains("19800 wires of autowire are not drawn"));
+        assert!(drawn.contains("19800 wires are not drawn"));
     }
+}
+
+/// Each has a box, and takes many times what it takes in the file.
+#[test]
+fn a_picture_has_a_part_of_very_many_components_that_are_not_there_and_says_so() {
+    let wire = |place: usize| format!("<wire source='A/r{place}' target='M{place}/s'/>");
+    let wires: String = (0..2_500).map(wire).collect();
+    let diagram = diagram(&format!("><component name='A'/>{wires}"));
+    assert_eq!((diagram.links.len(), diagram.components.len(), diagram.left_out), (2_000, 2_001, 500));
+    assert_eq!(diagram.components[0].references.len(), 2_000);
+    assert!(mermaid(&diagram).contains("500 wires are not drawn"));
+}
+
+/// It runs beside the other one, and as a component of it.
+#[test]
+fn a_composite_that_is_named_beside_one_that_has_it_inside_is_drawn_twice() {
+    let composite = |name: &str, content: &str| {
+        format!(
+            "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='{name}' targetNamespace='urn:c' xmlns:c='urn:c'>{content}</composite>"
+        )
+    };
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let both = [
+        composite("outer", "<component name='I'><implementation.composite name='c:inner'/></component>"),
+        composite("inner", "<component name='A'><implementation.java class='a.A'/></component>"),
+    ];
+    let both = both.map(|text| {
+        let file = sources.add("c.composite", text);
+        load_file(file, &sources, &mut diagnostics).unwrap()
+    });
+    let diagram = Diagram::of(&Contribution::of(both.into()), &Registry::new(), &Census::default());
+    let inside = diagram.components[0].inside.as_deref().unwrap();
+    assert_eq!((inside.components[0].name.as_str(), diagram.components[1].name.as_str()), ("A", "A"));
 }
 
 /// Whatever names hold, the texts stay what they are.

@@ -57,8 +57,8 @@ pub(super) fn end(text: &str, most: usize) -> String {
 pub(super) fn left_out(diagram: &Diagram) -> Option<String> {
     match diagram.all_left_out() {
         0 => None,
-        1 => Some("1 wire of autowire is not drawn".to_owned()),
-        count => Some(format!("{count} wires of autowire are not drawn")),
+        1 => Some("1 wire is not drawn".to_owned()),
+        count => Some(format!("{count} wires are not drawn")),
     }
 }
 

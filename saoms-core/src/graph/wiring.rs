@@ -11,6 +11,8 @@ use crate::model::Wire;
 
 /// Wires of autowire that are drawn of one composite: each reference that takes several has one to each service of its interface.
 const MOST_AUTOWIRED: usize = 20_000;
+/// Components that are named and not there that are drawn of one composite.
+const MOST_MISSING: usize = 2_000;
 
 /// Adds the links of a composite to `diagram`, and what they lead to where that is missing.
 pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
@@ -24,16 +26,23 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
         ports: Ports::default(),
         seen: HashSet::new(),
         linked: HashSet::new(),
+        left: MOST_MISSING,
     };
     let is_replacing = |wire: &Wire| wire.replace().is_some_and(|replace| replace.value);
     let replaced = view.wires().filter(|wire| is_replacing(wire)).filter_map(|wire| wire.source.as_ref());
-    let replaced: HashSet<End> = replaced.map(|source| linker.reference(source)).collect();
+    let replaced: HashSet<End> = replaced.filter_map(|source| linker.reference(source)).collect();
     linker.targets(view, &replaced);
     for wire in view.wires() {
         let (Some(source), Some(target)) = (&wire.source, &wire.target) else { continue };
-        let from = linker.reference(source);
-        if is_replacing(wire) || !replaced.contains(&from) {
-            linker.wire(from, target);
+        // What leads to nothing that is drawn gives no component a place for it.
+        if linker.split(source).is_none() || linker.split(target).is_none() {
+            linker.diagram.left_out += 1;
+            continue;
+        }
+        match linker.reference(source) {
+            Some(from) if is_replacing(wire) || !replaced.contains(&from) => linker.wire(from, target),
+            Some(_) => {}
+            None => linker.diagram.left_out += 1,
         }
     }
     // What is promoted is wired around the composite, where there is something around it.
@@ -53,6 +62,8 @@ struct Linker<'d> {
     seen: HashSet<Link>,
     /// What has a link already.
     linked: HashSet<End>,
+    /// How many more components may be drawn as missing.
+    left: usize,
 }
 
 impl Linker<'_> {
@@ -74,7 +85,10 @@ impl Linker<'_> {
         for (place, service) in view.services().enumerate() {
             let Some(promote) = &service.promote else { continue };
             let interface = self.diagram.services[place].interface.clone();
-            let to = self.service(promote, interface.as_deref());
+            let Some(to) = self.service(promote, interface.as_deref()) else {
+                self.diagram.left_out += 1;
+                continue;
+            };
             if let End::Component { component, port } = to {
                 let inner = &self.diagram.components[component].services[port];
                 self.diagram.services[place].interface = interface.or_else(|| inner.interface.clone());
@@ -83,7 +97,10 @@ impl Linker<'_> {
         }
         for (place, reference) in view.references().enumerate() {
             for promote in reference.promote() {
-                let from = self.reference(promote);
+                let Some(from) = self.reference(promote) else {
+                    self.diagram.left_out += 1;
+                    continue;
+                };
                 if let End::Component { component, port } = from {
                     let inner = &self.diagram.components[component].references[port];
                     let outer = &mut self.diagram.references[place].interface;
@@ -155,8 +172,10 @@ impl Linker<'_> {
             }
             End::Composite(_) => None,
         };
-        let to = self.service(target, interface.as_deref());
-        self.add(LinkKind::Wire, from, to);
+        match self.service(target, interface.as_deref()) {
+            Some(to) => self.add(LinkKind::Wire, from, to),
+            None => self.diagram.left_out += 1,
+        }
     }
 
     fn add(&mut self, kind: LinkKind, from: End, to: End) {
@@ -167,30 +186,30 @@ impl Linker<'_> {
         }
     }
 
-    /// The service that `component`, `component/service` or `component/service/binding` names.
-    fn service(&mut self, uri: &str, interface: Option<&str>) -> End {
-        let (component, name) = self.split(uri);
+    /// The service that `component`, `component/service` or `component/service/binding` names; `None` where that is not drawn.
+    fn service(&mut self, uri: &str, interface: Option<&str>) -> Option<End> {
+        let (component, name) = self.split(uri)?;
         let port = match &name {
             Some(name) => self.ports.named(self.diagram, component, Side::Services, name),
             None => self.ports.meant(self.diagram, component, interface),
         };
-        End::Component { component, port }
+        Some(End::Component { component, port })
     }
 
-    /// The reference that `component` or `component/reference` names.
-    fn reference(&mut self, uri: &str) -> End {
-        let (component, name) = self.split(uri);
+    /// The reference that `component` or `component/reference` names; `None` where that is not drawn.
+    fn reference(&mut self, uri: &str) -> Option<End> {
+        let (component, name) = self.split(uri)?;
         let port = match (name, self.diagram.components[component].references.len()) {
             (None, 1..) => 0,
             (name, _) => {
                 self.ports.named(self.diagram, component, Side::References, &name.unwrap_or_default())
             }
         };
-        End::Component { component, port }
+        Some(End::Component { component, port })
     }
 
-    /// The component of a URI, drawn as missing when there is none, and what follows it.
-    fn split(&mut self, uri: &str) -> (usize, Option<String>) {
+    /// The component of a URI, drawn as missing when there is none, and what follows it; `None` where there are too many that are missing.
+    fn split(&mut self, uri: &str) -> Option<(usize, Option<String>)> {
         let uri = if has_expression(uri) { pattern(uri) } else { uri.to_owned() };
         let mut parts = uri.trim_start_matches('/').split('/');
         let name = parts.next().unwrap_or_default();
@@ -198,6 +217,7 @@ impl Linker<'_> {
         let place = match self.places.get(name).copied().or_else(|| self.groups.find(name)) {
             Some(place) => place,
             None => {
+                self.left = self.left.checked_sub(1)?;
                 self.diagram.components.push(Component {
                     name: name.to_owned(),
                     replicas: None,
@@ -212,6 +232,6 @@ impl Linker<'_> {
                 self.diagram.components.len() - 1
             }
         };
-        (place, parts.next().filter(|part| !part.is_empty()).map(str::to_owned))
+        Some((place, parts.next().filter(|part| !part.is_empty()).map(str::to_owned)))
     }
 }

@@ -9,7 +9,7 @@ use super::vocabulary::{
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
-    Component, ComponentDetails, Implementation, ImplementationKind, Origin, Policy, Replicas,
+    Component, ComponentDetails, Implementation, ImplementationKind, Names, Origin, Policy, Replicas,
     SAOMS_NAMESPACE,
 };
 use crate::source::Text;
@@ -43,6 +43,7 @@ impl Loader<'_> {
                 constraining_type: self.optional(element, "constrainingType"),
                 loops: Vec::new(),
                 policy: self.policy(element),
+                names: None,
             };
             component.details = (details != ComponentDetails::default()).then(|| Box::new(details));
         }
@@ -50,6 +51,9 @@ impl Loader<'_> {
         for child in element.children() {
             let (family, name) = self.meaning(child);
             has_faulty |= self.part_of(element, (child, family, name), &mut component);
+        }
+        if let Some(names) = Names::of(&component.services, &component.references) {
+            component.details.get_or_insert_default().names = Some(names);
         }
         self.is_replicated = false;
         // An element that was not read to its end may have had one.

@@ -42,6 +42,48 @@ pub struct ComponentDetails {
     pub loops: Vec<Loop>,
     /// Intents and policy sets.
     pub policy: Policy,
+    /// The order of the names of its services and references, where there are many.
+    pub(crate) names: Option<Box<Names>>,
+}
+
+/// Up to here parts are found by looking at all of them.
+const FEW: usize = 64;
+
+/// The places of the services and the references of a component in the order of their names.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Names {
+    services: Vec<u32>,
+    references: Vec<u32>,
+}
+
+impl Names {
+    /// `None` where there are few.
+    pub(crate) fn of(services: &[Service], references: &[Reference]) -> Option<Box<Self>> {
+        if services.len().max(references.len()) <= FEW {
+            return None;
+        }
+        Some(Box::new(Self {
+            services: in_order(services.iter().map(|one| one.name.as_str()).collect()),
+            references: in_order(references.iter().map(|one| one.name.as_str()).collect()),
+        }))
+    }
+}
+
+/// The places of names in their order; of those of one name the first stands first.
+fn in_order(names: Vec<&str>) -> Vec<u32> {
+    // A file has fewer bytes.
+    let mut places: Vec<u32> = (0..names.len() as u32).collect();
+    places.sort_by_key(|place| names[*place as usize]);
+    places
+}
+
+/// The first of this name.
+fn find<'p, T>(all: &'p [T], order: Option<&[u32]>, name: &str, of: fn(&T) -> &str) -> Option<&'p T> {
+    let Some(order) = order.filter(|order| order.len() == all.len()) else {
+        return all.iter().find(|one| of(one) == name);
+    };
+    let at = order.partition_point(|place| of(&all[*place as usize]) < name);
+    order.get(at).map(|place| &all[*place as usize]).filter(|one| of(one) == name)
 }
 
 impl Component {
@@ -97,12 +139,18 @@ impl Component {
 
     /// The first service of this name.
     pub fn service(&self, name: &str) -> Option<&Service> {
-        self.services.iter().find(|service| service.name == name)
+        let order = self.names().map(|names| &names.services[..]);
+        find(&self.services, order, name, |service| &service.name)
     }
 
     /// The first reference of this name.
     pub fn reference(&self, name: &str) -> Option<&Reference> {
-        self.references.iter().find(|reference| reference.name == name)
+        let order = self.names().map(|names| &names.references[..]);
+        find(&self.references, order, name, |reference| &reference.name)
+    }
+
+    fn names(&self) -> Option<&Names> {
+        self.details.as_ref()?.names.as_deref()
     }
 
     /// The class that the registry is asked for: that of `implementation.java` or `implementation.rust`.
@@ -155,3 +203,32 @@ pub enum ImplementationKind {
 }
 
 parts!(Component, Implementation);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::Diagnostics;
+    use crate::load::load_file;
+    use crate::source::Sources;
+
+    #[test]
+    fn the_first_of_each_name_is_found_among_many() {
+        let references: String =
+            (0..2 * FEW).map(|number| format!("<reference name='r{}'/>", number % (FEW + 7))).collect();
+        let text = format!(
+            "<composite xmlns='http://www.osoa.org/xmlns/sca/1.0' name='c'><component name='A'>{references}<service name='r1'/></component></composite>"
+        );
+        let mut sources = Sources::new();
+        let file = sources.add("c.composite", text);
+        let composite = load_file(file, &sources, &mut Diagnostics::new()).unwrap();
+        let component = &composite.components[0];
+        assert!(component.names().is_some());
+        for number in 0..FEW + 7 {
+            let found = component.reference(&format!("r{number}")).unwrap();
+            assert_eq!(found.origin, component.references[number].origin);
+        }
+        assert_eq!(component.reference("r"), None);
+        assert_eq!(component.reference("s"), None);
+        assert!(component.service("r1").is_some() && component.service("r2").is_none());
+    }
+}

@@ -18,6 +18,7 @@ mod replicas;
 mod severity;
 mod version;
 
+pub(crate) use component::Names;
 pub use component::{Component, ComponentDetails, Implementation, ImplementationKind};
 pub use component_type::ComponentType;
 pub use composite::{Composite, Include, Wire, WireDetails};
