@@ -47,6 +47,30 @@ fn the_folder_schema_is_what_the_command_writes() {
     }
 }
 
+/// The characters that can stand behind `\` in a pattern: XML Schema 1.0, part 2, F.1.1. `$` and `/` are not among them, and some validators refuse a whole
+/// schema for it.
+#[test]
+fn patterns_have_escapes_that_xml_schema_knows() {
+    const KNOWN: &str = r"nrt\|.?*+(){}-[]^sSiIcCdDwWpP";
+    let (mut patterns, mut escapes) = (0, 0);
+    for text in [written(&[]), written(&["--xsd", "1.1"])].iter().flatten() {
+        let document = Document::parse(text).unwrap();
+        for node in document.descendants().filter(|node| node.has_tag_name((XSD, "pattern"))) {
+            let pattern = node.attribute("value").unwrap();
+            let mut characters = pattern.chars();
+            while let Some(one) = characters.next() {
+                if one == '\\' {
+                    let escaped = characters.next().unwrap();
+                    assert!(KNOWN.contains(escaped), "`\\{escaped}` in {pattern}");
+                    escapes += 1;
+                }
+            }
+            patterns += 1;
+        }
+    }
+    assert!(patterns > 0 && escapes > 0);
+}
+
 #[test]
 fn all_that_is_registered_is_named() {
     let all = written(&[]);

@@ -213,6 +213,32 @@ fn composites_and_components_of_all_files_are_found_by_name() {
 }
 
 #[test]
+fn what_opens_something_asks_for_proposals() {
+    let mut editor = Editor::new("triggers", &[]);
+    let answer = editor.ask("initialize", json!({ "capabilities": {} }));
+    let triggers = answer["result"]["capabilities"]["completionProvider"]["triggerCharacters"].clone();
+    editor.tell("initialized", json!({}));
+    // Each of these texts ends with what opens a place where something can be proposed.
+    let robot = "<component name=\"R${index}\" s:count=\"2\"><implementation.rust class=\"saoms.Robot\"/>";
+    let after =
+        ["<", "</", "<reference ", "<property name=\"", "<property name='", "<property name=\"ID\">${"];
+    for opening in after {
+        let text = composite(&format!("{robot}{opening}"))
+            .replace("name=\"fleet\"", "xmlns:s=\"urn:saoms:1\" name=\"fleet\"");
+        let column = robot.len() + opening.len();
+        editor.open("fleet.composite", &text);
+        let place = json!({ "textDocument": { "uri": editor.uri("fleet.composite") }, "position": { "line": 1, "character": column } });
+        let found = editor.ask("textDocument/completion", place);
+        assert!(!found["result"]["items"].as_array().unwrap().is_empty(), "{text}");
+        let last = &opening[opening.len() - 1..];
+        assert!(triggers.as_array().unwrap().iter().any(|one| one == last), "{last} in {triggers}");
+        let uri = editor.uri("fleet.composite");
+        editor.tell("textDocument/didClose", json!({ "textDocument": { "uri": uri } }));
+    }
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
 fn both_tags_of_an_element_are_typed_as_one() {
     let text = composite("<component name=\"A\"></component><wire source=\"A\"/>");
     let mut editor = Editor::started("linked", &[]);

@@ -123,7 +123,7 @@ fn simple() -> [Node; 4] {
         enumeration(level.name(), doc)
     };
     [
-        restricted("xs:token", [Node::new("xs:pattern").with("value", r"([^\s/]|\$\{[^}]*\})+")])
+        restricted("xs:token", [Node::new("xs:pattern").with("value", r"([^\s/]|$\{[^}]*\})+")])
             .named("Name", "A name: without blanks and `/` but in expressions, as `${index}`."),
         restricted("xs:token", [Node::new("xs:minLength").with("value", "1")])
             .named("Given", "A text that is not empty."),
