@@ -105,6 +105,9 @@ fn same(part: &'static str) -> impl Fn(usize) -> String {
     move |_| part.to_owned()
 }
 
+const SCENARIO: &str = "<component name='E'><implementation.java class='saoms.Environment'/>\
+    <property name='ID'>E</property><property name='period'>1s</property><property name='scenario'>";
+
 /// What takes the most for its size.
 #[test]
 fn files_made_to_take_much() {
@@ -112,6 +115,8 @@ fn files_made_to_take_much() {
     for (what, text) in [
         ("elements", composite(SIZE, "", same("<a/>"), "")),
         ("components", composite(SIZE, "", same("<component name='a'/>"), "")),
+        ("an expression", composite(SIZE, "<component name='g${", same("("), "}'/>")),
+        ("a scenario", composite(SIZE, SCENARIO, same("at 1s x\n"), "</property></component>")),
         ("promoted", composite(SIZE, "<reference name='b' promote='", same("a "), "'/>")),
     ] {
         holds(what, text.as_bytes());
@@ -126,7 +131,7 @@ fn fleets_by_their_size_alone() {
         let robot = |place: usize| {
             let number = place + 1;
             format!(
-                "<component name='{number}'><implementation.java class='{class}'/><property name='ID'>{number}</property><property name='period'>9</property><property name='number'>{number}</property></component>"
+                "<component name='R{number}'><implementation.java class='{class}'/><property name='ID'>{number}</property><property name='period'>9</property><property name='number'>{number}</property></component>"
             )
         };
         let text = composite(SIZE, "", robot, "");
@@ -146,7 +151,7 @@ fn files_of_one_kind_by_their_size() {
     let end = "</component>";
     for (what, text) in [
         ("nothing of components", composite(SIZE, "", same("<component/>"), "")),
-        ("components", composite(SIZE, "", |n| format!("<component name='{n}'/>"), "")),
+        ("components", composite(SIZE, "", |n| format!("<component name='c{n}'/>"), "")),
         ("wires", composite(SIZE, "", same("<wire/>"), "")),
         ("includes", composite(SIZE, "", same("<include/>"), "")),
         ("properties", composite(SIZE, component, same("<property/>"), end)),

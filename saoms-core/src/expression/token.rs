@@ -18,6 +18,9 @@ pub(super) enum Token {
 /// A token with its bytes.
 pub(super) type Placed = (Token, Range<usize>);
 
+/// Tokens of an expression: more than one of as many operators as there may be needs, each of its values in as many parentheses.
+const MOST_TOKENS: usize = 20_000;
+
 /// The signs, the longer ones first.
 const SIGNS: [&str; 13] = ["==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/", "%", "(", ")"];
 
@@ -90,6 +93,10 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), F
         } else {
             return Err(odd(rest, first, at));
         };
+        if all.len() == MOST_TOKENS {
+            let message = format!("an expression of more than {MOST_TOKENS} signs, names and numbers");
+            return Err(Problem::new(message).at(at..at + length));
+        }
         all.push((token, at..at + length));
         at += length;
     }

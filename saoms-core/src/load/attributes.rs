@@ -228,7 +228,7 @@ impl Loader<'_> {
         if let Some(attribute) = self.attribute(element, "name")
             && let Some(name) = attribute.plain_name()
         {
-            if matches!(name.as_bytes()[0], b'0'..=b'9' | b'-' | b'.') {
+            if attribute.raw_value().starts_with(|first: char| matches!(first, '0'..='9' | '-' | '.')) {
                 self.no_name(&name);
             }
             return name;

@@ -65,6 +65,7 @@ impl Loader<'_> {
     }
 
     /// Reads what is directly inside, as an element of this name. Gives whether it is an implementation with a fault.
+    #[inline]
     fn part_of(
         &mut self,
         element: Element<'_>,

@@ -81,6 +81,9 @@ pub struct Written<T> {
     pub bytes: Range<usize>,
 }
 
+/// Wrong lines of a scenario that are told: of one kind nobody is told more.
+const MOST_WRONG: usize = 1000;
+
 impl Scenario {
     /// Reads a scenario from its lines, given in any number of texts.
     ///
@@ -91,7 +94,7 @@ impl Scenario {
         if findings.is_empty() { Ok(scenario) } else { Err(findings) }
     }
 
-    /// The lines that are right, and what is wrong with the others.
+    /// The lines that are right, and what is wrong with the others. Behind [`MOST_WRONG`] wrong ones nothing is read.
     pub(crate) fn read_partly<S: AsRef<str>>(texts: &[S]) -> (Scenario, Vec<Finding>) {
         let (mut lines, mut findings): (Vec<Line>, Vec<Finding>) = (Vec::new(), Vec::new());
         // Whether `then` has something to count from; a wrong line before is taken for one.
@@ -102,6 +105,7 @@ impl Scenario {
                 endless = read.as_ref().is_ok_and(|line| line.times.is_none() && line.until.is_none());
                 match read {
                     Ok(line) => lines.push(Line { text: place, ..line }),
+                    Err(_) if findings.len() == MOST_WRONG => return (Scenario { lines }, findings),
                     Err(fault) => findings.push(fault.finding("scenario", place)),
                 }
             }
