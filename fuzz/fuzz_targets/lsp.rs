@@ -15,6 +15,7 @@ mod lsp {
     mod file;
     mod hover;
     mod laws;
+    mod links;
     mod loops;
     mod navigate;
     mod occurrences;
@@ -22,12 +23,14 @@ mod lsp {
     mod position;
     mod rename;
     mod scene;
+    mod shape;
     mod symbol;
     mod symbols;
     mod syntax;
     pub(crate) mod testing;
     mod topics;
     mod uri;
+    mod workspace;
 }
 
 // The last two bytes say where the question is asked.
