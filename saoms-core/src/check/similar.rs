@@ -54,7 +54,12 @@ impl Known<'_> {
             |long: &str, short: &str| long != short && (long.starts_with(short) || long.ends_with(short));
         adds(&self.name.lower, &name.lower)
             || adds(&name.lower, &self.name.lower)
-            || self.name.lower != name.lower && self.name.without_numbers == name.without_numbers
+            || self.has_other_numbers(name)
+    }
+
+    /// Whether its name and another one differ in their numbers alone.
+    pub(super) fn has_other_numbers(&self, name: &Name) -> bool {
+        self.name.lower != name.lower && self.name.without_numbers == name.without_numbers
     }
 }
 

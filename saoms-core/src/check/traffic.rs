@@ -245,7 +245,11 @@ fn left<'t>(topic: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
     if topic.readers.is_empty() || topic.ends().any(|end| end.component != only) {
         return None;
     }
+    let name = Name::of(&topic.name);
     similar.nearest(topic, |other| {
+        if other.has_other_numbers(&name) {
+            return false;
+        }
         let mut others = other.topic.ends().map(|end| end.component).filter(|other| *other != only);
         let first = others.next();
         others.any(|other| Some(other) != first)

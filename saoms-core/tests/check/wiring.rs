@@ -129,6 +129,8 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
           3:18-20 uses `POSTOPIC`
           help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
     "#]].assert_eq(&found(&["POSTOPC", ""]));
+    expect![""].assert_eq(&found(&["HALL_1", "HALL_1", "HALL_2"]));
+    expect![""].assert_eq(&found(&["HALL_1", "HALL_2", "HALL_2"]));
     expect![[r#"
         2:212-219 warning S4012: component `R0` and another one hear nobody but each other on topic `POSTOPC`: others use `POSTOPIC`
           4:18-20 uses `POSTOPIC`
