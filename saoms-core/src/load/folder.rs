@@ -148,7 +148,8 @@ impl Files {
         let local = deployable.local();
         let namespaces = deployable.namespace.as_ref().map(std::slice::from_ref);
         // Also a file that could be read no further than its first tag.
-        let found = shelf.find(root, namespaces, local).filter(|found| self.paths.contains(found));
+        let found =
+            shelf.find(root, namespaces, local).filter(|found| self.paths.binary_search(found).is_ok());
         if found.is_some() {
             return found;
         }
@@ -215,9 +216,10 @@ impl Files {
                 }
             }
         };
+        let is_deployed: HashSet<PathBuf> = deployed.iter().cloned().collect();
         let mut roots: Vec<usize> = Vec::new();
         for (place, path) in self.places.iter().map(|place| &self.paths[*place]).enumerate() {
-            if deployed.contains(path) {
+            if is_deployed.contains(path) {
                 reach(place, &mut seen);
             }
         }
@@ -240,7 +242,7 @@ impl Files {
             let namespace = read.map(|read| all[read].namespace());
             description.zip(namespace).is_some_and(|(description, namespace)| description.exports(namespace))
         };
-        let others = others.into_iter().filter(|place| !deployed.contains(&self.paths[*place]));
+        let others = others.into_iter().filter(|place| !is_deployed.contains(&self.paths[*place]));
         let others = others.map(|place| FolderFleet {
             files: vec![self.paths[place].clone()],
             is_deployable: false,

@@ -14,6 +14,7 @@ mod description;
 mod encoding;
 mod extension;
 mod folder;
+mod head;
 mod imports;
 mod looping;
 mod missing;

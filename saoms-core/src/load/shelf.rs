@@ -1,15 +1,13 @@
 //! Finding composites in folders by their names, without reading more than is needed.
 
-use std::borrow::Cow;
 use std::collections::{HashMap, HashSet, VecDeque};
-use std::fs::{self, File};
-use std::io::Read;
+use std::ffi::OsString;
+use std::fs;
 use std::path::{Path, PathBuf};
-
-use quick_xml::Reader;
-use quick_xml::events::Event;
+use std::rc::Rc;
 
 use super::description;
+use super::head::{Head, head};
 use crate::diagnostic::quoted;
 use crate::source::{OpenTexts, identity};
 
@@ -17,8 +15,6 @@ use crate::source::{OpenTexts, identity};
 const MOST_ENTRIES: usize = 20_000;
 /// Folders above a file in which a description of the contribution is looked for.
 const MOST_ABOVE: usize = 12;
-/// The part of a file in which its first tag has to be.
-const HEAD: u64 = 64 * 1024;
 /// Where the description of a contribution is in its folder: what its author wrote, or else what a tool made.
 pub(super) const DESCRIPTIONS: [&str; 3] =
     ["META-INF/sca-contribution.xml", "sca-contribution.xml", GENERATED];
@@ -31,8 +27,14 @@ const SKIPPED: &[&str] = &["target", "node_modules"];
 
 /// What is known of files in folders, looked at once each.
 pub(super) struct Shelf {
-    folders: HashMap<PathBuf, Listing>,
+    folders: HashMap<PathBuf, Rc<Listing>>,
     heads: HashMap<PathBuf, Option<Head>>,
+    /// The composites in folders by their local names.
+    names: HashMap<PathBuf, HashMap<String, Vec<PathBuf>>>,
+    /// How far contributions were looked through, by their folders.
+    walks: HashMap<PathBuf, Walk>,
+    /// The composites of contributions by the names of their files; none of a folder that nobody describes as one.
+    files: HashMap<PathBuf, HashMap<OsString, Vec<PathBuf>>>,
     roots: HashMap<PathBuf, PathBuf>,
     /// What was looked for, from which folder: names are used again and again.
     found: HashMap<Wanted, Option<PathBuf>>,
@@ -44,18 +46,18 @@ pub(super) struct Shelf {
 type Wanted = (PathBuf, Option<Vec<String>>, String);
 
 /// The composites in a folder, and the folders in it, sorted.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Listing {
     composites: Vec<PathBuf>,
     folders: Vec<PathBuf>,
 }
 
-/// A composite that was seen.
-#[derive(Clone, Debug)]
-pub(super) struct Head {
-    pub(super) path: PathBuf,
-    pub(super) namespace: String,
-    pub(super) local: String,
+/// A way through the folders of a contribution, the upper ones first, that goes on where it stopped.
+struct Walk {
+    waiting: VecDeque<PathBuf>,
+    seen: HashSet<PathBuf>,
+    /// The folders behind it that hold a composite of a local name, in their order.
+    holders: HashMap<String, Vec<PathBuf>>,
 }
 
 impl Shelf {
@@ -64,6 +66,9 @@ impl Shelf {
         Self {
             folders: HashMap::new(),
             heads: HashMap::new(),
+            names: HashMap::new(),
+            walks: HashMap::new(),
+            files: HashMap::new(),
             roots: HashMap::new(),
             found: HashMap::new(),
             left: MOST_ENTRIES,
@@ -88,27 +93,26 @@ impl Shelf {
     }
 
     fn look_for(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
-        let fits = |head: &Head| {
-            let is_meant = |meant: &String| *meant == head.namespace;
-            head.local == local && namespaces.is_none_or(|all| all.iter().any(is_meant))
-        };
-        if let Some(found) = self.find_in(folder, local, &fits) {
+        if let Some(found) = self.find_in(folder, namespaces, local) {
             return Some(found);
         }
-        let mut waiting = VecDeque::from([self.root(folder)]);
-        let mut seen = HashSet::new();
-        while let Some(next) = waiting.pop_front() {
-            if !seen.insert(next.clone()) {
-                continue;
+        let root = self.root(folder);
+        let mut walk = self.walks.remove(&root).unwrap_or_else(|| Walk::from(root.clone()));
+        let behind = walk.holders.get(local).into_iter().flatten();
+        let mut found = behind.into_iter().find_map(|holder| self.find_in(holder, namespaces, local));
+        while found.is_none()
+            && let Some(next) = walk.waiting.pop_front()
+        {
+            if walk.seen.insert(next.clone()) {
+                walk.waiting.extend(self.listing(&next).folders.iter().cloned());
+                for name in self.names(&next).keys() {
+                    walk.holders.entry(name.clone()).or_default().push(next.clone());
+                }
+                found = self.find_in(&next, namespaces, local);
             }
-            if next != folder
-                && let Some(found) = self.find_in(&next, local, &fits)
-            {
-                return Some(found);
-            }
-            waiting.extend(self.listing(&next).folders);
         }
-        None
+        self.walks.insert(root, walk);
+        found
     }
 
     /// The other files that hold a composite of the same name and namespace as one that was found: in its folder, and those of its file's name in
@@ -116,13 +120,11 @@ impl Shelf {
     pub(super) fn twins(&mut self, found: &Path) -> Vec<PathBuf> {
         let Some(Head { namespace, local, .. }) = self.head(found).clone() else { return Vec::new() };
         let folder = found.parent().unwrap_or(Path::new(""));
-        let mut all = self.listing(folder).composites;
+        let mut all = self.named(folder, &local).to_vec();
         let root = self.root(folder);
-        if describes(&root) {
-            let is_elsewhere =
-                |path: &PathBuf| path.parent() != found.parent() && path.file_name() == found.file_name();
-            all.extend(self.contribution(&root).0.into_iter().filter(is_elsewhere));
-        }
+        let of_its_name = found.file_name().and_then(|name| self.files(&root).get(name));
+        let elsewhere = of_its_name.into_iter().flatten().filter(|path| path.parent() != found.parent());
+        all.extend(elsewhere.cloned());
         all.retain(|path| {
             let is_same = |head: &Head| head.namespace == namespace && head.local == local;
             self.head(path).as_ref().is_some_and(is_same) && identity(path) != identity(found)
@@ -130,11 +132,44 @@ impl Shelf {
         all
     }
 
-    fn find_in(&mut self, folder: &Path, local: &str, fits: &impl Fn(&Head) -> bool) -> Option<PathBuf> {
-        let mut all = self.listing(folder).composites;
+    fn find_in(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
+        let mut all = self.named(folder, local).to_vec();
         // Most files are called as what they hold.
         all.sort_by_key(|path| path.file_stem().is_none_or(|stem| stem != local));
+        let fits = |head: &Head| namespaces.is_none_or(|all| all.contains(&head.namespace));
         all.into_iter().find(|path| self.head(path).as_ref().is_some_and(fits))
+    }
+
+    /// The composites in a folder that have a local name.
+    fn named(&mut self, folder: &Path, local: &str) -> &[PathBuf] {
+        self.names(folder).get(local).map_or(&[], Vec::as_slice)
+    }
+
+    fn names(&mut self, folder: &Path) -> &HashMap<String, Vec<PathBuf>> {
+        if !self.names.contains_key(folder) {
+            let mut names: HashMap<String, Vec<PathBuf>> = HashMap::new();
+            for path in &self.listing(folder).composites {
+                if let Some(head) = self.head(path) {
+                    names.entry(head.local.clone()).or_default().push(path.clone());
+                }
+            }
+            self.names.insert(folder.to_owned(), names);
+        }
+        &self.names[folder]
+    }
+
+    fn files(&mut self, root: &Path) -> &HashMap<OsString, Vec<PathBuf>> {
+        if !self.files.contains_key(root) {
+            let mut files: HashMap<OsString, Vec<PathBuf>> = HashMap::new();
+            let all = if describes(root) { self.contribution(root).0 } else { Vec::new() };
+            for path in all {
+                if let Some(name) = path.file_name() {
+                    files.entry(name.to_owned()).or_default().push(path);
+                }
+            }
+            self.files.insert(root.to_owned(), files);
+        }
+        &self.files[root]
     }
 
     /// The composites of the contribution of `folder`, as far as they were looked at.
@@ -179,8 +214,8 @@ impl Shelf {
                 others.push(next);
             } else if seen.insert(next.clone()) {
                 let listing = self.listing(&next);
-                composites.extend(listing.composites);
-                waiting.extend(listing.folders);
+                composites.extend(listing.composites.iter().cloned());
+                waiting.extend(listing.folders.iter().cloned());
             }
         }
         composites.sort_unstable();
@@ -200,9 +235,9 @@ impl Shelf {
         self.roots.entry(own).or_insert(root);
     }
 
-    fn listing(&mut self, folder: &Path) -> Listing {
+    fn listing(&mut self, folder: &Path) -> Rc<Listing> {
         if let Some(known) = self.folders.get(folder) {
-            return known.clone();
+            return Rc::clone(known);
         }
         let mut listing = Listing::default();
         let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -228,7 +263,8 @@ impl Shelf {
         listing.composites.sort_unstable();
         listing.composites.dedup();
         listing.folders.sort_unstable();
-        self.folders.insert(folder.to_owned(), listing.clone());
+        let listing = Rc::new(listing);
+        self.folders.insert(folder.to_owned(), Rc::clone(&listing));
         listing
     }
 
@@ -242,20 +278,26 @@ impl Shelf {
     }
 }
 
+impl From<PathBuf> for Walk {
+    fn from(root: PathBuf) -> Self {
+        Self { waiting: VecDeque::from([root]), seen: HashSet::new(), holders: HashMap::new() }
+    }
+}
+
 /// The files `*.composite` whose composites one in `folder` can name: those in it, and those of its contribution, as
 /// [`load_named`](super::load_named) looks for them. Texts that count in place of files are among them.
 pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let mut shelf = Shelf::new(open.clone());
-    let mut all = shelf.listing(folder).composites;
+    let mut all = shelf.listing(folder).composites.clone();
     let mut waiting = VecDeque::from([shelf.root(folder)]);
     let mut seen = HashSet::new();
     while let Some(next) = waiting.pop_front() {
         if seen.insert(next.clone()) {
             let listing = shelf.listing(&next);
             if next != folder {
-                all.extend(listing.composites);
+                all.extend(listing.composites.iter().cloned());
             }
-            waiting.extend(listing.folders);
+            waiting.extend(listing.folders.iter().cloned());
         }
     }
     all
@@ -282,37 +324,4 @@ pub(super) fn root(folder: &Path) -> PathBuf {
     // As the user wrote it, where that goes up far enough.
     let written = folder.ancestors().nth(above).filter(|written| above == 0 || written.file_name().is_some());
     written.or(absolute.ancestors().nth(above)).unwrap_or(folder).to_owned()
-}
-
-/// The name and namespace of the composite in a file; `None` when its first tag is no `composite`.
-fn head(path: &Path, open: &OpenTexts) -> Option<Head> {
-    let mut bytes = Vec::new();
-    let text = if let Some(open) = open.get(path) {
-        Cow::Borrowed(&**open)
-    } else {
-        // What is no file, as a pipe, might never come to an end.
-        if !fs::metadata(path).ok()?.is_file() {
-            return None;
-        }
-        File::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
-        String::from_utf8_lossy(&bytes)
-    };
-    let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
-    loop {
-        match reader.read_event().ok()? {
-            Event::Start(tag) | Event::Empty(tag) => {
-                if tag.local_name().as_ref() != "composite" {
-                    return None;
-                }
-                let value = |name: &str| {
-                    let found = tag.try_get_attribute(name).ok().flatten()?;
-                    quick_xml::escape::unescape(&found.value).ok().map(|text| text.trim().to_owned())
-                };
-                let namespace = value("targetNamespace").unwrap_or_default();
-                return Some(Head { path: path.to_owned(), namespace, local: value("name")? });
-            }
-            Event::Eof => return None,
-            _ => {}
-        }
-    }
 }

@@ -17,6 +17,8 @@ pub struct Contribution {
     asked_for: usize,
     /// How many there were at first; the others were found by their names.
     given: usize,
+    /// The places of those that were there at first by their names.
+    by_name: HashMap<String, Vec<usize>>,
     links: HashMap<(FileId, ElementId), Link>,
     libraries: HashMap<(FileId, ElementId), LibraryLink>,
     component_types: Vec<ComponentType>,
@@ -133,7 +135,11 @@ impl Contribution {
         let asked_for = composites.len();
         let mut composites = composites;
         composites.extend(others);
-        let mut all = Self { asked_for, given: composites.len(), composites, ..Self::default() };
+        let mut by_name: HashMap<String, Vec<usize>> = HashMap::new();
+        for (place, composite) in composites.iter().enumerate() {
+            by_name.entry(composite.name.as_str().to_owned()).or_default().push(place);
+        }
+        let mut all = Self { asked_for, given: composites.len(), composites, by_name, ..Self::default() };
         for place in 0..all.composites.len() {
             all.link_known(place);
         }
@@ -203,15 +209,15 @@ impl Contribution {
 
     /// The place of a composite that was there at first.
     fn find(&self, namespaces: Option<&[String]>, local: &str) -> Option<usize> {
-        let known = &self.composites[..self.given];
-        let mut found = known.iter().enumerate().filter(|(_, one)| one.name == local);
+        let named = self.by_name.get(local)?;
         match namespaces {
             Some(namespaces) => {
-                let found: Vec<_> = found.collect();
-                let of = |namespace: &String| found.iter().find(|(_, one)| one.namespace() == namespace);
-                namespaces.iter().find_map(of).map(|(place, _)| *place)
+                let of = |namespace: &String| {
+                    named.iter().find(|place| self.composites[**place].namespace() == namespace)
+                };
+                namespaces.iter().find_map(of).copied()
             }
-            None => found.next().map(|(place, _)| place),
+            None => named.first().copied(),
         }
     }
 

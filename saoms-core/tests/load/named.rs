@@ -133,6 +133,51 @@ torn.composite S0103
     );
 }
 
+#[test]
+fn thousands_of_composites_that_one_names_are_found_each_at_once() {
+    const ALL: usize = 2_000;
+    let folder = tempfile::tempdir().unwrap();
+    let text = |namespace: &str, name: &str, inside: &str| {
+        composite(namespace, name, inside).replace(&"long ".repeat(900), "")
+    };
+    let write = |path: &str, text: String| {
+        let path = folder.path().join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    // Some beside it, some called otherwise than their files, some in folders of their own, and some that are not there.
+    for number in 0..ALL {
+        let path = match number % 4 {
+            0 => format!("c{number}.composite"),
+            1 => format!("file{number}.composite"),
+            2 => format!("f{number}/c{number}.composite"),
+            _ => continue,
+        };
+        write(&path, text("urn:a", &format!("c{number}"), ""));
+        if number == 2 {
+            write("f1998/twin/c2.composite", text("urn:a", "c2", ""));
+        }
+    }
+    let includes: String = (0..ALL).rev().map(|number| format!("<include name='a:c{number}'/>")).collect();
+    write("fleet.composite", text("urn:a", "fleet", &includes));
+    write("sca-contribution.xml", "<contribution xmlns='http://www.osoa.org/xmlns/sca/1.0'/>".to_owned());
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let first = load(&folder.path().join("fleet.composite"), &mut sources, &mut diagnostics).unwrap();
+    let mut all = Contribution::of(vec![first]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    for include in &all.asked_for()[0].includes {
+        let name = include.name.as_str().trim_start_matches("a:");
+        let number: usize = name[1..].parse().unwrap();
+        match all.link(include.origin).unwrap() {
+            Link::To(to) => assert_eq!(all.composites()[*to].name, *name),
+            link => assert!(matches!(link, Link::Missing(_)) && number % 4 == 3, "{name}"),
+        }
+    }
+    assert_eq!(all.composites().len(), 1 + ALL / 4 * 3);
+    let codes: Vec<&str> = diagnostics.iter().map(|one| one.code.id).collect();
+    assert_eq!(codes, ["S2001"], "the two called `c2`");
+}
+
 #[cfg(unix)]
 #[test]
 fn circles_of_links_and_large_folders_end() {

@@ -1,0 +1,55 @@
+//! The first tags of composites.
+
+use std::borrow::Cow;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+use crate::source::OpenTexts;
+
+/// The part of a file in which its first tag has to be.
+const HEAD: u64 = 64 * 1024;
+
+/// A composite that was seen.
+#[derive(Clone, Debug)]
+pub(super) struct Head {
+    pub(super) path: PathBuf,
+    pub(super) namespace: String,
+    pub(super) local: String,
+}
+
+/// The name and namespace of the composite in a file; `None` when its first tag is no `composite`.
+pub(super) fn head(path: &Path, open: &OpenTexts) -> Option<Head> {
+    let mut bytes = Vec::new();
+    let text = if let Some(open) = open.get(path) {
+        Cow::Borrowed(&**open)
+    } else {
+        // What is no file, as a pipe, might never come to an end.
+        if !fs::metadata(path).ok()?.is_file() {
+            return None;
+        }
+        File::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
+        String::from_utf8_lossy(&bytes)
+    };
+    let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
+    loop {
+        match reader.read_event().ok()? {
+            Event::Start(tag) | Event::Empty(tag) => {
+                if tag.local_name().as_ref() != "composite" {
+                    return None;
+                }
+                let value = |name: &str| {
+                    let found = tag.try_get_attribute(name).ok().flatten()?;
+                    quick_xml::escape::unescape(&found.value).ok().map(|text| text.trim().to_owned())
+                };
+                let namespace = value("targetNamespace").unwrap_or_default();
+                return Some(Head { path: path.to_owned(), namespace, local: value("name")? });
+            }
+            Event::Eof => return None,
+            _ => {}
+        }
+    }
+}
