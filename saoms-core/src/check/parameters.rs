@@ -329,7 +329,13 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
         .iter()
         .flat_map(|composite| composite.properties.iter().map(move |property| (*composite, property)));
     for (composite, property) in properties.filter(|(_, property)| !property.name.is_empty()) {
-        if let Some(first) = all.by_name.get(property.name.as_str()) {
+        // What is not there may say otherwise what another composite says that is there in place of it, or be the same composite.
+        let is_instead = |first: &Parameter<'_>| unit.is_absent && !std::ptr::eq(first.composite, composite);
+        let first = all.by_name.get(property.name.as_str());
+        if first.is_some_and(|first| std::ptr::eq(first.property, property)) {
+            continue;
+        }
+        if let Some(first) = first.filter(|first| !is_instead(first)) {
             let message = format!("the composite has two properties {}", quoted(&property.name));
             report.push(
                 Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, property.name.location, message)

@@ -443,6 +443,36 @@ fn includes_and_composites_can_be_absent() {
     ));
 }
 
+/// Of includes that exclude each other one is there, so that both can declare what the other one does.
+#[test]
+fn includes_that_exclude_each_other_can_declare_the_same() {
+    let one = |name: &str, period: &str| {
+        part(
+            name,
+            "",
+            &format!(
+                r#"<property name="every">{period}</property><component name="N"><implementation.java class="example.Robot"/><property name="ID">N</property><property name="period" source="$every"/><property name="number">7</property></component>"#
+            ),
+        )
+    };
+    let inside = |other: &str| {
+        format!(
+            r#"<property name="real">false</property><include name="t:model" saoms:if="not real"/><include name="t:{other}" saoms:if="real"/>"#
+        )
+    };
+    let all = [fleet(&inside("robot")), one("model", "10"), one("robot", "20")];
+    let all: Vec<&str> = all.iter().map(String::as_str).collect();
+    expect![[r#"
+        N (example.Robot) ID=Text("N") number=Text("7") gps->
+    "#]].assert_eq(&outcome(&all, &[]));
+    expect![[r#"
+        N (example.Robot) ID=Text("N") number=Text("7") gps->
+    "#]].assert_eq(&outcome(&all, &["real=true"]));
+    expect![[r#"
+        N (example.Robot) ID=Text("N") number=Text("7") gps->
+    "#]].assert_eq(&outcome(&[&fleet(&inside("model")), all[1]], &[]));
+}
+
 #[test]
 fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
     let inside = r#"<property name="robots" type="xsd:int">2</property><property name="day" type="xsd:boolean">perhaps</property>
