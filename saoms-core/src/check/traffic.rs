@@ -170,32 +170,34 @@ impl All<'_> {
         let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
         let pace = topic.pace();
         let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
+        // Those of one period, and of these those that lose messages with one queue: one is told of each, since a fleet of robots says the same.
         let mut alike: HashMap<Duration, Vec<End>> = HashMap::new();
+        let mut queues: HashMap<(Duration, usize), Vec<End>> = HashMap::new();
+        let losing = |reader: &End| {
+            let task = self.assembly.components[reader.component].task.as_ref()?;
+            (topic.kind == TopicKind::Event && task.loss == Loss::Fail).then_some(task.queue)
+        };
         for reader in &topic.readers {
-            if let Some(period) = reader.period {
-                alike.entry(period).or_default().push(*reader);
+            let Some(period) = reader.period else { continue };
+            alike.entry(period).or_default().push(*reader);
+            if let Some(queue) = losing(reader) {
+                queues.entry((period, queue)).or_default().push(*reader);
             }
         }
-        // One for each pair of periods: a fleet of robots says the same.
-        let mut told: HashSet<(&'static str, Duration)> = HashSet::new();
         for reader in &topic.readers {
-            let Some(task) = &self.assembly.components[reader.component].task else { continue };
             let Some(period) = reader.period else { continue };
-            let readers = &alike[&period];
-            let counts = topic.kind == TopicKind::Event && task.loss == Loss::Fail;
+            let queue = losing(reader);
             let at = self.places[reader.component].queue.unwrap_or(self.at(reader, topic));
-            if counts
-                && !told.contains(&("queue", period))
-                && pace.exceeds(period, task.queue as u64)
-                && told.insert(("queue", period))
+            if let Some(queue) = queue.filter(|queue| pace.exceeds(period, *queue as u64))
+                && let Some(readers) = queues.remove(&(period, queue))
                 && !report.diagnostics().skip(&codes::QUEUE, codes::QUEUE.severity, at)
             {
                 let burst = pace.burst(period);
                 let message = format!(
                     "up to {burst} messages of topic {} can come between two executions of {}, and {} find room",
                     quoted(&topic.name),
-                    self.who(readers),
-                    task.queue
+                    self.who(&readers),
+                    queue
                 );
                 let in_all = match parts == topic.writers.len() as u64 {
                     true => String::new(),
@@ -212,13 +214,12 @@ impl All<'_> {
                     )),
                 );
             }
-            if let Some(fastest) = fastest
-                && period < fastest
-                && told.insert(("rate", period))
+            if let Some(fastest) = fastest.filter(|fastest| period < *fastest)
+                && let Some(readers) = alike.remove(&period)
             {
                 let message = format!(
                     "{} topic {} every {}, and nobody publishes it more often than every {}",
-                    self.who_does(readers, "reads"),
+                    self.who_does(&readers, "reads"),
                     quoted(&topic.name),
                     format_duration(period),
                     format_duration(fastest)

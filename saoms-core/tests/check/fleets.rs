@@ -464,13 +464,16 @@ fn includes_that_exclude_each_other_can_declare_the_same() {
     let all: Vec<&str> = all.iter().map(String::as_str).collect();
     expect![[r#"
         N (example.Robot) ID=Text("N") number=Text("7") gps->
-    "#]].assert_eq(&outcome(&all, &[]));
+    "#]]
+    .assert_eq(&outcome(&all, &[]));
     expect![[r#"
         N (example.Robot) ID=Text("N") number=Text("7") gps->
-    "#]].assert_eq(&outcome(&all, &["real=true"]));
+    "#]]
+    .assert_eq(&outcome(&all, &["real=true"]));
     expect![[r#"
         N (example.Robot) ID=Text("N") number=Text("7") gps->
-    "#]].assert_eq(&outcome(&[&fleet(&inside("model")), all[1]], &[]));
+    "#]]
+    .assert_eq(&outcome(&[&fleet(&inside("model")), all[1]], &[]));
 }
 
 #[test]

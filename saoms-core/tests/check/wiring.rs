@@ -158,6 +158,18 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
           help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
     "#]].assert_eq(&both(&slow("10")));
     expect![""].assert_eq(&both(&format!("{}<property name=\"loss\">accept</property>", slow("10"))));
+    // Of those with the same period, each queue by itself.
+    let pickers = [("P", slow("1")), ("Q", period("1001")), ("R", slow("1")), ("S", slow("2"))];
+    let mut all = vec![("D", "Dispatcher", "")];
+    all.extend(pickers.iter().map(|(name, properties)| (*name, "Picker", properties.as_str())));
+    expect![[r#"
+        3:161-162 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P` and another one, and 1 find room
+          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
+        6:161-162 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `S`, and 2 find room
+          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
+    "#]].assert_eq(&found(&fleet(&all)));
     expect![[r#"
         3:18-27 note S4013: up to 1200 messages of topic `ORDERS` can come between two executions of component `P1` and 399 others, and 1024 find room
           help: component `D1` and 399 others publish it: so many come where each sends one in each execution, and fewer as a rule
