@@ -90,7 +90,7 @@ pub(super) fn value(
     open: &OpenTexts,
 ) -> Result<String, Box<Diagnostic>> {
     let max_size = max_size.min(LIMIT);
-    let bytes = bytes(path, max_size, open).map_err(|failure| {
+    let bytes = named_bytes(path, max_size, open).map_err(|failure| {
         let mut one = failure.diagnostic(path, max_size, named, &VALUE);
         if one.code == &codes::FILE_NOT_FOUND {
             let shown = path.display().to_string();
@@ -137,6 +137,8 @@ const VALUE: Expected =
 /// Why there are no bytes.
 enum Failure {
     Directory,
+    /// A pipe, a device or a socket.
+    Irregular,
     /// With the size, where it is known.
     TooLarge(Option<u64>),
     Io(io::Error),
@@ -152,6 +154,11 @@ impl Failure {
                     "a directory, where a file is expected",
                 );
                 with_help(one, missing::inside(path, expected.ending))
+            }
+            Self::Irregular => {
+                let message = "the file cannot be read: it is no regular file";
+                let one = Diagnostic::new(&codes::FILE_UNREADABLE, location, message);
+                one.help("a pipe or a device may have no end: name a file that holds the text")
             }
             Self::TooLarge(size) => {
                 let message = match size {
@@ -197,6 +204,16 @@ fn bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failur
     }
     let file = File::open(path).map_err(Failure::Io)?;
     limited(file, Vec::with_capacity(about.len() as usize + 1), max_size)
+}
+
+/// The bytes of a file that another one names. Nobody writes to it for this one reader, as to a pipe on the command line: it has to be a regular file.
+fn named_bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failure> {
+    let about = fs::metadata(path);
+    let is_irregular = about.is_ok_and(|about| !about.is_file() && !about.is_dir());
+    if is_irregular && open.get(path).is_none() {
+        return Err(Failure::Irregular);
+    }
+    bytes(path, max_size, open)
 }
 
 /// A file can grow while it is read, and devices and pipes have no length.

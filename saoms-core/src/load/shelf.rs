@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::ffi::OsString;
-use std::fs;
+use std::fs::{self, FileType};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -249,7 +249,9 @@ impl Shelf {
             match entry.file_type() {
                 Ok(kind) if kind.is_dir() && (name.starts_with('.') || SKIPPED.contains(&&*name)) => {}
                 Ok(kind) if kind.is_dir() => listing.folders.push(path),
-                Ok(_) if name.ends_with(".composite") => listing.composites.push(path),
+                Ok(kind) if name.ends_with(".composite") && may_be_read(kind, &path) => {
+                    listing.composites.push(path);
+                }
                 _ => {}
             }
         }
@@ -276,6 +278,11 @@ impl Shelf {
     fn head(&mut self, path: &Path) -> &Option<Head> {
         self.heads.entry(path.to_owned()).or_insert_with(|| head(path, &self.open))
     }
+}
+
+/// Whether what is in a folder is a file, or a link to one or to nowhere, which is told when it is read. Of a pipe nobody knows that it ever ends.
+fn may_be_read(kind: FileType, path: &Path) -> bool {
+    kind.is_file() || kind.is_symlink() && fs::metadata(path).map_or(true, |about| about.is_file())
 }
 
 impl From<PathBuf> for Walk {

@@ -5,7 +5,7 @@ use std::fs;
 
 use expect_test::expect;
 use saoms_core::diagnostic::Diagnostics;
-use saoms_core::load::{MAX_SIZE, load_folder};
+use saoms_core::load::{MAX_SIZE, composites_below, load_folder};
 use saoms_core::source::Sources;
 
 use crate::imports::description;
@@ -260,4 +260,25 @@ fn a_wrong_deployable_is_told_once() {
           it has `fleet`
     "#]]
     .assert_eq(&fleets(&files));
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_passed_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("fleet.composite"), composite("urn:a", "fleet", "")).unwrap();
+    let made = std::process::Command::new("mkfifo").arg(path("pipe.composite")).status().unwrap();
+    assert!(made.success());
+    let links =
+        [("fleet.composite", "link"), ("pipe.composite", "to_pipe"), ("/", "to_root"), ("nowhere", "dead")];
+    for (to, name) in links {
+        std::os::unix::fs::symlink(to, path(&format!("{name}.composite"))).unwrap();
+    }
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let all = composites_below(folder.path(), &mut sources, &mut diagnostics);
+    let names: Vec<_> = all.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
+    assert_eq!(names, ["dead.composite", "fleet.composite", "link.composite"], "a dead link is told");
+    let fleets = load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
+    assert_eq!(fleets.len(), 3);
 }

@@ -247,3 +247,32 @@ fn of_two_composites_of_one_name_in_a_folder_one_is_taken_and_both_are_told() {
     let message = "there are two composites `hall` in one namespace: that in `hall.composite` is taken, and not that in `copy.composite`";
     assert_eq!(found, [("S2001", "warning", "a:hall", message)]);
 }
+
+#[cfg(unix)]
+#[test]
+fn what_a_composite_names_is_no_pipe_and_no_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    for name in ["pipe", "hall.composite", "C.componentType", "sca-contribution.xml"] {
+        let made = std::process::Command::new("mkfifo").arg(path(name)).status().unwrap();
+        assert!(made.success());
+    }
+    fs::write(path("values.txt"), "7").unwrap();
+    std::os::unix::fs::symlink("values.txt", path("link")).unwrap();
+    let inside = "<include name='a:hall'/><component name='c' xmlns:s='urn:saoms:1' s:count='2' s:overrides='pipe'>\
+                  <implementation.java class='C'/><property name='p' file='pipe'/><property name='q' file='/dev/zero'/>\
+                  <property name='r' file='link'/></component>";
+    fs::write(path("fleet.composite"), composite("urn:a", "fleet", inside)).unwrap();
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let first = load(&path("fleet.composite"), &mut sources, &mut diagnostics).unwrap();
+    assert_eq!(first.components[0].properties[2].from_file().unwrap(), &"7", "links lead to files");
+    let mut all = Contribution::of(vec![first]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    assert!(matches!(all.link(all.composites()[0].includes[0].origin), Some(Link::Missing(_))));
+    let found: Vec<_> = diagnostics
+        .iter()
+        .map(|one| (one.code.id, sources.snippet(one.location), one.message.as_str()))
+        .collect();
+    let message = "the file cannot be read: it is no regular file";
+    assert_eq!(found, ["pipe", "/dev/zero", "pipe"].map(|at| ("S0003", at, message)));
+}
