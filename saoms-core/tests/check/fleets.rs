@@ -462,18 +462,13 @@ fn includes_that_exclude_each_other_can_declare_the_same() {
     };
     let all = [fleet(&inside("robot")), one("model", "10"), one("robot", "20")];
     let all: Vec<&str> = all.iter().map(String::as_str).collect();
-    expect![[r#"
-        N (example.Robot) ID=Text("N") number=Text("7") gps->
-    "#]]
-    .assert_eq(&outcome(&all, &[]));
-    expect![[r#"
-        N (example.Robot) ID=Text("N") number=Text("7") gps->
-    "#]]
-    .assert_eq(&outcome(&all, &["real=true"]));
-    expect![[r#"
-        N (example.Robot) ID=Text("N") number=Text("7") gps->
-    "#]]
-    .assert_eq(&outcome(&[&fleet(&inside("model")), all[1]], &[]));
+    let twice = [&fleet(&inside("model")), all[1]];
+    for (files, settings) in [(&all[..], &[][..]), (&all, &["real=true"]), (&twice, &[])] {
+        expect![[r#"
+            N (example.Robot) ID=Text("N") number=Text("7") gps->
+        "#]]
+        .assert_eq(&outcome(files, settings));
+    }
 }
 
 #[test]
