@@ -100,8 +100,13 @@ fn mended(input: &Input, fleet: &Checked<Assembly>, asked: &Asked, registry: &Re
         let is_further = |next: &Diagnostic| {
             start(next) > start(one) || edited.len() - start(next) < text.len() - start(one)
         };
-        let next = after.diagnostics.iter().find(|next| kind(next) == kind(one));
-        assert!(next.is_none_or(is_further), "{}{}", context(), after.told());
+        let alike = |fleet: &Checked<Assembly>| {
+            let alike = fleet.diagnostics.iter().filter(|next| kind(next) == kind(one));
+            alike.filter(|next| !is_further(next)).count()
+        };
+        let here =
+            fleet.diagnostics.iter().filter(|next| kind(next) == kind(one) && start(next) <= start(one));
+        assert!(alike(&after) < here.count(), "{}{}", context(), after.told());
         return;
     }
     assert!(number(&after) < number(fleet), "{}{}", context(), after.told());
