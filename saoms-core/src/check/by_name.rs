@@ -6,7 +6,7 @@
 use std::hash::BuildHasher;
 use std::hint::black_box;
 
-use super::fleet::Member;
+use super::fleet::{Fleet, Member};
 use crate::hash::Seeded;
 
 /// Names that [`ByName::warm`] takes at once: about as many as a processor has reads of memory under way.
@@ -104,6 +104,21 @@ impl ByName {
             at = (at + 1) & last;
         }
     }
+}
+
+/// Has the memory ready in which the targets of this component and of the next ones will be looked up, before each of them is.
+pub(super) fn warm_targets(member: usize, fleet: &Fleet<'_>) {
+    /// Components at a time: most have a target or two.
+    const TOGETHER: usize = AT_ONCE / 2;
+    if !member.is_multiple_of(TOGETHER) {
+        return;
+    }
+    let next = fleet.members[member..].iter().take(TOGETHER);
+    let references =
+        next.flat_map(|one| one.component.references.iter().map(|reference| (one.scope, reference)));
+    let targets =
+        references.flat_map(|(scope, one)| one.targets.iter().map(move |text| (scope, text.as_str())));
+    fleet.by_name.warm(targets, &fleet.members);
 }
 
 fn key<'m>(member: &'m Member<'_>) -> (usize, &'m str) {

@@ -6,11 +6,11 @@
 use std::collections::HashSet;
 
 use super::autowire::Autowire;
-use super::by_name::AT_ONCE;
+use super::by_name::warm_targets;
 use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
-use super::fleet::{Fleet, Member};
+use super::fleet::Fleet;
 use super::given;
 use super::multiplicity::keeps_own;
 use super::promote::{Place, Promoted};
@@ -23,9 +23,6 @@ use crate::hash::Map;
 use crate::model::{Multiplicity, Reference};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
-
-/// Components whose targets are looked up at about the same time: most have a target or two.
-const TOGETHER: usize = AT_ONCE / 2;
 
 /// The services that a reference leads to.
 #[derive(Default)]
@@ -76,9 +73,7 @@ pub(super) fn check(
     let mut circles = Circles::default();
     let mut wiring = Wiring { members: Vec::with_capacity(fleet.members.len()), ..Wiring::default() };
     for member in 0..fleet.members.len() {
-        if member % TOGETHER == 0 {
-            warm(&fleet.members[member..], fleet);
-        }
+        warm_targets(member, fleet);
         report.about(&fleet.members[member]);
         let Some(class) = fleet.class_of(member, classes) else {
             all.given(member, report);
@@ -100,16 +95,6 @@ pub(super) fn check(
     report.about_all();
     circles.check(fleet, report);
     wiring
-}
-
-/// Has the memory ready in which the targets of the first of these components will be looked up.
-fn warm(members: &[Member<'_>], fleet: &Fleet<'_>) {
-    let next = members.iter().take(TOGETHER);
-    let references =
-        next.flat_map(|member| member.component.references.iter().map(|one| (member.scope, one)));
-    let targets =
-        references.flat_map(|(scope, one)| one.targets.iter().map(move |text| (scope, text.as_str())));
-    fleet.by_name.warm(targets, &fleet.members);
 }
 
 struct Wires<'f, 'a> {
