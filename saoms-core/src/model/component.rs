@@ -203,32 +203,3 @@ pub enum ImplementationKind {
 }
 
 parts!(Component, Implementation);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnostic::Diagnostics;
-    use crate::load::load_file;
-    use crate::source::Sources;
-
-    #[test]
-    fn the_first_of_each_name_is_found_among_many() {
-        let references: String =
-            (0..2 * FEW).map(|number| format!("<reference name='r{}'/>", number % (FEW + 7))).collect();
-        let text = format!(
-            "<composite xmlns='http://www.osoa.org/xmlns/sca/1.0' name='c'><component name='A'>{references}<service name='r1'/></component></composite>"
-        );
-        let mut sources = Sources::new();
-        let file = sources.add("c.composite", text);
-        let composite = load_file(file, &sources, &mut Diagnostics::new()).unwrap();
-        let component = &composite.components[0];
-        assert!(component.names().is_some());
-        for number in 0..FEW + 7 {
-            let found = component.reference(&format!("r{number}")).unwrap();
-            assert_eq!(found.origin, component.references[number].origin);
-        }
-        assert_eq!(component.reference("r"), None);
-        assert_eq!(component.reference("s"), None);
-        assert!(component.service("r1").is_some() && component.service("r2").is_none());
-    }
-}

@@ -1,5 +1,6 @@
 mod extension;
 mod large;
+mod many;
 mod reading;
 mod slips;
 mod vocabulary;
