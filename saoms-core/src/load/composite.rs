@@ -37,6 +37,7 @@ impl Loader<'_> {
             components: Vec::with_capacity(components.saturating_sub(bare)),
             wires: Vec::with_capacity(wires.saturating_sub(bare)),
             severities: Vec::new(),
+            outside: Vec::new(),
             policy: self.policy(root),
             name,
         };
@@ -45,6 +46,7 @@ impl Loader<'_> {
             self.part(child, family, name, &mut composite);
         }
         composite.severities = std::mem::take(&mut self.severities);
+        composite.outside = std::mem::take(&mut self.outside);
         composite
     }
 

@@ -7,7 +7,7 @@
 use super::Loader;
 use super::children::{Family, meant_name};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
-use crate::model::Version;
+use crate::model::{OutsideKind, Version};
 use crate::xml::{Attribute, Element};
 
 /// The namespaces of what Tuscany adds to SCA.
@@ -89,7 +89,12 @@ impl Loader<'_> {
         }
         match name {
             "implementation.bpel" => self.process(element),
-            "interface.wsdl" => self.wsdl(element, "interface"),
+            "interface.wsdl" => {
+                self.wsdl(element, "interface");
+                if let Some(callback) = element.attribute("callbackInterface") {
+                    self.outside(element, &callback.trimmed(), OutsideKind::Wsdl);
+                }
+            }
             "binding.ws" => self.wsdl(element, "wsdlElement"),
             "binding.ejb" => {
                 self.one_of(element, "session-type", &["stateful", "stateless"], true);
@@ -169,6 +174,7 @@ impl Loader<'_> {
     fn wsdl(&mut self, element: Element<'_>, name: &str) {
         let Some(attribute) = element.attribute(name) else { return };
         let text = attribute.trimmed();
+        self.outside(element, &text, OutsideKind::Wsdl);
         if !text.is_empty() && !text.contains('#') {
             let message = format!("{} names nothing in a WSDL document", quoted(&text));
             let help = match name {

@@ -10,6 +10,7 @@ mod component;
 mod component_type;
 mod composite;
 mod contract;
+mod declared;
 mod description;
 mod encoding;
 mod extension;
@@ -49,7 +50,7 @@ use tangle::Swallowed;
 pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::model::{Composite, SeverityRule, Version};
+use crate::model::{Composite, OutsideName, SeverityRule, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
 
@@ -130,6 +131,8 @@ struct Loader<'d> {
     newer: Vec<&'static str>,
     /// What is said about severities.
     severities: Vec<SeverityRule>,
+    /// The names of what other files declare.
+    outside: Vec<OutsideName>,
     /// What is known of each shape of start tags of the document.
     tags: Vec<Tag>,
     /// Why its tags do not fit, where they do not.
@@ -147,6 +150,7 @@ impl<'d> Loader<'d> {
             is_replicated: false,
             newer: Vec::new(),
             severities: Vec::new(),
+            outside: Vec::new(),
             tags: Vec::new(),
             tangle: None,
             swallowed: None,

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::declared::Declared;
 use super::description::Kind;
 use super::imports::Imports;
 use super::read::STANDARD_INPUT;
@@ -45,6 +46,7 @@ pub fn load_named(
     let mut imports = Imports::new(given, max_size);
     let (mut folders, mut side_files, mut types) =
         (HashMap::<PathBuf, bool>::new(), HashMap::new(), HashMap::new());
+    let mut declared = Declared::default();
     let mut warned = HashSet::new();
     let mut place = 0;
     while let Some(composite) = contribution.composites().get(place) {
@@ -68,12 +70,13 @@ pub fn load_named(
             })
             .collect();
         let described = described(composite);
-        if wanted.is_empty() && described.is_empty()
+        if wanted.is_empty() && described.is_empty() && composite.outside.is_empty()
             || !(path.is_file() || sources.open().get(&path).is_some() || path == Path::new(STANDARD_INPUT))
         {
             continue;
         }
         let folder = path.parent().unwrap_or(Path::new(""));
+        declared.check(composite, folder, (&mut shelf, sources.open()), diagnostics);
         let root = shelf.root(folder);
         let mut files = HashMap::new();
         for Described { written, paths, package, is_needed } in described {

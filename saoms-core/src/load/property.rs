@@ -4,7 +4,7 @@ use super::Loader;
 use super::children::Family;
 use super::vocabulary::{COMPONENT, COMPOSITE, Kind};
 use crate::diagnostic::{nearest, quoted};
-use crate::model::{Origin, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
+use crate::model::{Origin, OutsideKind, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
 use crate::xml::{Attribute, Element, ElementId};
 
@@ -58,10 +58,18 @@ impl Loader<'_> {
     ) -> PropertyDetails {
         // A property of a composite has none: one is reported, and not read.
         let has_file = kind.attributes.iter().any(|known| known.name == "file");
+        let (r#type, of) = (self.optional(element, "type"), self.optional(element, "element"));
+        // Types of XML Schema, as most are, are known.
+        if let Some(name) = r#type.as_ref().filter(|name| !name.starts_with("xs")) {
+            self.outside(element, name, OutsideKind::Type);
+        }
+        if let Some(name) = &of {
+            self.outside(element, name, OutsideKind::Element);
+        }
         PropertyDetails {
             inside,
-            r#type: self.optional(element, "type"),
-            element: self.optional(element, "element"),
+            r#type,
+            element: of,
             many: self.boolean(element, "many"),
             must_supply: self.boolean(element, "mustSupply"),
             source: self.optional(element, "source"),

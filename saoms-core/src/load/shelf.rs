@@ -50,6 +50,8 @@ type Wanted = (PathBuf, Option<Vec<String>>, String);
 struct Listing {
     composites: Vec<PathBuf>,
     folders: Vec<PathBuf>,
+    /// Schemas, WSDL and definitions of policies.
+    declaring: Vec<PathBuf>,
 }
 
 /// A way through the folders of a contribution, the upper ones first, that goes on where it stopped.
@@ -223,6 +225,22 @@ impl Shelf {
         (composites, others)
     }
 
+    /// The files that may declare what a composite in `folder` names: those beside it, and those of a contribution that is described as such.
+    pub(super) fn declaring(&mut self, folder: &Path) -> Vec<PathBuf> {
+        let root = self.root(folder);
+        let mut all = self.listing(folder).declaring.clone();
+        all.extend(Some(root.join("META-INF/definitions.xml")).filter(|path| path.is_file()));
+        let mut waiting = if describes(&root) { vec![root] } else { Vec::new() };
+        while let Some(next) = waiting.pop() {
+            let listing = self.listing(&next);
+            all.extend_from_slice(&listing.declaring);
+            waiting.extend_from_slice(&listing.folders);
+        }
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     /// Whether every file was looked at.
     pub(super) fn is_complete(&self) -> bool {
         self.left > 0
@@ -252,6 +270,7 @@ impl Shelf {
                 Ok(kind) if name.ends_with(".composite") && may_be_read(kind, &path) => {
                     listing.composites.push(path);
                 }
+                Ok(kind) if is_declaring(&name) && may_be_read(kind, &path) => listing.declaring.push(path),
                 _ => {}
             }
         }
@@ -331,4 +350,9 @@ pub(super) fn root(folder: &Path) -> PathBuf {
     // As the user wrote it, where that goes up far enough.
     let written = folder.ancestors().nth(above).filter(|written| above == 0 || written.file_name().is_some());
     written.or(absolute.ancestors().nth(above)).unwrap_or(folder).to_owned()
+}
+
+/// Whether a file of this name may declare what composites name.
+fn is_declaring(name: &str) -> bool {
+    name.ends_with(".wsdl") || name.ends_with(".xsd") || name == "definitions.xml"
 }

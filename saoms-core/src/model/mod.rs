@@ -21,7 +21,7 @@ mod version;
 pub(crate) use component::Names;
 pub use component::{Component, ComponentDetails, Implementation, ImplementationKind};
 pub use component_type::ComponentType;
-pub use composite::{Composite, Include, Wire, WireDetails};
+pub use composite::{Composite, Include, OutsideKind, OutsideName, Wire, WireDetails};
 pub use contract::{
     Binding, Callback, Contract, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
 };

@@ -107,7 +107,9 @@ fn example(code: &Code) -> Result<String, String> {
             files.push(("hall0.composite".to_owned(), crate::support::part("hall0", "", gps)));
             checked(&files, 1, &[])
         }
-        id @ ("S2043" | "S2044" | "S2047" | "S2052" | "S2053" | "S2054" | "S2055") => from_folder(id),
+        id @ ("S2043" | "S2044" | "S2047" | "S2052" | "S2053" | "S2054" | "S2055" | "S2056") => {
+            from_folder(id)
+        }
         "S2051" => contribution(),
         id => from_files(id),
     };
