@@ -1,8 +1,9 @@
 //! Where the `source` of a property leads: `$name`, and the part of its value that a path of steps leads to.
 //!
-//! SCA takes an XPath (Assembly 1.1, 4.1.3); this is what most of them are, for which each value is looked through once for all. Understood are steps down into elements by name or `*`, each with one predicate, steps to any depth (`//`),
-//! and at the end an attribute or a text; what steps lead to several elements, leads on from all of them, as in XPath. Prefixes do not count. The work grows with the value and the
-//! length of the path alone: each step looks at each element once. Everything else is left to [`xpath`](super::xpath).
+//! SCA takes an XPath (Assembly 1.1, 4.1.3); this is what most of them are, for which each value is looked through once for all. Understood are steps
+//! down into elements by name or `*`, each with one predicate, steps to any depth (`//`), and at the end an attribute or a text; what steps lead to
+//! several elements, leads on from all of them, as in XPath. Prefixes do not count. The work grows with the value and the length of the path alone: each
+//! step looks at each element once. Everything else is left to [`xpath`](super::xpath).
 
 use std::ops::Range;
 
