@@ -374,7 +374,8 @@ fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Elemen
 fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) -> Diagnostic {
     let (text, file) = (element.document().text(), element.document().file());
     let (start, end) = match element.local_name() {
-        "component" if element.start_tag_span() != element.span() => {
+        // However an empty one is written, there is nothing to do for it first.
+        "component" if element.children().next().is_some() => {
             (element.span().start, element.start_tag_span().end)
         }
         "implementation.java" | "implementation.rust" => (element.span().start, element.span().end),

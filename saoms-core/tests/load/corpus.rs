@@ -16,9 +16,9 @@ use crate::places::checked;
 #[test]
 fn the_shipped_files_get_what_they_deserve() {
     let expected = BTreeMap::from([
-        // SCA 1.1 does not know `operation`, and what is no mistake of the user's is let pass; nor is an extension one.
         ("all-1.0.composite", vec![]),
-        ("all-1.1.composite", vec![]),
+        // SCA 1.1 does not know `operation`, which SCA 1.0 has.
+        ("all-1.1.composite", vec!["warning S1004 [operation]"]),
         ("archetype.composite", vec![]),
         ("bigbank-calculator.composite", vec![]),
         ("draft.composite", vec![]),
