@@ -24,6 +24,7 @@ mod reference;
 mod rules;
 mod severities;
 mod slips;
+mod slips_of_wires;
 mod support;
 mod tasks;
 mod together;

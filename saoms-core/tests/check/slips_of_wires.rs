@@ -1,0 +1,134 @@
+//! Slips of the pen in what targets, wires and promotions name.
+
+use expect_test::expect;
+
+use crate::slips::{GPS, of, robot};
+use crate::support::{nested, outcome, part, shown};
+
+#[test]
+fn a_target_of_nothing_is_told() {
+    let inside = robot("R", "<property name=\"number\">1</property>\n<reference name=\"gps\" target=\" \"/>");
+    expect![[r#"
+        4:23-33 warning S1011: `target` names nothing
+          help: name a component, or leave `target` out
+        R (example.Robot) ID=Text("R") number=Text("1") gps->
+    "#]]
+    .assert_eq(&of(&inside));
+    let needed = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/>\n<reference name=\"wheels\" target=\"\"/></component>";
+    expect![[r#"
+        3:18-24 error S2018: reference `wheels` of component `N` leads to no service
+          help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
+    "#]].assert_eq(&of(needed));
+}
+
+#[test]
+fn targets_are_written_as_sca_writes_them() {
+    let conductor = |target: &str| {
+        let found = of(&format!(
+            "{GPS}\n<component name=\"H\"><implementation.java class=\"example.Gps\"/></component>\n<component name=\"C\"><implementation.java class=\"example.Conductor\"/><reference name=\"gps\" target=\"{target}\"/></component>"
+        ));
+        found
+            .lines()
+            .filter(|line| !line.starts_with(|c: char| c.is_ascii_uppercase()))
+            .fold(String::new(), |all, line| all + line + "\n")
+    };
+    expect![[r#"
+        4:99-102 error S2011: there is no component `G,H`
+          help: several stand between blanks
+          fix: replace `G,H` with `G H` [4:99-102 "G H"]
+    "#]]
+    .assert_eq(&conductor("G,H"));
+    expect![[r#"
+        4:99-101 error S2011: there is no component `G,`
+          help: several stand between blanks
+          fix: replace `G,` with `G` [4:99-101 "G"]
+    "#]]
+    .assert_eq(&conductor("G, H"));
+    expect![[r#"
+        4:99-101 error S2011: there is no component `G;`
+          help: several stand between blanks
+          fix: replace `G;` with `G` [4:99-101 "G"]
+        4:102-103 error S2011: there is no component `X`
+          help: the components are `G` and `H`
+    "#]]
+    .assert_eq(&conductor("G; X"));
+    expect![[r#"
+        4:99-109 error S2011: there is no component `G#position`
+          help: the name of a service stands behind `/`
+          fix: replace `G#position` with `G/position` [4:99-109 "G/position"]
+    "#]]
+    .assert_eq(&conductor("G#position"));
+    expect![[r#"
+        4:99-109 error S2011: there is no component `G.position`
+          help: the name of a service stands behind `/`
+          fix: replace `G.position` with `G/position` [4:99-109 "G/position"]
+        4:110-121 error S2011: there is no component `H::position`
+          help: the name of a service stands behind `/`
+          fix: replace `H::position` with `H/position` [4:110-121 "H/position"]
+    "#]]
+    .assert_eq(&conductor("G.position H::position"));
+    expect![[r#"
+        4:99-101 error S2010: `/G` has the wrong form
+          fix: replace `/G` with `G` [4:99-101 "G"]
+        4:102-104 error S2010: `H/` has the wrong form
+          fix: replace `H/` with `H` [4:102-104 "H"]
+    "#]]
+    .assert_eq(&conductor("/G H/"));
+    expect![[r#"
+        4:99-102 error S2011: there is no component `a.b`
+          help: the components are `G` and `H`
+    "#]]
+    .assert_eq(&conductor("a.b"));
+}
+
+#[test]
+fn a_wire_the_wrong_way_round_is_told_once() {
+    let robot = robot("R", "<property name=\"number\">1</property>");
+    let twins = "<component name=\"C\"><implementation.java class=\"example.Twins\"/></component>";
+    expect![[r#"
+        5:15-16 error S2016: this wire goes backwards: `C` offers a service, and `R/gps` is a reference
+          fix: swap `source` and `target` [5:15-16 "R/gps"] [5:26-31 "C"]
+        5:15-16 error S2015: component `C` offers no service with the interface `example.Positions`
+          help: it offers `left` (example.Wheels), `right` (example.Wheels)
+    "#]]
+    .assert_eq(&of(&format!("{twins}\n{robot}\n<wire source=\"C\" target=\"R/gps\"/>")));
+    expect![[r#"
+        5:15-25 error S2016: this wire goes backwards: `G/position` offers a service, and `R/gps` is a reference
+          fix: swap `source` and `target` [5:15-25 "R/gps"] [5:35-40 "G/position"]
+    "#]]
+        .assert_eq(&of(&format!("{GPS}\n{robot}\n<wire source=\"G/position\" target=\"R/gps\"/>")));
+}
+
+#[test]
+fn a_reference_of_a_composite_is_promoted_by_it() {
+    let inner = part("inner", "", &robot("R", "<property name=\"number\">1</property>"));
+    let outer = part(
+        "outer",
+        "",
+        &format!(
+            "{GPS}\n<component name=\"I\"><implementation.composite name=\"t:inner\"/><reference name=\"gps\" target=\"G\"/></component>"
+        ),
+    );
+    expect![[r#"
+        3:80-83 error S2006: composite `inner` has no reference `gps`
+          inner:1:115-120 this one
+          help: it has those of its components that it promotes: write `<reference name="gps" promote="COMPONENT/reference"/>` in it
+    "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
+}
+
+/// What stands in a composite that is not found may wire anything.
+#[test]
+fn beside_an_include_that_leads_nowhere_no_reference_lacks_a_target() {
+    let navigator = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/></component>";
+    let fleet = part("fleet", "", &format!("<include name=\"t:C\"/>\n{navigator}"));
+    let wires = part("c", "", &format!("<wire source=\"N/wheels\" target=\"R\"/>{}", robot("R", "")));
+    expect![[r#"
+        2:16-19 error S2030: there is no composite `C` in the namespace `urn:t`
+          help: name the file of the composite beside this one
+          fix: replace `t:C` with `t:c` [2:16-19 "t:c"]
+    "#]]
+    .assert_eq(&outcome(&[&fleet, &wires], &[]));
+    let (_, given, sources) = nested(&[&fleet.replace("example.Nav", "other.Nav"), &wires], &[], true);
+    let given: String = given.iter().map(|one| shown(one, &sources)).collect();
+    assert!(!given.contains("S2018"), "{given}");
+}
