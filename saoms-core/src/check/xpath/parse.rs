@@ -126,7 +126,8 @@ impl Parser {
         is_there
     }
 
-    fn expect(&mut self, wanted: &'static str) -> Result<(), Fault> {
+    /// Goes past a sign that has to be next.
+    fn require(&mut self, wanted: &'static str) -> Result<(), Fault> {
         match self.take(wanted) {
             true => Ok(()),
             false => Err(Fault::unknown(self.here(), format!("{} is expected here", quoted(wanted)))),
@@ -216,7 +217,7 @@ impl Parser {
             Some(Token::Sign("(")) => {
                 self.at += 1;
                 let inner = self.deeper(|parser| parser.level(0))?;
-                self.expect(")")?;
+                self.require(")")?;
                 return Ok(Some(inner));
             }
             Some(Token::Name(name)) if self.is_call() && !matches!(&**name, "text" | "node" | "comment") => {
@@ -249,7 +250,7 @@ impl Parser {
                     break;
                 }
             }
-            self.expect(")")?;
+            self.require(")")?;
         }
         if !function.takes(arguments.len()) {
             let message =
@@ -263,7 +264,7 @@ impl Parser {
         let mut all = Vec::new();
         while self.take("[") {
             all.push(self.deeper(|parser| parser.level(0))?);
-            self.expect("]")?;
+            self.require("]")?;
         }
         Ok(all)
     }
@@ -312,7 +313,7 @@ impl Parser {
                 _ => return Err(Fault::unknown(here, format!("{} cannot stand in a path", quoted(&name)))),
             };
             self.at += 2;
-            self.expect(")")?;
+            self.require(")")?;
             return Ok(test);
         }
         self.at += 1;
