@@ -14,6 +14,7 @@ mod fmt;
 mod folder;
 mod graph;
 mod lsp;
+mod memory;
 mod new;
 mod output;
 mod paths;
@@ -31,6 +32,9 @@ mod wiring;
 use std::process::ExitCode;
 
 use saoms_components as _;
+
+#[global_allocator]
+static MEMORY: memory::Memory = memory::Memory;
 
 use crate::arguments::Command;
 
