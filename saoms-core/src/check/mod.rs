@@ -7,6 +7,7 @@
 mod absent;
 mod agree;
 mod arena;
+mod astray;
 mod autowire;
 mod binding;
 mod bindings;
@@ -27,6 +28,7 @@ mod instance;
 mod levels;
 mod lexical;
 mod loops;
+mod misread;
 mod multiplicity;
 mod names;
 mod naming;

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use super::options::Options;
 use super::report::{Report, list};
 use super::value_type;
-use crate::diagnostic::{nearest, quoted};
+use crate::diagnostic::{codes, nearest, quoted};
 use crate::expression::{INDEX, Problem, Value};
 use crate::model::{Component, Composite, Contribution, Link, Property};
 use crate::source::{Location, Text};
@@ -71,7 +71,8 @@ impl Names {
     pub(super) fn tell_value(&self, name: &str, report: &mut Report<'_>) -> bool {
         match self.all.get(name) {
             Some(Name { mistyped: Some(property), text: Some(text), .. }) => {
-                report.of_all(|report| !value_type::holds_by_name(property, text, report))
+                let is_told = report.has_told(&codes::COMPOSITE_VALUE_TYPE, text.location);
+                is_told || report.of_all(|report| !value_type::holds_by_name(property, text, report))
             }
             Some(Name { is_told, text: None, .. }) => is_told.replace(true),
             _ => false,

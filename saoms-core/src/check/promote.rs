@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::agree::{self, Found};
+use super::astray::Astray;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
 use super::fleet::{Fleet, Kind, Unit};
@@ -26,6 +27,8 @@ pub(super) struct Promoted<'f> {
     pub(super) to: Map<Place<'f>, Vec<Place<'f>>>,
     /// Those of which one composite's reference promotes several with different interfaces, which is reported.
     pub(super) differing: HashSet<Place<'f>>,
+    /// What composites promote that is not there, which is reported.
+    pub(super) astray: Astray<'f>,
 }
 
 /// Checks that what composites promote exists, and that their services and references have names of their own.
@@ -49,14 +52,18 @@ pub(super) fn check<'f>(
         }
         let owner = fleet.scopes[unit.scope].owner;
         for reference in unit.references() {
-            let found =
-                reference.promote().iter().flat_map(|promote| spread(promote, unit.scope, fleet)).filter_map(
-                    |(promote, _)| {
-                        let found = find(&promote, Side::Reference, unit, fleet, classes, report)?;
-                        Some((found, promote.location))
-                    },
-                );
-            let found: Vec<Found<'f>> = found.collect();
+            if reference.promote().is_empty() {
+                promoted.astray.add(unit.scope, None, fleet);
+            }
+            let mut found: Vec<Found<'f>> = Vec::new();
+            for promote in reference.promote() {
+                for (text, _) in spread(promote, unit.scope, fleet) {
+                    match find(&text, Side::Reference, unit, fleet, classes, report) {
+                        Some(one) => found.push((one, text.location)),
+                        None => promoted.astray.add(unit.scope, Some(promote), fleet),
+                    }
+                }
+            }
             found.iter().for_each(|(inner, _)| may_be_promoted(*inner, reference, fleet, classes, report));
             agree::wired(reference, &found, unit.main().version, fleet, report);
             let is_one = agree::reference(reference, &found, fleet, classes, report);

@@ -223,8 +223,9 @@ fn is_told(component: &Component, document: &Document, report: &mut Report<'_>) 
     let mut attributes = component.origin.element(document).attributes();
     let meant = attributes.find(|attribute| nearest(attribute.local_name(), ["count"]).is_some());
     let Some(meant) = meant else { return false };
-    let at = meant.name_span().in_file(file);
-    let is_error = |one: &Diagnostic| one.location == at && one.severity == Severity::Error;
+    // Of an empty one the whole is told.
+    let at = [meant.name_span().in_file(file), meant.location()];
+    let is_error = |one: &Diagnostic| at.contains(&one.location) && one.severity == Severity::Error;
     if !report.lowers_attributes && report.diagnostics().iter().any(is_error) {
         return true;
     }

@@ -5,10 +5,11 @@ use std::ops::Range;
 
 use super::classes::{ClassIndex, Fitting};
 use super::fleet::{Fleet, Kind};
+use super::misread::{inside, misread};
 use super::offer::{Offer, Side};
 use super::report::{Report, escaped, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::expression::{has_expression, pattern};
+use crate::expression::has_expression;
 use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
@@ -75,9 +76,15 @@ impl<'t> Uri<'t> {
             let named: Vec<&str> = text.split('/').filter(|part| !part.is_empty()).collect();
             let meant = named.join("/");
             let is_known = named.first().is_some_and(|name| fleet.find(scope, name).is_some());
-            report.push(match is_known && named.len() <= most {
-                true => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),
-                false => one.help(format!("write {form}")),
+            let promoted = named.split_first().and_then(|(component, behind)| {
+                inside(fleet.find(scope, component)?, behind, fleet).filter(|_| most < 3)
+            });
+            report.push(match promoted {
+                Some(promoted) => promoted.told(one, text),
+                None if is_known && named.len() <= most => {
+                    one.suggest(replacing(text, &meant), text.location, escaped(&meant))
+                }
+                None => one.help(format!("write {form}")),
             });
             return None;
         }
@@ -123,9 +130,8 @@ impl<'t> Uri<'t> {
                 return None;
             }
             let message = format!("there is no component {}", quoted(self.component));
-            if let Some((meant, help)) = misread(text, scope, fleet) {
-                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
-                let one = one.suggest(replacing(text, &meant), text.location, escaped(&meant)).help(help);
+            if let Some(misread) = misread(text, scope, fleet) {
+                let one = misread.told(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text);
                 report.push(match rule {
                     Some(rule) => one.rule(rule),
                     None => one,
@@ -144,28 +150,6 @@ impl<'t> Uri<'t> {
         }
         found
     }
-}
-
-/// What a URI means that is written in another way, and why: with the index of a replica where there is none, or as other languages write it, with commas between
-/// several, or something else than `/` before the name of a service.
-fn misread(text: &str, scope: usize, fleet: &Fleet<'_>) -> Option<(String, &'static str)> {
-    const LISTED: [char; 3] = [',', ';', '|'];
-    const BEHIND: [char; 6] = ['#', '.', ':', '\\', '>', '-'];
-    if text.contains("${") {
-        let group = pattern(text);
-        let is_known = fleet.group(scope, parts(&group).0).is_some();
-        return is_known.then_some((group, "outside of replicas there is no index; `*` names all replicas"));
-    }
-    if text.contains(LISTED) {
-        let named: Vec<&str> = text.split(LISTED).filter(|name| !name.is_empty()).collect();
-        let is_known = |name: &&str| fleet.find(scope, parts(name).0).is_some();
-        return named.iter().any(is_known).then(|| (named.join(" "), "several stand between blanks"));
-    }
-    let places = text.char_indices().filter(|(_, character)| BEHIND.contains(character));
-    let mut split = places.map(|(at, _)| (&text[..at], text[at..].trim_start_matches(BEHIND)));
-    let (component, behind) =
-        split.find(|(component, behind)| !behind.is_empty() && fleet.find(scope, component).is_some())?;
-    Some((format!("{component}/{behind}"), "the name of a service stands behind `/`"))
 }
 
 /// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with its place.
@@ -235,6 +219,12 @@ pub(super) fn target(
         Offer::Missing => {
             let at = report.part(text, at);
             let message = format!("component {} has no service {}", quoted(&component.name), quoted(name));
+            let behind: Vec<&str> = text.split('/').skip(1).collect();
+            if let Some(promoted) = inside(member, &behind, fleet) {
+                let one = Diagnostic::new(&codes::UNKNOWN_TARGET_SERVICE, at, message);
+                report.push(promoted.told(one, text));
+                return Target::Wrong;
+            }
             let names = fleet.service_names(member, classes).unwrap_or_default();
             let known = ("its services are", names.iter().copied());
             let one = report.unknown(&codes::UNKNOWN_TARGET_SERVICE, at, message, name, known);

@@ -270,8 +270,11 @@ impl<'a> Unfolding<'a> {
     }
 
     fn include(&mut self, include: &'a Include, report: &mut Report<'_>) {
-        let Some(naming) = Naming::of_include(include) else { return };
         let Some(open) = self.open.last() else { return };
+        let Some(naming) = Naming::of_include(include) else {
+            // It names nothing, which is reported.
+            return self.miss(open.unit, "*".to_owned());
+        };
         let (unit, around) = (open.unit, open.composite);
         let Some((place, composite)) = self.find(naming, report) else {
             // Names that lead nowhere may be those of its components.

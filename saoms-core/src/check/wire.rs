@@ -1,5 +1,6 @@
 //! The `<wire>` elements, and the references that they start from.
 
+use super::astray::Astray;
 use super::classes::ClassIndex;
 use super::fleet::{Fleet, Kind};
 use super::offer::{Offer, Side};
@@ -20,18 +21,22 @@ pub(super) struct Wire<'f> {
     pub(super) is_replacing: bool,
 }
 
-/// The `<wire>` elements of all composites by the component they start from.
+/// The `<wire>` elements of all composites by the component they start from, and those that start nowhere.
 pub(super) fn wires<'f>(
     fleet: &'f Fleet<'_>,
     classes: &'f [ClassIndex<'_>],
     room: &Room,
     report: &mut Report<'_>,
-) -> Map<usize, Vec<Wire<'f>>> {
+) -> (Map<usize, Vec<Wire<'f>>>, Astray<'f>) {
     let mut all: Map<usize, Vec<Wire<'f>>> = Map::default();
+    let mut astray = Astray::default();
     for (place, unit) in fleet.units.iter().enumerate() {
         let scope = unit.scope;
         for wire in unit.composites.iter().flat_map(|composite| &composite.wires) {
-            let (Some(source), Some(to)) = (&wire.source, &wire.target) else { continue };
+            let (Some(source), Some(to)) = (&wire.source, &wire.target) else {
+                astray.add(scope, wire.source.as_ref(), fleet);
+                continue;
+            };
             if fleet.is_absent_wire(place, wire) {
                 let _ = (Uri::of(source, 2, (scope, fleet), report), Uri::of(to, 3, (scope, fleet), report));
                 continue;
@@ -58,6 +63,7 @@ pub(super) fn wires<'f>(
             }
             for (one, _) in spread(source, scope, fleet) {
                 let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
+                    astray.add(scope, Some(source), fleet);
                     // Both ends can be wrong. All replicas of a group have the same faults.
                     if let Some((to, _)) = spread(to, scope, fleet).next() {
                         target(&to, (scope, None), None, fleet, classes, report);
@@ -68,7 +74,7 @@ pub(super) fn wires<'f>(
             }
         }
     }
-    all
+    (all, astray)
 }
 
 /// The component and the reference that are the target of a wire, where the source is a service.

@@ -3,8 +3,11 @@
 //! A reference of a component of a class collects its targets from the inside out: those of its own component, and those of
 //! every component around it that a composite's reference promotes it to.
 
+mod unwired;
+
 use std::collections::HashSet;
 
+use super::astray::Astray;
 use super::autowire::Autowire;
 use super::by_name::warm_targets;
 use super::circle::Circles;
@@ -65,10 +68,10 @@ pub(super) fn check(
     report: &mut Report<'_>,
 ) -> Wiring {
     let room = Room::default();
-    let mut wires = wires(fleet, classes, &room, report);
+    let (mut wires, astray) = wires(fleet, classes, &room, report);
     // They are looked up by the names of their references.
     wires.values_mut().for_each(|wires| wires.sort_by_key(|wire| wire.name));
-    let mut all = Wires { fleet, classes, promoted, wires, autowire: Autowire::default(), room };
+    let mut all = Wires { fleet, classes, promoted, wires, astray, autowire: Autowire::default(), room };
     let sources = given::promoted(fleet);
     let mut circles = Circles::default();
     let mut wiring = Wiring { members: Vec::with_capacity(fleet.members.len()), ..Wiring::default() };
@@ -102,6 +105,7 @@ struct Wires<'f, 'a> {
     classes: &'f [ClassIndex<'a>],
     promoted: &'f Promoted<'f>,
     wires: Map<usize, Vec<Wire<'f>>>,
+    astray: Astray<'f>,
     autowire: Autowire<'f>,
     room: Room,
 }
@@ -402,66 +406,6 @@ impl<'f, 'a> Wires<'f, 'a> {
                 .label(first, "the first")
                 .help("keep one of them"),
         );
-    }
-
-    /// A required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of the manual.
-    ///
-    /// Where composites promote it, the outermost component is the one that lacks a target.
-    fn unwired(&self, place: Place<'_>, declared: &ReferenceDeclaration, report: &mut Report<'_>) {
-        let fleet = self.fleet;
-        let mut place = place;
-        let mut is_autowired = false;
-        let mut is_promoted = false;
-        let mut is_required = of_class(declared).is_required();
-        loop {
-            if self.promoted.outermost.contains_key(&place) {
-                return;
-            }
-            is_required |= fleet.given_multiplicity(place).is_some_and(|given| given.value.is_required());
-            let reference = fleet.members[place.0].component.reference(place.1);
-            let is_wired_elsewhere = reference.is_some_and(|reference| {
-                reference.wired_by_impl().is_some_and(|wired| wired.value)
-                    || reference.bindings().iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
-            });
-            if is_wired_elsewhere {
-                return;
-            }
-            is_autowired |= self.is_autowired(place, reference);
-            match self.promoted.to.get(&place).and_then(|outer| outer.first()) {
-                Some(outer) => (place, is_promoted) = (*outer, true),
-                None => break,
-            }
-        }
-        let (member, name) = place;
-        let reference = fleet.members[member].component.reference(name);
-        if !is_required || fleet.lacks_include(fleet.members[member].scope) {
-            return;
-        }
-        let (interface, component) = (&declared.interface.name, &fleet.members[member].component.name);
-        let place = reference.map(|reference| reference.name.location);
-        let message =
-            format!("reference {} of component {} leads to no service", quoted(name), quoted(component));
-        let is_1_1 = fleet.members[member].composite.version.is_1_1();
-        // One that is there and empty is told already.
-        if let Some(empty) = reference.and_then(|one| {
-            let element = one.origin.element(&fleet.members[member].composite.document);
-            element.attribute("target").filter(|_| one.targets.is_empty())
-        }) {
-            report.withdraw(&codes::ATTRIBUTE_VALUE, empty.location());
-        }
-        let help = format!(
-            "give it a target with the interface {}: `<reference name=\"{name}\" target=\"...\"/>`",
-            quoted(interface)
-        );
-        let one = Diagnostic::new(&codes::UNWIRED, place.unwrap_or(component.location), message)
-            .severity(if is_1_1 { Severity::Error } else { Severity::Warning })
-            .help(help);
-        let one = match (is_autowired, is_promoted) {
-            (true, _) => one.rule("ASM60028").help("autowire finds no service with this interface"),
-            (false, true) => one.rule("ASM60033"),
-            (false, false) => one.rule("ASM50040"),
-        };
-        report.push(if is_1_1 { one } else { one.help("calls through it fail") });
     }
 }
 

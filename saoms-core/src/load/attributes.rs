@@ -210,7 +210,8 @@ impl Loader<'_> {
     fn missing(&mut self, element: Element<'_>, name: &str) {
         let location = element.name_location();
         // A misspelt one is reported already, with the right name as suggestion; so is a class that is written inside.
-        let is_inside = name == "class" && element.has_text();
+        let is_child = |child: Element<'_>| is_attribute_as_element(child) && child.local_name() == name;
+        let is_inside = name == "class" && element.has_text() || element.children().any(is_child);
         if is_inside
             || has_near_miss(element, name)
             || self.diagnostics.skip(&codes::MISSING_ATTRIBUTE, Severity::Error, location)
@@ -417,6 +418,20 @@ fn without_expressions(text: &str) -> Cow<'_, str> {
     plain
 }
 
+/// Whether an element is written in place of an attribute of the one around it, as far as that can be told from what stands in it: it is
+/// reported as an element that does not exist.
+pub(super) fn is_attribute_as_element(element: Element<'_>) -> bool {
+    let Some(around) = element.parent() else { return false };
+    // What is in a property may be its value.
+    around.local_name() != "property"
+        && element.namespace() == around.namespace()
+        && element.attributes().next().is_none()
+        && element.children().next().is_none()
+        && element.trimmed_text().is_some_and(|text| !text.value.is_empty())
+        && !vocabulary::is_known(element.local_name())
+        && around.attribute(element.local_name()).is_none()
+}
+
 /// Whether an attribute of the element could be a misspelt `name`.
 fn has_near_miss(element: Element<'_>, name: &str) -> bool {
     let mut own = element.attributes().filter(|attribute| attribute.namespace().is_empty());
@@ -444,7 +459,7 @@ fn is_named_so(element: Element<'_>, attribute: Attribute<'_>) -> bool {
 fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
     match (element.local_name(), known) {
         ("include" | "implementation.composite", "name") => {
-            matches!(written, "file" | "href" | "src" | "ref" | "location" | "composite")
+            matches!(written, "file" | "href" | "src" | "ref" | "location" | "composite" | "class")
         }
         ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
         ("wire", "source") => written == "from",

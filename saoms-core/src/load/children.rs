@@ -3,6 +3,7 @@
 use smol_str::SmolStr;
 
 use super::Loader;
+use super::attributes::is_attribute_as_element;
 use super::vocabulary::{self, Kind, OWN_ELEMENTS};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
@@ -108,6 +109,12 @@ impl Loader<'_> {
         if is_misplaced {
             let message = format!("{} cannot stand in {place}", quoted(element.name()));
             let one = Diagnostic::new(code, location, message);
+            if name == "implementation.composite" && vocabulary::children(parent).any(|one| one == "include")
+            {
+                let edits = renaming(element, element.prefix(), "include");
+                self.report(one.suggest_edits(format!("replace {} with `include`", quoted(name)), edits));
+                return Some("include");
+            }
             self.report(one.help(holds()));
             return None;
         }
@@ -130,6 +137,9 @@ impl Loader<'_> {
         };
         let word = word(name).filter(|meant| known.contains(meant));
         self.report(match word.or(slip) {
+            None if parent.has(name, self.version) && is_attribute_as_element(element) => {
+                as_attribute(one, element)
+            }
             Some(meant) => {
                 let description = format!("replace {} with {}", quoted(name), quoted(meant));
                 one.suggest_edits(description, renaming(element, element.prefix(), meant))
@@ -272,6 +282,20 @@ impl Loader<'_> {
         }
         self.report(one);
     }
+}
+
+/// An element that is to be an attribute of the one around it, with what makes it one.
+fn as_attribute(one: Diagnostic, element: Element<'_>) -> Diagnostic {
+    let (Some(around), Some(text)) = (element.parent(), element.trimmed_text()) else { return one };
+    let document = element.document();
+    let value = &document.text()[text.location.span.start as usize..text.location.span.end as usize];
+    let written = format!("{}=\"{}\"", element.local_name(), value.replace('"', "&quot;"));
+    let place = Span::empty(around.name_span().end).in_file(document.file());
+    let edits = vec![
+        Edit { location: place, replacement: format!(" {written}") },
+        Edit { location: element.span().in_file(document.file()), replacement: String::new() },
+    ];
+    one.suggest_edits(format!("write it as an attribute: {}", quoted(&written)), edits)
 }
 
 /// What text between elements is meant to be: a comment, as other languages write them.

@@ -62,13 +62,13 @@ impl Loader<'_> {
             }
             (Family::Sca, "include") => {
                 let include = self.include(child);
-                if !include.name.is_empty() || include.uri.is_some() {
+                if !include.name.is_empty() || include.uri.is_some() || !child.is_bare() {
                     composite.includes.push(include);
                 }
             }
             (Family::Sca, "wire") => {
                 let wire = self.wire(child);
-                if wire.source.is_some() || wire.target.is_some() {
+                if wire.source.is_some() || wire.target.is_some() || !child.is_bare() {
                     composite.wires.push(wire);
                 }
             }

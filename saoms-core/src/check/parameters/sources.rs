@@ -108,7 +108,9 @@ impl<'a> Parameters<'a> {
             Some(Given::Component(outside, outer)) => {
                 let raw = self.values(outside, outer, report)?.raw;
                 for piece in raw.0.iter().filter(|_| !is_judged) {
-                    if let Piece::Text(text) = piece {
+                    if let Piece::Text(text) = piece
+                        && !report.has_told(&codes::COMPOSITE_VALUE_TYPE, text.location)
+                    {
                         value_type::given(typed, text, report);
                     }
                 }
