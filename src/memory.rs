@@ -7,7 +7,9 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
-use mimalloc::MiMalloc;
+use libmimalloc_sys::{
+    mi_free, mi_malloc, mi_malloc_aligned, mi_realloc, mi_realloc_aligned, mi_zalloc, mi_zalloc_aligned,
+};
 
 /// What is at least so large, in bytes, comes from the system.
 const LARGE: usize = 1 << 20;
@@ -26,7 +28,7 @@ unsafe impl GlobalAlloc for Memory {
         // SAFETY: what the caller promises of the layout.
         unsafe {
             if layout.size() < LARGE {
-                MiMalloc.alloc(layout)
+                Small::alloc(layout)
             } else {
                 huge(System.alloc(layout), layout.size())
             }
@@ -37,7 +39,7 @@ unsafe impl GlobalAlloc for Memory {
         // SAFETY: what the caller promises of the layout.
         unsafe {
             if layout.size() < LARGE {
-                MiMalloc.alloc_zeroed(layout)
+                Small::alloc_zeroed(layout)
             } else {
                 huge(System.alloc_zeroed(layout), layout.size())
             }
@@ -46,13 +48,7 @@ unsafe impl GlobalAlloc for Memory {
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
         // SAFETY: the caller gives the layout that the memory was asked for with, which leads to the allocator that gave it.
-        unsafe {
-            if layout.size() < LARGE {
-                MiMalloc.dealloc(memory, layout)
-            } else {
-                System.dealloc(memory, layout)
-            }
-        }
+        unsafe { if layout.size() < LARGE { Small::dealloc(memory) } else { System.dealloc(memory, layout) } }
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
@@ -60,7 +56,7 @@ unsafe impl GlobalAlloc for Memory {
         // which do not overlap as both are in use.
         unsafe {
             match (layout.size() < LARGE, size < LARGE) {
-                (true, true) => MiMalloc.realloc(memory, layout, size),
+                (true, true) => Small::realloc(memory, layout, size),
                 (false, false) => huge(System.realloc(memory, layout, size), size),
                 _ => {
                     let new = self.alloc(Layout::from_size_align_unchecked(size, layout.align()));
@@ -70,6 +66,49 @@ unsafe impl GlobalAlloc for Memory {
                     }
                     new
                 }
+            }
+        }
+    }
+}
+
+/// mimalloc, asked in its shorter way for what has no more than the alignment that all of its memory has.
+struct Small;
+
+impl Small {
+    /// The alignment that all memory of mimalloc has, in bytes.
+    const ALIGNMENT: usize = 8;
+
+    unsafe fn alloc(layout: Layout) -> *mut u8 {
+        // SAFETY: what the caller promises of the layout.
+        unsafe {
+            match layout.align() <= Self::ALIGNMENT {
+                true => mi_malloc(layout.size()).cast(),
+                false => mi_malloc_aligned(layout.size(), layout.align()).cast(),
+            }
+        }
+    }
+
+    unsafe fn alloc_zeroed(layout: Layout) -> *mut u8 {
+        // SAFETY: what the caller promises of the layout.
+        unsafe {
+            match layout.align() <= Self::ALIGNMENT {
+                true => mi_zalloc(layout.size()).cast(),
+                false => mi_zalloc_aligned(layout.size(), layout.align()).cast(),
+            }
+        }
+    }
+
+    unsafe fn dealloc(memory: *mut u8) {
+        // SAFETY: the caller gives memory that it got from here.
+        unsafe { mi_free(memory.cast()) }
+    }
+
+    unsafe fn realloc(memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: the caller gives memory that it got from here for this layout.
+        unsafe {
+            match layout.align() <= Self::ALIGNMENT {
+                true => mi_realloc(memory.cast(), size).cast(),
+                false => mi_realloc_aligned(memory.cast(), size, layout.align()).cast(),
             }
         }
     }

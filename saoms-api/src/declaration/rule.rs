@@ -218,10 +218,24 @@ fn duration(text: &str) -> Option<Duration> {
 
 /// A whole number; those of ordinary size are read much faster than 128 bits are.
 fn integer(text: &str) -> Option<i128> {
-    match text.parse::<i64>() {
-        Ok(number) => Some(i128::from(number)),
-        Err(_) => text.parse().ok(),
+    /// Whatever these digits are, the number has 64 bits.
+    const FEW: usize = 18;
+    let (is_negative, digits) = match text.as_bytes() {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] | digits => (false, digits),
+    };
+    if digits.is_empty() || digits.len() > FEW {
+        return text.parse().ok();
     }
+    let mut number = 0_i64;
+    for digit in digits {
+        let digit = digit.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        number = number * 10 + i64::from(digit);
+    }
+    Some(i128::from(if is_negative { -number } else { number }))
 }
 
 /// What keeps a text from being a value of the type.
@@ -299,4 +313,45 @@ fn list(allowed: &[&str], formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{before}`{value}`")?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_are_those_of_the_standard_library() {
+        let texts = [
+            "0",
+            "-0",
+            "+0",
+            "7",
+            "-7",
+            "+7",
+            "007",
+            "-",
+            "+",
+            "",
+            "--7",
+            "+-7",
+            "7-",
+            "7.0",
+            "7 ",
+            " 7",
+            "1_000",
+            "٣",
+            "999999999999999999",
+            "-999999999999999999",
+            "9999999999999999999",
+            "9223372036854775808",
+            "170141183460469231731687303715884105727",
+            "170141183460469231731687303715884105728",
+            "0x7",
+            "7\0",
+            "00000000000000000000000000000000000000000000000000000000007",
+        ];
+        for text in texts {
+            assert_eq!(integer(text), text.parse().ok(), "{text}");
+        }
+    }
 }
