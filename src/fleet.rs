@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, Setting, SeveritySetting, Variable, check};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
-use saoms_core::load::{STANDARD_INPUT, load_file, load_named, read, read_from, read_values};
+use saoms_core::load::{Finder, STANDARD_INPUT, load_file, read, read_from, read_values};
 use saoms_core::model::{Composite, Contribution};
 use saoms_core::plugin::{Search, open_named};
 use saoms_core::registry::Registry;
@@ -46,6 +46,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) max_size: u64,
     pub(crate) options: Options,
     pub(crate) search: &'a Search,
+    /// What finds the composites that they name.
+    pub(crate) finder: &'a mut Finder,
 }
 
 /// Loads the files and checks them as one fleet, as it is asked. Folders stand for the fleets that run in them.
@@ -55,11 +57,13 @@ pub(crate) struct Asked<'a> {
 pub(crate) fn checked(arguments: &FleetArguments, asked: Options) -> Result<Checked, Exit> {
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
-    let files = folder::one_fleet(&arguments.files, arguments.max_size, &mut sources, &mut diagnostics);
+    let (paths, max_size) = (&arguments.files, arguments.max_size);
+    let mut finder = Finder::new(sources.open().clone());
+    let files = folder::one_fleet(paths, max_size, &mut finder, &mut sources, &mut diagnostics);
     let options = options(arguments, asked, &mut sources, &mut diagnostics);
     let registry = registry(&arguments.plugins, &files)?;
     let search = search(&arguments.plugins, &files);
-    let asked = Asked { files: &files, max_size: arguments.max_size, options, search: &search };
+    let asked = Asked { files: &files, max_size, options, search: &search, finder: &mut finder };
     Ok(checked_with(check, asked, registry, sources, diagnostics))
 }
 
@@ -100,7 +104,7 @@ pub(crate) fn checked_with<T>(
     mut sources: Sources,
     mut diagnostics: Diagnostics,
 ) -> Checked<T> {
-    let Asked { files, max_size, options, search } = asked;
+    let Asked { files, max_size, options, search, finder } = asked;
     let mut composites = Vec::new();
     for path in files {
         let file = read_or_input(path, max_size, &mut sources, &mut diagnostics);
@@ -111,7 +115,7 @@ pub(crate) fn checked_with<T>(
         composites.push(composite);
     }
     let mut contribution = Contribution::of(composites);
-    load_named(&mut contribution, max_size, &mut sources, &mut diagnostics);
+    finder.load_named(&mut contribution, max_size, &mut sources, &mut diagnostics);
     open_named(&mut contribution, search, &sources, &mut registry);
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);

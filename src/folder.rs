@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use saoms_core::check::Options;
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
-use saoms_core::load::{FolderFleet, load_folder};
+use saoms_core::load::{Finder, FolderFleet};
 use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
 use saoms_core::source::{Sources, Span};
@@ -23,6 +23,7 @@ const OFFERED: usize = 5;
 pub(crate) fn one_fleet(
     paths: &[PathBuf],
     max_size: u64,
+    finder: &mut Finder,
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Vec<PathBuf> {
@@ -32,7 +33,7 @@ pub(crate) fn one_fleet(
             files.push(path.clone());
             continue;
         }
-        let mut fleets = load_folder(path, max_size, sources, diagnostics);
+        let mut fleets = finder.load_folder(path, max_size, sources, diagnostics);
         if fleets.iter().any(|one| one.is_deployable) {
             fleets.retain(|one| one.is_deployable);
         }
@@ -89,12 +90,13 @@ pub(crate) fn checked_each<T>(
     let mut diagnostics = Diagnostics::new();
     let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) =
         arguments.files.iter().cloned().partition(|path| path.is_dir());
+    let mut finder = Finder::new(sources.open().clone());
     let mut fleets = Vec::new();
     if !files.is_empty() {
         fleets.push(FolderFleet { files, is_deployable: true, is_exported: false });
     }
     for folder in &folders {
-        fleets.extend(load_folder(folder, arguments.max_size, &mut sources, &mut diagnostics));
+        fleets.extend(finder.load_folder(folder, arguments.max_size, &mut sources, &mut diagnostics));
     }
     let options = options(arguments, asked, &mut sources, &mut diagnostics);
     let options = Options { shared_settings: fleets.len() > 1, ..options };
@@ -114,7 +116,13 @@ pub(crate) fn checked_each<T>(
         };
         let search = search(&arguments.plugins, &files);
         let (options, registry) = (options.clone(), registry.clone());
-        let asked = Asked { files: &files, max_size: arguments.max_size, options, search: &search };
+        let asked = Asked {
+            files: &files,
+            max_size: arguments.max_size,
+            options,
+            search: &search,
+            finder: &mut finder,
+        };
         let found = checked_with(check, asked, registry, sources, Diagnostics::new());
         sources = found.sources;
         // What is made for others alone may lack what these give it, also where nothing else is in the folder.

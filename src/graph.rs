@@ -7,7 +7,7 @@ use std::path::Path;
 use saoms_core::check::{Census, Options, Variable};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human};
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
-use saoms_core::load::{load_file, load_named, read_values};
+use saoms_core::load::{Finder, load_file, read_values};
 use saoms_core::model::Contribution;
 use saoms_core::plugin::open_named;
 use saoms_core::source::Sources;
@@ -38,7 +38,8 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let fleet = &arguments.fleet;
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let mut composites = Vec::new();
-    let files = one_fleet(&fleet.files, fleet.max_size, &mut sources, &mut diagnostics);
+    let mut finder = Finder::new(sources.open().clone());
+    let files = one_fleet(&fleet.files, fleet.max_size, &mut finder, &mut sources, &mut diagnostics);
     for path in &files {
         let file = read_or_input(path, fleet.max_size, &mut sources, &mut diagnostics);
         let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
@@ -48,7 +49,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         composites.push(composite);
     }
     let mut contribution = Contribution::of(composites);
-    load_named(&mut contribution, fleet.max_size, &mut sources, &mut diagnostics);
+    finder.load_named(&mut contribution, fleet.max_size, &mut sources, &mut diagnostics);
     let asked = options(fleet, Options::default(), &mut sources, &mut diagnostics);
     let variables =
         Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use saoms_core::check::{Options, count};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, codes};
-use saoms_core::load::{MAX_SIZE, load_folder};
+use saoms_core::load::{Finder, MAX_SIZE};
 use saoms_core::registry::Registry;
 use saoms_core::source::{OpenTexts, Sources, identity};
 
@@ -93,20 +93,21 @@ impl Checker {
         }
         let mut files: BTreeMap<PathBuf, Vec<Reported>> = BTreeMap::new();
         let (mut checked, mut seen) = (HashSet::new(), HashSet::new());
+        let mut finder = Finder::new(job.open.clone());
         for path in &job.paths {
             let (fleets, sort) = self.fleets(path);
             if sort == Sort::Description {
-                contribution(path, &job, &mut files);
+                contribution(path, &job, &mut finder, &mut files);
             }
             for (fleet, may_be_part) in fleets {
                 if checked.insert(fleet.clone()) {
-                    self.one(&fleet, may_be_part, &job, &mut files, &mut seen)?;
+                    self.one(&fleet, may_be_part, &job, &mut finder, &mut files, &mut seen)?;
                 }
             }
             // A fleet that is broken does not lead here.
             let alone = vec![path.clone()];
             if sort == Sort::Composite && !seen.contains(path) && checked.insert(alone.clone()) {
-                self.one(&alone, false, &job, &mut files, &mut seen)?;
+                self.one(&alone, false, &job, &mut finder, &mut files, &mut seen)?;
             }
         }
         (self.newest.load(Ordering::Relaxed) == job.generation)
@@ -136,6 +137,7 @@ impl Checker {
         fleet: &[PathBuf],
         may_be_part: bool,
         job: &Job,
+        finder: &mut Finder,
         files: &mut BTreeMap<PathBuf, Vec<Reported>>,
         seen: &mut HashSet<PathBuf>,
     ) -> Option<()> {
@@ -149,7 +151,7 @@ impl Checker {
         let registry = Registry::clone(&self.registries.of(root, &[]));
         let search = self.registries.search(root);
         let sources = Sources::with_open(job.open.clone());
-        let asked = Asked { files: fleet, max_size: MAX_SIZE, options, search: &search };
+        let asked = Asked { files: fleet, max_size: MAX_SIZE, options, search: &search, finder };
         let found = checked_with(count, asked, registry, sources, Diagnostics::new());
         for (_, file) in found.sources.iter() {
             seen.insert(identity(Path::new(file.path())));
@@ -161,11 +163,16 @@ impl Checker {
 }
 
 /// What is wrong with the description of a contribution, and with the names of the composites there.
-fn contribution(description: &Path, job: &Job, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
+fn contribution(
+    description: &Path,
+    job: &Job,
+    finder: &mut Finder,
+    files: &mut BTreeMap<PathBuf, Vec<Reported>>,
+) {
     let folder = description.parent().unwrap_or(Path::new(""));
     let inner = folder.ends_with("META-INF").then(|| folder.parent()).flatten();
     let (mut sources, mut found) = (Sources::with_open(job.open.clone()), Diagnostics::new());
-    load_folder(inner.unwrap_or(folder), MAX_SIZE, &mut sources, &mut found);
+    finder.load_folder(inner.unwrap_or(folder), MAX_SIZE, &mut sources, &mut found);
     let told: Vec<_> =
         found.into_all().into_iter().filter(|one| one.code != &codes::FILE_IS_DIRECTORY).collect();
     add(&told, &sources, files);

@@ -5,16 +5,12 @@ use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::ops::Range;
 
 use super::fleet::Member;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest, quoted};
+use crate::diagnostic::{
+    Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest, quoted,
+};
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
 use crate::xml::Writing;
-
-/// How many right names are looked at for all wrong ones together: in a large file full of wrong names every search goes
-/// through all right ones.
-pub(super) const CANDIDATES: usize = 1_000_000;
-/// Lists that are not longer are searched in any case.
-pub(super) const FEW: usize = 100;
 
 /// How many diagnostics are taken back.
 const WITHDRAWALS: usize = 1000;
@@ -23,7 +19,8 @@ const WITHDRAWALS: usize = 1000;
 pub(super) struct Report<'a> {
     sources: &'a Sources,
     diagnostics: &'a mut Diagnostics,
-    candidates: usize,
+    /// How many right names are still looked at for wrong ones.
+    candidates: Candidates,
     /// How many may still be taken back.
     withdrawals: usize,
     /// Whether what is not known is taken as given.
@@ -71,7 +68,7 @@ impl<'a> Report<'a> {
         Self {
             sources,
             diagnostics,
-            candidates: CANDIDATES,
+            candidates: Candidates::default(),
             withdrawals: WITHDRAWALS,
             assumes: false,
             tells_echoes: false,
@@ -279,13 +276,9 @@ impl<'a> Report<'a> {
         if self.copy.is_none() && self.diagnostics.is_full(code, at.file) {
             return one;
         }
-        let count = candidates.clone().into_iter().take(self.candidates.max(FEW) + 1).count();
-        if count > FEW {
-            let left = self.candidates.checked_sub(count);
-            self.candidates = left.unwrap_or(0);
-            if left.is_none() {
-                return one;
-            }
+        let count = candidates.clone().into_iter().take(self.candidates.telling()).count();
+        if !self.candidates.admit(count) {
+            return one;
         }
         match nearest(name, candidates.clone()) {
             Some(meant) => one.suggest(replacing(name, meant), at, escaped(meant)),

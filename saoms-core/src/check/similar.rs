@@ -1,11 +1,10 @@
 //! The topic that is probably meant by the name of another one: of the same messages, with nearly its name.
 
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::collections::HashMap;
 
-use super::report::{CANDIDATES, FEW};
 use crate::assembly::{Topic, Traffic};
-use crate::diagnostic::nearest;
+use crate::diagnostic::{Candidates, nearest};
 
 /// The topics of a fleet, to be found by what they are like.
 pub(super) struct Similar<'t> {
@@ -13,7 +12,7 @@ pub(super) struct Similar<'t> {
     groups: HashMap<(&'static str, &'t str), Vec<Known<'t>>>,
     /// How many more names are looked at for all topics together: in a fleet in which each robot has topics of its own every search
     /// goes through those of all others.
-    left: Cell<usize>,
+    candidates: RefCell<Candidates>,
 }
 
 /// A topic with what is asked of it.
@@ -31,14 +30,14 @@ impl<'t> Similar<'t> {
             let known = Known { topic, is_renamed: is_renamed(topic), name: Name::of(&topic.name) };
             groups.entry(key(topic)).or_default().push(known);
         }
-        Self { groups, left: Cell::new(CANDIDATES) }
+        Self { groups, candidates: RefCell::default() }
     }
 
     /// The topic with the most similar name among those that fit.
     pub(super) fn nearest(&self, topic: &Topic, fits: impl Fn(&Known<'t>) -> bool) -> Option<&'t Topic> {
         let group = self.groups.get(&key(topic))?;
-        if group.len() > FEW {
-            self.left.set(self.left.get().checked_sub(group.len())?);
+        if !self.candidates.borrow_mut().admit(group.len()) {
+            return None;
         }
         let fitting = group.iter().filter(|other| other.topic.name != topic.name && fits(other));
         let name = nearest(&topic.name, fitting.map(|other| other.topic.name.as_str()))?;

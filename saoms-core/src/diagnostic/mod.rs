@@ -5,6 +5,7 @@
 //! [`Diagnostics`] collects them.
 
 mod alike;
+mod candidates;
 pub mod codes;
 mod collector;
 mod human;
@@ -16,6 +17,7 @@ mod sarif;
 mod tests;
 mod window;
 
+pub(crate) use candidates::Candidates;
 pub use codes::Code;
 pub use collector::Diagnostics;
 pub use human::human;

@@ -7,6 +7,7 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 
 use super::shelf::Shelf;
@@ -28,7 +29,9 @@ const WSDL: [&str; 2] = ["http://schemas.xmlsoap.org/wsdl/", "http://www.w3.org/
 #[derive(Default)]
 pub(super) struct Declared {
     /// By the folder of the composite.
-    known: HashMap<PathBuf, Names>,
+    known: HashMap<PathBuf, Rc<Names>>,
+    /// By the files that declare them: those of a contribution are the same for all its folders.
+    of_files: HashMap<Rc<[PathBuf]>, Rc<Names>>,
 }
 
 /// Names by what they are of and their namespace.
@@ -51,8 +54,11 @@ impl Declared {
         if composite.outside.is_empty() {
             return;
         }
-        let known = self.known.entry(folder.to_owned());
-        let names = known.or_insert_with(|| Names::of(&shelf.declaring(folder), open).unwrap_or_default());
+        let names = self.known.entry(folder.to_owned()).or_insert_with(|| {
+            let names = self.of_files.entry(shelf.declaring(folder));
+            let made = names.or_insert_with_key(|files| Rc::new(Names::of(files, open).unwrap_or_default()));
+            Rc::clone(made)
+        });
         for one in composite.outside.iter().filter(|_| !names.all.is_empty()) {
             let Some((namespace, kind, local)) = meant(one, composite) else { continue };
             let key = (kind, namespace);

@@ -14,7 +14,7 @@ use crate::source::{Sources, Text};
 use crate::xml::{self, Element};
 
 /// What is imported and exported.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     /// Definitions of a namespace, as composites.
     Namespace,

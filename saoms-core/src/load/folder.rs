@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::description::{Deployable, Description};
+use super::finder::Finder;
 use super::shelf::{DEPLOYABLES, Shelf, describes};
 use super::{load_file, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
@@ -24,45 +25,57 @@ pub struct FolderFleet {
 /// Looks at a folder as a contribution, and at those in folders below it: the fleets in it. What `sca-contribution.xml` calls `deployable` is one fleet,
 /// and every other composite that no composite there names is one of its own.
 ///
-/// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share a name. What is wrong with
-/// the composites themselves is found when they are loaded as fleets.
+/// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share a name; and that there are no
+/// composites, or more files than are looked at. What is wrong with the composites themselves is found when they are loaded as fleets.
 pub fn load_folder(
     folder: &Path,
     max_size: u64,
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Vec<FolderFleet> {
-    let mut shelf = Shelf::new(sources.open().clone());
-    let mut fleets = Vec::new();
-    let mut waiting = vec![folder.to_owned()];
-    while let Some(root) = waiting.pop() {
-        let (files, mut inner) = shelf.contribution(&root);
-        inner.reverse();
-        waiting.extend(inner);
-        let description = Description::of(&root, max_size, sources, diagnostics);
-        let contribution = Files::read(files, max_size, sources);
-        contribution.repeated(describes(&root), max_size, sources, diagnostics);
-        let deployables = description.iter().flat_map(|description| &description.deployables);
-        let mut deployed: Vec<Option<PathBuf>> =
-            deployables.map(|one| contribution.find(one, &mut shelf, &root, diagnostics)).collect();
-        let inside = root.join(DEPLOYABLES);
-        deployed
-            .extend(contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some));
-        contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
+    Finder::new(sources.open().clone()).load_folder(folder, max_size, sources, diagnostics)
+}
+
+impl Finder {
+    /// Does what [`load_folder`] does.
+    pub fn load_folder(
+        &mut self,
+        folder: &Path,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Vec<FolderFleet> {
+        let shelf = &mut self.shelf;
+        shelf.turn_to_folder();
+        let mut fleets = Vec::new();
+        let mut waiting = vec![folder.to_owned()];
+        while let Some(root) = waiting.pop() {
+            let (files, mut inner) = shelf.contribution(&root);
+            inner.reverse();
+            waiting.extend(inner);
+            let description = Description::of(&root, max_size, sources, diagnostics);
+            let contribution = Files::read(files, max_size, sources);
+            contribution.repeated(describes(&root), max_size, sources, diagnostics);
+            let deployables = description.iter().flat_map(|description| &description.deployables);
+            let mut deployed: Vec<Option<PathBuf>> =
+                deployables.map(|one| contribution.find(one, shelf, &root, diagnostics)).collect();
+            let inside = root.join(DEPLOYABLES);
+            deployed.extend(
+                contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some),
+            );
+            contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
+        }
+        let is_empty = fleets.is_empty() && !diagnostics.has_errors();
+        unlisted(folder, is_empty, shelf, sources, diagnostics);
+        fleets
     }
-    if fleets.is_empty() && !diagnostics.has_errors() {
-        let file = sources.add(folder.display().to_string(), "");
-        let message = "a directory without composites";
-        let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);
-        diagnostics.push(one.help("the names of composites end with `.composite`"));
-    }
-    fleets
 }
 
 /// The composites in a folder and in those below it, other contributions among them, in the order of their paths; hidden folders and what tools made
 /// are passed over. Reported is that there are none, or more files than are looked at.
 pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Vec<PathBuf> {
     let mut shelf = Shelf::new(sources.open().clone());
+    shelf.turn_to_folder();
     let (mut all, mut waiting) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(root) = waiting.pop() {
         let (files, inner) = shelf.contribution(&root);
@@ -70,8 +83,20 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
         waiting.extend(inner);
     }
     all.sort_unstable();
-    let (message, help) = match (shelf.is_complete(), all.is_empty()) {
-        (true, false) => return all,
+    unlisted(folder, all.is_empty(), &shelf, sources, diagnostics);
+    all
+}
+
+/// Reports a folder that has no composites, or too many files to look at all of them.
+fn unlisted(
+    folder: &Path,
+    is_empty: bool,
+    shelf: &Shelf,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) {
+    let (message, help) = match (shelf.is_complete(), is_empty) {
+        (true, false) => return,
         (true, true) => ("a directory without composites", "the names of composites end with `.composite`"),
         (false, _) => {
             ("a directory with too many files in it and below", "name the directories in it one by one")
@@ -80,7 +105,6 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
     let file = sources.add(folder.display().to_string(), "");
     let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);
     diagnostics.push(one.help(help));
-    all
 }
 
 /// The composites of one contribution.

@@ -3,27 +3,54 @@
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use super::MAX_SIZE;
 use super::description::{self, Description, Kind};
 use super::shelf::{self, Shelf};
-use crate::diagnostic::{Diagnostics, quoted};
+use crate::diagnostic::{Candidates, Diagnostics, quoted};
 use crate::source::{OpenTexts, Sources, identity};
 
 /// Folders beside a contribution in which those that it imports from are looked for.
 const MOST_BESIDE: usize = 1_000;
 
 /// The descriptions of contributions, each read once and when it is needed.
+#[derive(Default)]
 pub(super) struct Imports {
-    /// The folders of the contributions that are given together.
-    given: Vec<PathBuf>,
+    /// The contributions that are given together.
+    given: Vec<Neighbour>,
+    /// Those that are in the folders around contributions.
+    beside: HashMap<PathBuf, Rc<[Neighbour]>>,
     descriptions: HashMap<PathBuf, Option<Description>>,
+    /// Those from which one imports something, as long as the same ones are given.
+    exporters: HashMap<(PathBuf, Kind, String), Rc<[PathBuf]>>,
     max_size: u64,
 }
 
+/// A contribution that others may import from.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Neighbour {
+    folder: PathBuf,
+    identity: PathBuf,
+}
+
+impl Neighbour {
+    fn of(folder: PathBuf) -> Self {
+        Self { identity: identity(&folder), folder }
+    }
+}
+
 impl Imports {
-    pub(super) fn new(given: Vec<PathBuf>, max_size: u64) -> Self {
-        Self { given, descriptions: HashMap::new(), max_size }
+    /// For a fleet whose composites are in these contributions. What was read is kept.
+    pub(super) fn turn_to_fleet(&mut self, given: impl Iterator<Item = PathBuf>, max_size: u64) {
+        let mut seen = HashSet::new();
+        let given = given.filter(|folder| seen.insert(folder.clone())).map(Neighbour::of);
+        let given: Vec<Neighbour> = given.collect();
+        self.max_size = max_size;
+        if self.given != given {
+            self.given = given;
+            self.exporters.clear();
+        }
     }
 
     /// The folders of the contributions from which that in `root` imports this: exporters that are given together with it, that are in the
@@ -35,15 +62,21 @@ impl Imports {
         what: &str,
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
-    ) -> Vec<PathBuf> {
+    ) -> Rc<[PathBuf]> {
         if !self.imports(root, kind, what, sources, diagnostics) {
-            return Vec::new();
+            return Rc::default();
+        }
+        let key = (root.to_owned(), kind, what.to_owned());
+        if let Some(known) = self.exporters.get(&key) {
+            return Rc::clone(known);
         }
         let mut all = self.others(root, kind, what);
         all.retain(|other| {
             let description = self.description(other, sources, diagnostics);
             description.is_some_and(|one| one.exports.iter().any(|entry| entry.is(kind, what)))
         });
+        let all: Rc<[PathBuf]> = all.into();
+        self.exporters.insert(key, Rc::clone(&all));
         all
     }
 
@@ -78,7 +111,7 @@ impl Imports {
     /// Why a composite of these namespaces cannot be found through the description of the contribution in `root`; nothing where it has none.
     pub(super) fn hints(
         &mut self,
-        shelf: &mut Shelf,
+        (shelf, candidates): (&mut Shelf, &mut Candidates),
         root: &Path,
         namespaces: Option<&[String]>,
         local: &str,
@@ -92,7 +125,11 @@ impl Imports {
             let is_imported = self.imports(root, Kind::Namespace, namespace, sources, diagnostics);
             let shown = quoted(namespace);
             let from = self.exporters(root, Kind::Namespace, namespace, sources, diagnostics);
-            let holder = self.others(root, Kind::Namespace, namespace).into_iter().find(|other| {
+            let mut others = self.others(root, Kind::Namespace, namespace);
+            if !candidates.admit(others.len()) {
+                others.clear();
+            }
+            let holder = others.into_iter().find(|other| {
                 let is_known = self.description(other, sources, diagnostics).is_some();
                 is_known && shelf.find(other, Some(std::slice::from_ref(namespace)), local).is_some()
             });
@@ -127,16 +164,16 @@ impl Imports {
     }
 
     /// The contributions that that in `root` may import this from, the likeliest first.
-    fn others(&self, root: &Path, kind: Kind, what: &str) -> Vec<PathBuf> {
+    fn others(&mut self, root: &Path, kind: Kind, what: &str) -> Vec<PathBuf> {
         let own = self.descriptions.get(root).and_then(Option::as_ref);
         let entries = own.iter().flat_map(|one| &one.imports).filter(|entry| entry.is(kind, what));
-        let mut all: Vec<PathBuf> =
-            entries.filter_map(|entry| Some(root.join(entry.location.as_ref()?))).collect();
-        all.extend(self.given.iter().cloned());
-        all.extend(beside(root));
-        let mut seen = HashSet::from([identity(root)]);
-        all.retain(|other| seen.insert(identity(other)));
-        all
+        let located: Vec<Neighbour> =
+            entries.filter_map(|entry| Some(Neighbour::of(root.join(entry.location.as_ref()?)))).collect();
+        let beside = self.beside.entry(root.to_owned()).or_insert_with_key(|root| beside(root));
+        let own = identity(root);
+        let mut seen = HashSet::from([own.as_path()]);
+        let all = located.iter().chain(&self.given).chain(beside.iter());
+        all.filter(|other| seen.insert(&other.identity)).map(|other| other.folder.clone()).collect()
     }
 
     fn description(
@@ -157,7 +194,7 @@ impl Imports {
 /// The files of the composites that the contribution of `folder` imports from others, which export them. What is wrong with their descriptions is not told.
 pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
-    let mut imports = Imports::new(Vec::new(), MAX_SIZE);
+    let mut imports = Imports { max_size: MAX_SIZE, ..Imports::default() };
     let root = shelf::root(folder);
     let description = imports.description(&root, &mut sources, &mut diagnostics);
     let entries = description.into_iter().flat_map(|one| &one.imports);
@@ -165,8 +202,9 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let mut shelf = Shelf::new(open.clone());
     let mut all = Vec::new();
     for namespace in namespaces {
-        for other in imports.exporters(&root, Kind::Namespace, &namespace, &mut sources, &mut diagnostics) {
-            let composites = shelf.contribution(&other).0.into_iter();
+        let from = imports.exporters(&root, Kind::Namespace, &namespace, &mut sources, &mut diagnostics);
+        for other in from.iter() {
+            let composites = shelf.contribution(other).0.into_iter();
             all.extend(composites.filter(|path| shelf.is_of(path, &namespace)));
         }
     }
@@ -174,7 +212,7 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
 }
 
 /// The folders of contributions in the folder that a contribution is in.
-fn beside(root: &Path) -> Vec<PathBuf> {
+fn beside(root: &Path) -> Rc<[Neighbour]> {
     // `..`, and nothing for the folder that we are in, have no parent that they name.
     let around = match (root.file_name(), root.parent()) {
         (Some(_), Some(around)) => around.to_owned(),
@@ -185,5 +223,5 @@ fn beside(root: &Path) -> Vec<PathBuf> {
     let mut all: Vec<PathBuf> = entries.map(|entry| around.join(entry.file_name())).collect();
     all.retain(|folder| description::path_in(folder).is_some());
     all.sort_unstable();
-    all
+    all.into_iter().map(Neighbour::of).collect()
 }

@@ -14,6 +14,7 @@ mod declared;
 mod description;
 mod encoding;
 mod extension;
+mod finder;
 mod folder;
 mod head;
 mod imports;
@@ -39,6 +40,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use component_type::load_component_type;
+pub use finder::Finder;
 pub use folder::{FolderFleet, composites_below, load_folder};
 pub use imports::imported_near;
 pub use named::load_named;

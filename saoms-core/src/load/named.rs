@@ -3,11 +3,9 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::declared::Declared;
 use super::description::Kind;
-use super::imports::Imports;
+use super::finder::Finder;
 use super::read::STANDARD_INPUT;
-use super::shelf::Shelf;
 use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
 use crate::hash::Set;
@@ -27,136 +25,168 @@ const OFFERED: usize = 3;
 /// the import has as its `location`. No file is opened that is not needed, and a large folder is given up after some ten thousand entries.
 /// Texts that were not read from files are not looked at, but for [`STANDARD_INPUT`].
 ///
-/// What is wrong with a file that is found is reported; that one is not found is for the checker to say.
+/// What is wrong with a file that is found is reported; that one is not found is for the checker to say. A [`Finder`] does it for several
+/// contributions that are in the same folders.
 pub fn load_named(
     contribution: &mut Contribution,
     max_size: u64,
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) {
-    let mut shelf = Shelf::new(sources.open().clone());
-    // By their paths, so that one file is one composite; `None` for one that could not be read.
-    let mut known: HashMap<PathBuf, Option<usize>> = HashMap::new();
-    for (place, composite) in contribution.composites().iter().enumerate() {
-        known.insert(identity(Path::new(sources.get(composite.file()).path())), Some(place));
-    }
-    let given = contribution.composites().iter();
-    let given = given.filter_map(|one| Path::new(sources.get(one.file()).path()).parent());
-    let given: Vec<PathBuf> = given.map(|folder| shelf.root(folder)).collect();
-    let mut imports = Imports::new(given, max_size);
-    let (mut folders, mut side_files, mut types) =
-        (HashMap::<PathBuf, bool>::new(), HashMap::new(), HashMap::new());
-    let mut declared = Declared::default();
-    let mut warned = HashSet::new();
-    let mut place = 0;
-    while let Some(composite) = contribution.composites().get(place) {
-        let at = place;
-        place += 1;
-        let path = PathBuf::from(sources.get(composite.file()).path());
-        let is_open =
-            |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
-        let open = composite.namings().filter(is_open);
-        let wanted: Vec<Wanted> = open
-            .map(|naming| {
-                let (namespaces, local) = composite.resolve_name(naming);
-                let prefix = naming.name.as_str().strip_suffix(local).unwrap_or_default();
-                Wanted {
-                    origin: naming.origin,
-                    at: naming.name.location,
-                    prefix: prefix.to_owned(),
-                    namespaces,
-                    local: local.to_owned(),
-                }
-            })
-            .collect();
-        let described = described(composite);
-        if wanted.is_empty() && described.is_empty() && composite.outside.is_empty()
-            || !(path.is_file() || sources.open().get(&path).is_some() || path == Path::new(STANDARD_INPUT))
-        {
-            continue;
+    Finder::new(sources.open().clone()).load_named(contribution, max_size, sources, diagnostics);
+}
+
+impl Finder {
+    /// Does what [`load_named`] does. What is wrong with the description of a contribution is reported once.
+    pub fn load_named(
+        &mut self,
+        contribution: &mut Contribution,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) {
+        self.shelf.turn_to_fleet();
+        // By their paths, so that one file is one composite; `None` for one that could not be read.
+        let mut known: HashMap<PathBuf, Option<usize>> = HashMap::new();
+        for (place, composite) in contribution.composites().iter().enumerate() {
+            known.insert(identity(Path::new(sources.get(composite.file()).path())), Some(place));
         }
-        let folder = path.parent().unwrap_or(Path::new(""));
-        declared.check(composite, folder, (&mut shelf, sources.open()), diagnostics);
-        let root = shelf.root(folder);
-        let mut files = HashMap::new();
-        for Described { written, paths, package, is_needed } in described {
-            // By its path in the contribution, or beside the composite under its last name.
-            let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
-            let mut is_there = |path: &PathBuf| {
-                let folder = path.parent().unwrap_or(Path::new(""));
-                let known = match folders.get(folder) {
-                    Some(known) => *known,
-                    None => {
-                        *folders.entry(folder.to_owned()).or_insert_with(|| component_type::any_in(folder))
+        let given = contribution.composites().iter();
+        let given = given.filter_map(|one| Path::new(sources.get(one.file()).path()).parent());
+        let given = given.map(|folder| self.shelf.root(folder));
+        self.imports.turn_to_fleet(given, max_size);
+        let mut types = HashMap::new();
+        let mut warned = HashSet::new();
+        let mut place = 0;
+        while let Some(composite) = contribution.composites().get(place) {
+            let at = place;
+            place += 1;
+            let path = PathBuf::from(sources.get(composite.file()).path());
+            let is_open =
+                |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
+            let open = composite.namings().filter(is_open);
+            let wanted: Vec<Wanted> = open
+                .map(|naming| {
+                    let (namespaces, local) = composite.resolve_name(naming);
+                    let prefix = naming.name.as_str().strip_suffix(local).unwrap_or_default();
+                    Wanted {
+                        origin: naming.origin,
+                        at: naming.name.location,
+                        prefix: prefix.to_owned(),
+                        namespaces,
+                        local: local.to_owned(),
+                    }
+                })
+                .collect();
+            let described = described(composite);
+            if wanted.is_empty() && described.is_empty() && composite.outside.is_empty()
+                || !(path.is_file()
+                    || sources.open().get(&path).is_some()
+                    || path == Path::new(STANDARD_INPUT))
+            {
+                continue;
+            }
+            let folder = path.parent().unwrap_or(Path::new(""));
+            self.declared.check(composite, folder, (&mut self.shelf, sources.open()), diagnostics);
+            let root = self.shelf.root(folder);
+            let mut files = HashMap::new();
+            for Described { written, paths, package, is_needed } in described {
+                // By its path in the contribution, or beside the composite under its last name.
+                let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
+                let mut all = paths.iter().map(|path| root.join(path)).chain(beside);
+                let mut found = all.find(|path| self.has_component_type(path));
+                if let (None, Some(package)) = (&found, &package) {
+                    let from = self.imports.exporters(&root, Kind::Java, package, sources, diagnostics);
+                    let mut all = from.iter().flat_map(|root| paths.iter().map(|path| root.join(path)));
+                    found = all.find(|path| self.has_component_type(path));
+                }
+                let place = found.map(|found| {
+                    *types.entry(found).or_insert_with_key(|path| {
+                        let file = read(path, max_size, sources, diagnostics)?;
+                        let made = load_component_type(file, sources, diagnostics)?;
+                        Some(contribution.add_component_type(made))
+                    })
+                });
+                // Of a file that could not be read nothing more is said.
+                match place {
+                    Some(Some(place)) => _ = files.insert(written, Some(place)),
+                    None if is_needed => _ = files.insert(written, None),
+                    _ => {}
+                }
+            }
+            if !files.is_empty() {
+                let composite = &contribution.composites()[at];
+                let all = composite.components.iter().filter_map(|component| {
+                    let (origin, written) = implementation(component, composite)?;
+                    Some((origin, *files.get(written)?))
+                });
+                let all: Vec<(Origin, Option<usize>)> = all.collect();
+                all.into_iter().for_each(|(origin, place)| contribution.describe(origin, place));
+            }
+            for wanted in wanted {
+                let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
+                let own = self.shelf.find(folder, namespaces, local);
+                if let Some(found) = &own {
+                    self.shelf.adopt(folder, found);
+                }
+                let found = own.or_else(|| {
+                    self.imports.find(&mut self.shelf, &root, namespaces, local, sources, diagnostics)
+                });
+                let link = match found {
+                    None => Link::Missing(self.missing(folder, &root, &wanted, sources, diagnostics)),
+                    Some(found) => {
+                        if warned.insert(found.clone()) {
+                            let twins = self.shelf.twins(&found);
+                            ambiguous(&wanted, &found, &twins)
+                                .into_iter()
+                                .for_each(|one| diagnostics.push(one));
+                        }
+                        let place = known.entry(identity(&found)).or_insert_with(|| {
+                            let file = read(&found, max_size, sources, diagnostics)?;
+                            let mut composite = load_file(file, sources, diagnostics)?;
+                            read_values(&mut composite, max_size, sources, diagnostics);
+                            Some(contribution.add(composite))
+                        });
+                        place.map_or(Link::Faulty, Link::To)
                     }
                 };
-                known && *side_files.entry(path.clone()).or_insert_with(|| path.is_file())
-            };
-            let mut found = paths.iter().map(|path| root.join(path)).chain(beside).find(&mut is_there);
-            if let (None, Some(package)) = (&found, &package) {
-                let from = imports.exporters(&root, Kind::Java, package, sources, diagnostics);
-                found = from.iter().flat_map(|root| paths.iter().map(|path| root.join(path))).find(is_there);
-            }
-            let place = found.map(|found| {
-                *types.entry(found).or_insert_with_key(|path| {
-                    let file = read(path, max_size, sources, diagnostics)?;
-                    let made = load_component_type(file, sources, diagnostics)?;
-                    Some(contribution.add_component_type(made))
-                })
-            });
-            // Of a file that could not be read nothing more is said.
-            match place {
-                Some(Some(place)) => _ = files.insert(written, Some(place)),
-                None if is_needed => _ = files.insert(written, None),
-                _ => {}
+                contribution.set_link(wanted.origin, link);
             }
         }
-        if !files.is_empty() {
-            let composite = &contribution.composites()[at];
-            let all = composite.components.iter().filter_map(|component| {
-                let (origin, written) = implementation(component, composite)?;
-                Some((origin, *files.get(written)?))
-            });
-            let all: Vec<(Origin, Option<usize>)> = all.collect();
-            all.into_iter().for_each(|(origin, place)| contribution.describe(origin, place));
+    }
+
+    /// What is known of a composite that a file in `folder`, of the contribution in `root`, names and that is not found.
+    fn missing(
+        &mut self,
+        folder: &Path,
+        root: &Path,
+        wanted: &Wanted,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Missing {
+        let seen = self.shelf.seen(folder);
+        let is_meant = |namespace: &str| {
+            wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace))
+        };
+        let mut near = Vec::new();
+        if self.candidates.admit(seen.heads.len()) {
+            let of_namespace = seen.heads.iter().filter(|one| is_meant(&one.namespace));
+            near = nearest_few(&wanted.local, of_namespace.map(|one| one.local.as_str()), OFFERED);
         }
-        for wanted in wanted {
-            let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
-            let own = shelf.find(folder, namespaces, local);
-            if let Some(found) = &own {
-                shelf.adopt(folder, found);
-            }
-            let found =
-                own.or_else(|| imports.find(&mut shelf, &root, namespaces, local, sources, diagnostics));
-            let link = match found {
-                None => {
-                    let mut missing = missing(&mut shelf, folder, &wanted);
-                    missing.searched.extend(imports.hints(
-                        &mut shelf,
-                        &root,
-                        namespaces,
-                        local,
-                        sources,
-                        diagnostics,
-                    ));
-                    Link::Missing(missing)
-                }
-                Some(found) => {
-                    if warned.insert(found.clone()) {
-                        let twins = shelf.twins(&found);
-                        ambiguous(&wanted, &found, &twins).into_iter().for_each(|one| diagnostics.push(one));
-                    }
-                    let place = known.entry(identity(&found)).or_insert_with(|| {
-                        let file = read(&found, max_size, sources, diagnostics)?;
-                        let mut composite = load_file(file, sources, diagnostics)?;
-                        read_values(&mut composite, max_size, sources, diagnostics);
-                        Some(contribution.add(composite))
-                    });
-                    place.map_or(Link::Faulty, Link::To)
-                }
-            };
-            contribution.set_link(wanted.origin, link);
+        let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
+        let mut searched = vec![self.shelf.searched(folder)];
+        if let Some(other) = seen.named(&wanted.local) {
+            searched.push(format!(
+                "{} has a composite {} of the namespace {}",
+                quoted(&other.path.display().to_string()),
+                quoted(&other.local),
+                quoted(&other.namespace)
+            ));
         }
+        let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
+        let around = (&mut self.shelf, &mut self.candidates);
+        searched.extend(self.imports.hints(around, root, namespaces, local, sources, diagnostics));
+        Missing { near, searched }
     }
 }
 
@@ -239,24 +269,4 @@ fn ambiguous(wanted: &Wanted, found: &Path, twins: &[PathBuf]) -> Option<Diagnos
         one.severity(Severity::Warning)
             .help("give each its own name, or move one of them to another contribution"),
     )
-}
-
-fn missing(shelf: &mut Shelf, folder: &Path, wanted: &Wanted) -> Missing {
-    let seen = shelf.seen(folder);
-    let is_meant = |namespace: &str| {
-        wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace))
-    };
-    let of_namespace = seen.iter().filter(|one| is_meant(&one.namespace)).map(|one| one.local.as_str());
-    let near = nearest_few(&wanted.local, of_namespace, OFFERED);
-    let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
-    let mut searched = vec![shelf.searched(folder)];
-    if let Some(other) = seen.iter().find(|one| one.local == wanted.local) {
-        searched.push(format!(
-            "{} has a composite {} of the namespace {}",
-            quoted(&other.path.display().to_string()),
-            quoted(&other.local),
-            quoted(&other.namespace)
-        ));
-    }
-    Missing { near, searched }
 }

@@ -11,8 +11,10 @@ use super::head::{Head, head};
 use crate::diagnostic::quoted;
 use crate::source::{OpenTexts, identity};
 
-/// Entries of folders that are looked at in all.
+/// Entries of folders that are looked at because of the files of one fleet.
 const MOST_ENTRIES: usize = 20_000;
+/// Entries that are looked at in a folder that somebody asked for, and below.
+const MOST_BELOW: usize = 1_000_000;
 /// Folders above a file in which a description of the contribution is looked for.
 const MOST_ABOVE: usize = 12;
 /// Where the description of a contribution is in its folder: what its author wrote, or else what a tool made.
@@ -29,18 +31,27 @@ const SKIPPED: &[&str] = &["target", "node_modules"];
 pub(super) struct Shelf {
     folders: HashMap<PathBuf, Rc<Listing>>,
     heads: HashMap<PathBuf, Option<Head>>,
-    /// The composites in folders by their local names.
-    names: HashMap<PathBuf, HashMap<String, Vec<PathBuf>>>,
+    /// The composites in folders; of one name those first whose files are called as they are.
+    names: HashMap<PathBuf, ByName<Vec<PathBuf>>>,
     /// How far contributions were looked through, by their folders.
     walks: HashMap<PathBuf, Walk>,
+    /// The composites of contributions that were looked through.
+    seen: HashMap<PathBuf, Rc<Seen>>,
     /// The composites of contributions by the names of their files; none of a folder that nobody describes as one.
     files: HashMap<PathBuf, HashMap<OsString, Vec<PathBuf>>>,
     roots: HashMap<PathBuf, PathBuf>,
+    /// The files of contributions that may declare what composites name.
+    declaring: HashMap<PathBuf, Rc<[PathBuf]>>,
     /// What was looked for, from which folder: names are used again and again.
     found: HashMap<Wanted, Option<PathBuf>>,
     left: usize,
+    /// Whether there were more entries than are looked at.
+    is_cut: bool,
     open: OpenTexts,
 }
+
+/// What is known of composites by their local names and then their namespaces.
+type ByName<T> = HashMap<String, HashMap<String, T>>;
 
 /// A folder, namespaces and a local name.
 type Wanted = (PathBuf, Option<Vec<String>>, String);
@@ -58,8 +69,25 @@ struct Listing {
 struct Walk {
     waiting: VecDeque<PathBuf>,
     seen: HashSet<PathBuf>,
-    /// The folders behind it that hold a composite of a local name, in their order.
-    holders: HashMap<String, Vec<PathBuf>>,
+    /// The folders behind it, in their order.
+    behind: Vec<PathBuf>,
+    /// The first of them that holds a composite of a name.
+    holders: ByName<usize>,
+}
+
+/// The composites that were seen in a contribution.
+pub(super) struct Seen {
+    /// Sorted by their paths.
+    pub(super) heads: Vec<Head>,
+    /// The first of each local name.
+    firsts: HashMap<String, usize>,
+}
+
+impl Seen {
+    /// The first composite of this local name.
+    pub(super) fn named(&self, local: &str) -> Option<&Head> {
+        self.firsts.get(local).map(|place| &self.heads[*place])
+    }
 }
 
 impl Shelf {
@@ -70,12 +98,31 @@ impl Shelf {
             heads: HashMap::new(),
             names: HashMap::new(),
             walks: HashMap::new(),
+            seen: HashMap::new(),
             files: HashMap::new(),
             roots: HashMap::new(),
+            declaring: HashMap::new(),
             found: HashMap::new(),
             left: MOST_ENTRIES,
+            is_cut: false,
             open,
         }
+    }
+
+    /// For another fleet as many entries of folders that are not known yet are looked at.
+    pub(super) fn turn_to_fleet(&mut self) {
+        self.left = MOST_ENTRIES;
+    }
+
+    /// In a folder that somebody asks for, more entries are looked at.
+    pub(super) fn turn_to_folder(&mut self) {
+        self.left = MOST_BELOW;
+    }
+
+    /// Lets only so many more entries be looked at.
+    #[cfg(test)]
+    pub(super) fn limit(&mut self, left: usize) {
+        self.left = left;
     }
 
     /// The file of the composite with this name in one of these namespaces, or in any, as a file in `folder` means it.
@@ -100,17 +147,21 @@ impl Shelf {
         }
         let root = self.root(folder);
         let mut walk = self.walks.remove(&root).unwrap_or_else(|| Walk::from(root.clone()));
-        let behind = walk.holders.get(local).into_iter().flatten();
-        let mut found = behind.into_iter().find_map(|holder| self.find_in(holder, namespaces, local));
+        let holder = walk.holders.get(local).and_then(|holders| fitting(holders, namespaces).min());
+        let mut found = holder.and_then(|place| self.find_in(&walk.behind[*place], namespaces, local));
         while found.is_none()
             && let Some(next) = walk.waiting.pop_front()
         {
             if walk.seen.insert(next.clone()) {
                 walk.waiting.extend(self.listing(&next).folders.iter().cloned());
-                for name in self.names(&next).keys() {
-                    walk.holders.entry(name.clone()).or_default().push(next.clone());
+                for (local, of_namespaces) in self.names(&next) {
+                    let holders = walk.holders.entry(local.clone()).or_default();
+                    for namespace in of_namespaces.keys() {
+                        holders.entry(namespace.clone()).or_insert(walk.behind.len());
+                    }
                 }
                 found = self.find_in(&next, namespaces, local);
+                walk.behind.push(next);
             }
         }
         self.walks.insert(root, walk);
@@ -122,37 +173,36 @@ impl Shelf {
     pub(super) fn twins(&mut self, found: &Path) -> Vec<PathBuf> {
         let Some(Head { namespace, local, .. }) = self.head(found).clone() else { return Vec::new() };
         let folder = found.parent().unwrap_or(Path::new(""));
-        let mut all = self.named(folder, &local).to_vec();
+        let here = self.names(folder).get(&local).and_then(|named| named.get(&namespace));
+        let mut all: Vec<PathBuf> = here.into_iter().flatten().cloned().collect();
         let root = self.root(folder);
         let of_its_name = found.file_name().and_then(|name| self.files(&root).get(name));
         let elsewhere = of_its_name.into_iter().flatten().filter(|path| path.parent() != found.parent());
-        all.extend(elsewhere.cloned());
-        all.retain(|path| {
-            let is_same = |head: &Head| head.namespace == namespace && head.local == local;
-            self.head(path).as_ref().is_some_and(is_same) && identity(path) != identity(found)
-        });
+        let elsewhere: Vec<PathBuf> = elsewhere.cloned().collect();
+        let is_same = |head: &Head| head.namespace == namespace && head.local == local;
+        all.extend(elsewhere.into_iter().filter(|path| self.head(path).as_ref().is_some_and(is_same)));
+        let own = identity(found);
+        all.retain(|path| identity(path) != own);
         all
     }
 
     fn find_in(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
-        let mut all = self.named(folder, local).to_vec();
-        // Most files are called as what they hold.
-        all.sort_by_key(|path| path.file_stem().is_none_or(|stem| stem != local));
-        let fits = |head: &Head| namespaces.is_none_or(|all| all.contains(&head.namespace));
-        all.into_iter().find(|path| self.head(path).as_ref().is_some_and(fits))
+        let named = self.names(folder).get(local)?;
+        let firsts = fitting(named, namespaces).filter_map(|paths| paths.first());
+        firsts.min_by_key(|path| (!is_called(path, local), *path)).cloned()
     }
 
-    /// The composites in a folder that have a local name.
-    fn named(&mut self, folder: &Path, local: &str) -> &[PathBuf] {
-        self.names(folder).get(local).map_or(&[], Vec::as_slice)
-    }
-
-    fn names(&mut self, folder: &Path) -> &HashMap<String, Vec<PathBuf>> {
+    fn names(&mut self, folder: &Path) -> &ByName<Vec<PathBuf>> {
         if !self.names.contains_key(folder) {
-            let mut names: HashMap<String, Vec<PathBuf>> = HashMap::new();
+            let mut names: ByName<Vec<PathBuf>> = HashMap::new();
             for path in &self.listing(folder).composites {
-                if let Some(head) = self.head(path) {
-                    names.entry(head.local.clone()).or_default().push(path.clone());
+                if let Some(Head { namespace, local, .. }) = self.head(path).clone() {
+                    names.entry(local).or_default().entry(namespace).or_default().push(path.clone());
+                }
+            }
+            for (local, of_namespaces) in &mut names {
+                for paths in of_namespaces.values_mut() {
+                    paths.sort_by_key(|path| !is_called(path, local));
                 }
             }
             self.names.insert(folder.to_owned(), names);
@@ -174,13 +224,24 @@ impl Shelf {
         &self.files[root]
     }
 
-    /// The composites of the contribution of `folder`, as far as they were looked at.
-    pub(super) fn seen(&self, folder: &Path) -> Vec<Head> {
-        let root = self.roots.get(folder).map_or(folder, PathBuf::as_path);
-        let mut all: Vec<Head> =
-            self.heads.values().flatten().filter(|head| head.path.starts_with(root)).cloned().collect();
-        all.sort_by(|one, other| one.path.cmp(&other.path));
-        all
+    /// The composites of the contribution of `folder`, which was looked through for a name that it does not have.
+    pub(super) fn seen(&mut self, folder: &Path) -> Rc<Seen> {
+        let root = self.root(folder);
+        if let Some(known) = self.seen.get(&root) {
+            return Rc::clone(known);
+        }
+        let folders = self.walks.get(&root).map_or_else(Vec::new, |walk| walk.behind.clone());
+        let paths = folders.iter().flat_map(|folder| self.listing(folder).composites.clone());
+        let paths: Vec<PathBuf> = paths.collect();
+        let mut heads: Vec<Head> = paths.iter().filter_map(|path| self.head(path).clone()).collect();
+        heads.sort_by(|one, other| one.path.cmp(&other.path));
+        let mut firsts = HashMap::new();
+        for (place, head) in heads.iter().enumerate() {
+            firsts.entry(head.local.clone()).or_insert(place);
+        }
+        let seen = Rc::new(Seen { heads, firsts });
+        self.seen.insert(root, Rc::clone(&seen));
+        seen
     }
 
     /// Where composites were looked for, as a sentence.
@@ -188,11 +249,11 @@ impl Shelf {
         let root = self.root(folder);
         let shown = if root.as_os_str().is_empty() { Path::new(".") } else { &root };
         let shown = quoted(&shown.display().to_string());
-        match self.left {
-            0 => format!(
-                "looked among the first {MOST_ENTRIES} files in {shown} and below; name the file of the composite beside this one"
+        match self.is_cut {
+            true => format!(
+                "looked among some ten thousand files in {shown} and below, and not in all; name the file of the composite beside this one"
             ),
-            _ => format!("looked in the files `*.composite` in {shown} and below"),
+            false => format!("looked in the files `*.composite` in {shown} and below"),
         }
     }
 
@@ -226,11 +287,28 @@ impl Shelf {
     }
 
     /// The files that may declare what a composite in `folder` names: those beside it, and those of a contribution that is described as such.
-    pub(super) fn declaring(&mut self, folder: &Path) -> Vec<PathBuf> {
+    pub(super) fn declaring(&mut self, folder: &Path) -> Rc<[PathBuf]> {
         let root = self.root(folder);
-        let mut all = self.listing(folder).declaring.clone();
-        all.extend(Some(root.join("META-INF/definitions.xml")).filter(|path| path.is_file()));
-        let mut waiting = if describes(&root) { vec![root] } else { Vec::new() };
+        let own = self.listing(folder);
+        let of_root = self.declaring_of(&root);
+        // As a rule a folder is one of its contribution.
+        if own.declaring.iter().all(|path| of_root.binary_search(path).is_ok()) {
+            return of_root;
+        }
+        let mut all = [&own.declaring[..], &of_root].concat();
+        all.sort_unstable();
+        all.dedup();
+        all.into()
+    }
+
+    /// Those of the contribution in `root`.
+    fn declaring_of(&mut self, root: &Path) -> Rc<[PathBuf]> {
+        if let Some(known) = self.declaring.get(root) {
+            return Rc::clone(known);
+        }
+        let definitions = root.join("META-INF/definitions.xml");
+        let mut all: Vec<PathBuf> = Some(definitions).filter(|path| path.is_file()).into_iter().collect();
+        let mut waiting = if describes(root) { vec![root.to_owned()] } else { Vec::new() };
         while let Some(next) = waiting.pop() {
             let listing = self.listing(&next);
             all.extend_from_slice(&listing.declaring);
@@ -238,12 +316,14 @@ impl Shelf {
         }
         all.sort_unstable();
         all.dedup();
+        let all: Rc<[PathBuf]> = all.into();
+        self.declaring.insert(root.to_owned(), Rc::clone(&all));
         all
     }
 
     /// Whether every file was looked at.
     pub(super) fn is_complete(&self) -> bool {
-        self.left > 0
+        !self.is_cut
     }
 
     /// Makes a file that was found for one in `folder` one of its contribution.
@@ -259,8 +339,12 @@ impl Shelf {
         }
         let mut listing = Listing::default();
         let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        for entry in fs::read_dir(here).into_iter().flatten().flatten().take(self.left) {
-            self.left -= 1;
+        for entry in fs::read_dir(here).into_iter().flatten().flatten() {
+            let Some(left) = self.left.checked_sub(1) else {
+                self.is_cut = true;
+                break;
+            };
+            self.left = left;
             let (name, path) = (entry.file_name(), folder.join(entry.file_name()));
             let name = name.to_string_lossy();
             // Links to folders may lead around in circles, and are not followed.
@@ -306,8 +390,23 @@ fn may_be_read(kind: FileType, path: &Path) -> bool {
 
 impl From<PathBuf> for Walk {
     fn from(root: PathBuf) -> Self {
-        Self { waiting: VecDeque::from([root]), seen: HashSet::new(), holders: HashMap::new() }
+        let waiting = VecDeque::from([root]);
+        Self { waiting, seen: HashSet::new(), behind: Vec::new(), holders: HashMap::new() }
     }
+}
+
+/// What is of one of these namespaces, or of any.
+fn fitting<'a, T>(
+    of_namespaces: &'a HashMap<String, T>,
+    namespaces: Option<&'a [String]>,
+) -> impl Iterator<Item = &'a T> {
+    let meant = namespaces.into_iter().flatten().filter_map(|namespace| of_namespaces.get(namespace));
+    meant.chain(of_namespaces.values().filter(move |_| namespaces.is_none()))
+}
+
+/// Whether a file is called as a composite, as most are that hold it.
+fn is_called(path: &Path, local: &str) -> bool {
+    path.file_stem().is_some_and(|stem| stem == local)
 }
 
 /// The files `*.composite` whose composites one in `folder` can name: those in it, and those of its contribution, as

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use super::{Component, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Version};
+use crate::diagnostic::{Candidates, nearest};
 use crate::source::{FileId, Text};
 use crate::xml::ElementId;
 
@@ -19,6 +20,8 @@ pub struct Contribution {
     given: usize,
     /// The places of those that were there at first by their names.
     by_name: HashMap<String, Vec<usize>>,
+    /// How many of those names are still looked at for names that lead nowhere.
+    candidates: Candidates,
     links: HashMap<(FileId, ElementId), Link>,
     libraries: HashMap<(FileId, ElementId), LibraryLink>,
     component_types: Vec<ComponentType>,
@@ -223,21 +226,24 @@ impl Contribution {
 
     fn link_known(&mut self, place: usize) {
         let composite = &self.composites[place];
+        let mut candidates = std::mem::take(&mut self.candidates);
         let mut links = Vec::new();
         for naming in composite.namings() {
             let (namespaces, local) = composite.resolve_name(naming);
             let link = match self.find(namespaces.as_deref(), local) {
                 Some(found) => Link::To(found),
-                None => Link::Missing(self.missing(naming.name, local)),
+                None => Link::Missing(self.missing(naming.name, local, &mut candidates)),
             };
             links.push((naming.origin, link));
         }
+        self.candidates = candidates;
         links.into_iter().for_each(|(origin, link)| self.set_link(origin, link));
     }
 
-    fn missing(&self, name: &Text, local: &str) -> Missing {
+    fn missing(&self, name: &Text, local: &str, candidates: &mut Candidates) -> Missing {
         let known = self.composites[..self.given].iter().map(|composite| composite.name.as_str());
-        let near = crate::diagnostic::nearest(local, known.filter(|known| *known != local));
+        let is_wanted = candidates.admit(self.given);
+        let near = is_wanted.then(|| nearest(local, known.filter(|known| *known != local))).flatten();
         let prefix = name.as_str().strip_suffix(local).unwrap_or_default();
         Missing {
             near: near.map(|near| format!("{prefix}{near}")).into_iter().collect(),

@@ -10,6 +10,7 @@ mod open;
 #[cfg(test)]
 mod tests;
 
+use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use lines::LineIndex;
@@ -82,7 +83,7 @@ pub struct SourceFile {
     path: Arc<str>,
     // A text as it was read: it may be as large as the rest of the program, and is never copied.
     text: Arc<String>,
-    lines: OnceLock<LineIndex>,
+    lines: Arc<OnceLock<LineIndex>>,
 }
 
 impl SourceFile {
@@ -130,6 +131,8 @@ impl SourceFile {
 #[derive(Debug, Default)]
 pub struct Sources {
     files: Vec<SourceFile>,
+    /// The last file of each name.
+    named: HashMap<Arc<str>, FileId>,
     open: OpenTexts,
 }
 
@@ -141,7 +144,7 @@ impl Sources {
 
     /// No texts yet; those that an editor holds will be read in place of their files.
     pub fn with_open(open: OpenTexts) -> Self {
-        Self { files: Vec::new(), open }
+        Self { open, ..Self::default() }
     }
 
     /// The texts that are read in place of files.
@@ -149,7 +152,7 @@ impl Sources {
         &self.open
     }
 
-    /// Adds a text under the name that users know it by.
+    /// Adds a text under the name that users know it by. One that is read anew for another fleet, and is still the same, takes no memory again.
     ///
     /// # Panics
     /// When `text` has 4 GiB or more (a span could not name its bytes), or after 2^32 files.
@@ -157,7 +160,13 @@ impl Sources {
         let text: String = text.into();
         assert!(u32::try_from(text.len()).is_ok(), "a source text is below 4 GiB");
         let id = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
-        self.files.push(SourceFile { path: path.into(), text: Arc::new(text), lines: OnceLock::new() });
+        let path = path.into();
+        let earlier = self.named.insert(Arc::clone(&path), id).map(|earlier| self.get(earlier));
+        let (text, lines) = match earlier.filter(|earlier| *earlier.text == text) {
+            Some(earlier) => (Arc::clone(&earlier.text), Arc::clone(&earlier.lines)),
+            None => (Arc::new(text), Arc::default()),
+        };
+        self.files.push(SourceFile { path, text, lines });
         id
     }
 

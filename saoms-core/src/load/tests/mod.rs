@@ -1,4 +1,5 @@
 mod extension;
+mod finder;
 mod large;
 mod many;
 mod reading;

@@ -1,0 +1,50 @@
+//! How much work is done to find what a wrong name means.
+
+/// How many right names are looked at for all wrong ones together.
+const MOST: usize = 1_000_000;
+/// Lists that are not longer are searched in any case.
+const FEW: usize = 100;
+
+/// Counts the right names that are looked at for wrong ones: where nearly all names are wrong every search goes through all right ones, and a check
+/// must take time that grows with its files, and not with their square.
+#[derive(Debug)]
+pub(crate) struct Candidates {
+    left: usize,
+}
+
+impl Default for Candidates {
+    fn default() -> Self {
+        Self { left: MOST }
+    }
+}
+
+impl Candidates {
+    /// Whether a list of so many names is searched; they are counted then.
+    pub(crate) fn admit(&mut self, count: usize) -> bool {
+        if count <= FEW {
+            return true;
+        }
+        let left = self.left.checked_sub(count);
+        self.left = left.unwrap_or(0);
+        left.is_some()
+    }
+
+    /// How much of a list decides whether it is searched: what is beyond need not be counted.
+    pub(crate) fn telling(&self) -> usize {
+        self.left.max(FEW) + 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lists_are_searched_so_often_that_they_have_a_million_names_together() {
+        let mut candidates = Candidates::default();
+        let admitted = (0..10_000).filter(|_| candidates.admit(1000)).count();
+        assert_eq!(admitted, MOST / 1000);
+        assert!(!candidates.admit(FEW + 1) && candidates.admit(FEW), "short ones always");
+        assert_eq!(candidates.telling(), FEW + 1);
+    }
+}
