@@ -178,6 +178,10 @@ pub(crate) struct LspArguments {
 pub(crate) struct ExpandArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
+
+    /// Take classes that this program does not know as given, and implementations of other kinds: resolve all that can be resolved without them
+    #[arg(long)]
+    pub(crate) assume_classes: bool,
 }
 
 #[derive(Debug, Args)]

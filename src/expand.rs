@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use saoms_core::assembly::expanded;
-use saoms_core::check::Options;
+use saoms_core::check::{Options, expand as expanded};
 use saoms_core::diagnostic::Severity;
 use saoms_core::format::{WIDTH, format};
 use saoms_core::source::FileId;
@@ -15,16 +14,17 @@ use crate::fleet::checked;
 use crate::output::{counted, eprint, print};
 
 pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
-    let outcome = match checked(&arguments.fleet, Options::default()) {
+    let options = Options { assume_classes: arguments.assume_classes, ..Options::default() };
+    let outcome = match checked(expanded, &arguments.fleet, options) {
         Ok(outcome) => outcome,
         Err(exit) => return exit,
     };
     eprint(&outcome.human(Severity::Error));
-    let (Some(assembly), Some(first)) = (&outcome.made, outcome.first()) else {
+    let (Some(expansion), Some(first)) = (&outcome.made, outcome.first()) else {
         eprint(&format!("\n{}: nothing to expand\n", counted(outcome.count(Severity::Error), "error")));
         return Exit::WrongInput;
     };
-    let text = Arc::new(expanded(assembly, first, outcome.diagnostics()));
+    let text = Arc::new(expansion.text(first, outcome.diagnostics()));
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
     match xml::parse(FileId(0), &text).document {
         Some(document) => print(&format(&document, WIDTH)),

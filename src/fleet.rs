@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, Setting, SeveritySetting, Variable, check};
+use saoms_core::check::{Options, Setting, SeveritySetting, Variable};
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
 use saoms_core::load::{Finder, STANDARD_INPUT, load_file, read, read_from, read_values};
 use saoms_core::model::{Composite, Contribution};
@@ -54,7 +54,11 @@ pub(crate) struct Asked<'a> {
 ///
 /// # Errors
 /// A plugin cannot be used, which was told.
-pub(crate) fn checked(arguments: &FleetArguments, asked: Options) -> Result<Checked, Exit> {
+pub(crate) fn checked<T>(
+    check: Checker<T>,
+    arguments: &FleetArguments,
+    asked: Options,
+) -> Result<Checked<T>, Exit> {
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
     let (paths, max_size) = (&arguments.files, arguments.max_size);

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use saoms_api::Level;
 use saoms_core::assembly::{Assembly, ComponentSpec};
-use saoms_core::check::Options;
+use saoms_core::check::{Options, check};
 use saoms_core::diagnostic::Severity;
 use saoms_core::schedule::{Handle, ReplaceError};
 
@@ -125,7 +125,7 @@ impl Watcher {
         let names = names.join(", ");
         let kept = |why: &str| format!("{names} changed: {why}; the fleet goes on with the earlier build");
         // What is wrong with a library was told already.
-        let Ok(outcome) = checked(&self.arguments, Options::default()) else {
+        let Ok(outcome) = checked(check, &self.arguments, Options::default()) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
         let Some(assembly) = &outcome.made else {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::thread;
 
 use saoms_core::assembly::Assembly;
-use saoms_core::check::Options;
+use saoms_core::check::{Options, check};
 use saoms_core::diagnostic::Severity;
 use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 
 /// The fleet to run; without one, what is wrong has been shown. Texts and diagnostics do not outlive this: a run may last for days.
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly> {
-    let outcome = checked(files, Options::default()).ok()?;
+    let outcome = checked(check, files, Options::default()).ok()?;
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &outcome.made) {
         (Format::Json, None) => print(&format!("{:#}\n", outcome.json())),

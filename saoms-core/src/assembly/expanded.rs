@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::collections::HashSet;
-use std::fmt::Write as _;
 
 use saoms_api::{PropertyValue, format_duration};
 
 use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};
 use crate::diagnostic::{Diagnostic, Level, SetBy, Severity, codes};
 use crate::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
+use crate::xml::Node;
 
 /// Writes an assembly as one composite in which nothing is left to resolve: no includes, no inner composites, no sources of properties,
 /// every wire with its service. It has the name, the namespace and the version of SCA of `like`.
@@ -26,51 +26,87 @@ pub fn expanded<'d>(
     like: &Composite,
     found: impl IntoIterator<Item = &'d Diagnostic>,
 ) -> String {
-    let names = names(assembly);
-    let lacks_target = |component: &ComponentSpec| {
-        let references = component.class.declaration().references.iter().zip(&component.references);
-        references.into_iter().any(|(declared, wire)| !declared.optional && wire.targets.is_empty())
-    };
-    let version = match assembly.components.iter().any(lacks_target) {
-        true => Version::Osoa10,
-        false => like.version,
-    };
-    let mut out = Writer { text: String::new(), depth: 0 };
-    let mut attributes = vec![("xmlns", version.namespace())];
-    let is_own = |(component, name): (&ComponentSpec, &String)| {
-        component.path != *name || !loops(component).is_empty()
-    };
-    let lowered = lowered(found);
-    let is_of_wiring = |rule: &&SeverityRule| rule.within.is_none() && codes::is_of_wiring(&rule.code);
-    let of_wiring: Vec<_> = like.severities.iter().filter(is_of_wiring).collect();
-    if !lowered.is_empty() || !of_wiring.is_empty() || assembly.components.iter().zip(&names).any(is_own) {
-        attributes.push(("xmlns:s", SAOMS_NAMESPACE));
+    Expansion::of(assembly, like).text(like, found)
+}
+
+/// What is left of composites when all is resolved: the elements of one composite.
+#[derive(Clone, Debug)]
+pub struct Expansion {
+    version: Version,
+    root: Node,
+    /// Whether something in it is taken as given, as it is written: all that was found in it is found again.
+    is_given: bool,
+}
+
+impl Expansion {
+    /// What is left of an assembly: [`expanded`].
+    pub fn of(assembly: &Assembly, like: &Composite) -> Self {
+        let paths: Vec<&str> = assembly.components.iter().map(|component| component.path.as_str()).collect();
+        let names = names(&paths);
+        let lacks_target = |component: &ComponentSpec| {
+            let references = component.class.declaration().references.iter().zip(&component.references);
+            references.into_iter().any(|(declared, wire)| !declared.optional && wire.targets.is_empty())
+        };
+        let version = match assembly.components.iter().any(lacks_target) {
+            true => Version::Osoa10,
+            false => like.version,
+        };
+        let root = root(like);
+        let components = assembly.components.iter().zip(&names);
+        let components = components.map(|(one, name)| {
+            let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
+                let uri = |target: &super::Target| format!("{}/{}", names[target.component], target.service);
+                let targets: Vec<String> = wire.targets.iter().map(uri).collect();
+                Node::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "))
+            });
+            component(one, name, references)
+        });
+        Self { version, root: root.children(components), is_given: false }
     }
-    attributes.push(("name", like.name.as_str()));
-    attributes
-        .extend(like.target_namespace.as_ref().map(|namespace| ("targetNamespace", namespace.as_str())));
-    out.open("composite", &attributes);
-    for (code, set) in lowered {
-        let reason = set.reason.as_deref().unwrap_or("set on the command line");
-        out.empty("s:severity", &[("code", code), ("level", set.level.name()), ("reason", reason)]);
+
+    /// Elements in which something is taken as given.
+    pub(crate) fn given(version: Version, root: Node) -> Self {
+        Self { version, root, is_given: true }
     }
-    for rule in of_wiring {
-        let level = rule.level.value.name();
-        out.empty("s:severity", &[("code", &rule.code), ("level", level), ("reason", &rule.reason)]);
+
+    /// As the text of a composite like this one; `found` are the diagnostics of the check that it was made by.
+    pub fn text<'d>(&self, like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> String {
+        let lowered = lowered(found, self.is_given);
+        let is_of_wiring = |rule: &&SeverityRule| rule.within.is_none() && codes::is_of_wiring(&rule.code);
+        let of_wiring = like.severities.iter().filter(is_of_wiring);
+        let severity = |code: &str, level: Level, reason: &str| {
+            let node = Node::new("s:severity").with("code", code).with("level", level.name());
+            node.with("reason", reason).declare("s", SAOMS_NAMESPACE)
+        };
+        let said = lowered.into_iter().map(|(code, set)| {
+            severity(code, set.level, set.reason.as_deref().unwrap_or("set on the command line"))
+        });
+        let said = said.chain(of_wiring.map(|rule| severity(&rule.code, rule.level.value, &rule.reason)));
+        let mut root = self.root.clone().first(said.collect()).declare("", self.version.namespace());
+        root.hoist();
+        let mut text = String::new();
+        root.write(0, &mut text);
+        text
     }
-    for (component, name) in assembly.components.iter().zip(&names) {
-        out.component(component, name, &names);
-    }
-    out.close("composite");
-    out.text
+}
+
+/// The root with the name and the namespace of a composite.
+pub(crate) fn root(like: &Composite) -> Node {
+    let namespace = like.target_namespace.as_ref();
+    Node::new("composite")
+        .with("name", like.name.as_str())
+        .maybe("targetNamespace", namespace.map(|namespace| namespace.as_str()))
 }
 
 /// The codes that are lowered although the composite that is left has what they are about; each with what hides least. Codes of which something
 /// is told as it is are told so again.
-fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'static str, &'d SetBy> {
+fn lowered<'d>(
+    found: impl IntoIterator<Item = &'d Diagnostic>,
+    is_given: bool,
+) -> BTreeMap<&'static str, &'d SetBy> {
     let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
     let mut told: HashSet<&'static str> = HashSet::new();
-    for one in found.into_iter().filter(|one| codes::outlives_expansion(one.code)) {
+    for one in found.into_iter().filter(|one| is_given || codes::outlives_expansion(one.code)) {
         let Some(set) = one.set.as_ref().filter(|set| set.level != Level::Set(Severity::Error)) else {
             told.insert(one.code.id);
             continue;
@@ -84,151 +120,108 @@ fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'st
     all
 }
 
-/// A name for each component: its path, with dots for what a name cannot have. No two are the same.
-fn names(assembly: &Assembly) -> Vec<String> {
+/// A name for each path: the path, with dots for what a name cannot have. No two are the same.
+pub(crate) fn names(paths: &[&str]) -> Vec<String> {
     // Paths that are names stay as they are, whatever others come to.
-    let plain = assembly.components.iter().map(|component| component.path.as_str());
-    let mut taken: HashSet<String> = plain.filter(|path| !path.contains('/')).map(str::to_owned).collect();
-    let name = |component: &ComponentSpec| {
-        if !component.path.contains('/') {
-            return component.path.clone();
+    let plain = paths.iter().filter(|path| !path.contains('/'));
+    let mut taken: HashSet<String> = plain.map(|path| (*path).to_owned()).collect();
+    let name = |path: &&str| {
+        if !path.contains('/') {
+            return (*path).to_owned();
         }
-        let mut name = component.path.replace('/', ".");
+        let mut name = path.replace('/', ".");
         while !taken.insert(name.clone()) {
             name.push('_');
         }
         name
     };
-    assembly.components.iter().map(name).collect()
+    paths.iter().map(name).collect()
 }
 
-struct Writer {
-    text: String,
-    depth: usize,
+/// The start of a component of this name.
+pub(crate) fn start(mut node: Node, path: &str, name: &str) -> Node {
+    node.set("name", name);
+    if path == name {
+        return node;
+    }
+    node.behind("name", ("s:path", path)).declare("s", SAOMS_NAMESPACE)
 }
 
-impl Writer {
-    fn component(&mut self, component: &ComponentSpec, name: &str, names: &[String]) {
-        let mut attributes = vec![("name", name)];
-        if component.path != name {
-            attributes.push(("s:path", &component.path));
-        }
-        self.open("component", &attributes);
-        let class = ("class", component.class.name());
-        match &component.library {
-            None => self.empty("implementation.rust", &[class]),
-            Some(library) => self.empty("implementation.rust", &[class, ("library", library)]),
-        }
-        let presets = component.class.presets();
-        for (name, value) in component.values.iter().filter(|value| !presets.contains(value)) {
-            self.property(name, value);
-        }
-        for (name, value) in component.task.iter().flat_map(task) {
-            let value = PropertyValue::Text(value);
+/// A component of a class, with these references.
+fn component(component: &ComponentSpec, name: &str, references: impl IntoIterator<Item = Node>) -> Node {
+    start(Node::new("component"), &component.path, name)
+        .child(implementation(component))
+        .children(valued(component))
+        .children(references)
+        .children(looped(component))
+}
+
+/// What names the class of a component.
+pub(crate) fn implementation(component: &ComponentSpec) -> Node {
+    let node = Node::new("implementation.rust").with("class", component.class.name());
+    node.maybe("library", component.library.as_deref())
+}
+
+/// The properties of a component of a class.
+pub(crate) fn valued(component: &ComponentSpec) -> Vec<Node> {
+    let presets = component.class.presets();
+    let values = component.values.iter().filter(|value| !presets.contains(value));
+    let settings = component.task.iter().flat_map(task);
+    let settings =
+        settings.map(|(name, value)| (name, PropertyValue::Text(value))).filter(|(name, value)| {
             let is_known = component.values.iter().any(|(known, _)| known == name);
-            if !is_known && !presets.iter().any(|(preset, given)| preset == name && *given == value) {
-                self.property(name, &value);
-            }
+            !is_known && !presets.iter().any(|(preset, given)| preset == name && given == value)
+        });
+    let values = values.map(|(name, value)| property(name, value));
+    values.chain(settings.map(|(name, value)| property(name, &value))).collect()
+}
+
+/// What is said about the loops of a component of a class.
+pub(crate) fn looped(component: &ComponentSpec) -> Vec<Node> {
+    loops(component).into_iter().map(looping).collect()
+}
+
+fn looping(said: Said<'_>) -> Node {
+    Node::new("s:loop")
+        .declare("s", SAOMS_NAMESPACE)
+        .with("name", said.name)
+        .maybe("class", said.class)
+        .maybe("after", said.after)
+        .maybe("remove", said.is_removed.then_some("true"))
+        .children(said.values.iter().map(|(name, value)| property(name, value)))
+}
+
+fn property(name: &str, value: &PropertyValue) -> Node {
+    let node = Node::new("property").with("name", name);
+    match value {
+        PropertyValue::Text(text) => text_of(node, text),
+        PropertyValue::Many(values) => node.children(values.iter().flat_map(|one| part("value", one, false))),
+        PropertyValue::Complex(parts) => node.children(inside(parts)),
+    }
+}
+
+/// A property with a text. White space at the ends of a text inside an element does not count, and an empty one is none.
+pub(crate) fn text_of(property: Node, text: &str) -> Node {
+    if text.is_empty() { property.child(Node::new("value")) } else { property.text(text) }
+}
+
+/// The named values of a complex property, in no namespace.
+fn inside(parts: &[(String, PropertyValue)]) -> impl Iterator<Item = Node> {
+    parts.iter().flat_map(|(name, value)| part(name, value, true))
+}
+
+/// A value as elements of a name: several where it is a list. No declaration has lists of lists.
+fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<Node> {
+    let node = || match is_in_none {
+        true => Node::new(name.to_owned()).with("xmlns", ""),
+        false => Node::new(name.to_owned()),
+    };
+    match value {
+        PropertyValue::Text(text) => vec![node().text(text)],
+        PropertyValue::Complex(parts) => vec![node().children(inside(parts))],
+        PropertyValue::Many(values) => {
+            values.iter().flat_map(|value| part(name, value, is_in_none)).collect()
         }
-        for wire in component.references.iter().filter(|wire| !wire.targets.is_empty()) {
-            let uri = |target: &super::Target| format!("{}/{}", names[target.component], target.service);
-            let targets: Vec<String> = wire.targets.iter().map(uri).collect();
-            self.empty("reference", &[("name", &wire.reference), ("target", &targets.join(" "))]);
-        }
-        for said in loops(component) {
-            let given =
-                [("class", said.class), ("after", said.after), ("remove", said.is_removed.then_some("true"))];
-            let mut attributes = vec![("name", said.name)];
-            attributes.extend(given.into_iter().filter_map(|(name, value)| Some((name, value?))));
-            if said.values.is_empty() {
-                self.empty("s:loop", &attributes);
-                continue;
-            }
-            self.open("s:loop", &attributes);
-            said.values.iter().for_each(|(name, value)| self.property(name, value));
-            self.close("s:loop");
-        }
-        self.close("component");
-    }
-
-    fn property(&mut self, name: &str, value: &PropertyValue) {
-        match value {
-            // White space at the ends of a text inside an element does not count, and an empty one is none.
-            PropertyValue::Text(text) if text.is_empty() => {
-                self.open("property", &[("name", name)]);
-                self.empty("value", &[]);
-                self.close("property");
-            }
-            PropertyValue::Text(text) => self.with_text("property", &[("name", name)], text),
-            PropertyValue::Many(values) => {
-                self.open("property", &[("name", name)]);
-                for value in values {
-                    self.value("value", &[], value);
-                }
-                self.close("property");
-            }
-            PropertyValue::Complex(parts) => {
-                self.open("property", &[("name", name)]);
-                self.parts(parts);
-                self.close("property");
-            }
-        }
-    }
-
-    /// The named values of a complex property, in no namespace.
-    fn parts(&mut self, parts: &[(String, PropertyValue)]) {
-        for (name, value) in parts {
-            match value {
-                PropertyValue::Many(values) => {
-                    values.iter().for_each(|value| self.value(name, &[("xmlns", "")], value));
-                }
-                one => self.value(name, &[("xmlns", "")], one),
-            }
-        }
-    }
-
-    fn value(&mut self, name: &str, attributes: &[(&str, &str)], value: &PropertyValue) {
-        match value {
-            PropertyValue::Text(text) => self.with_text(name, attributes, text),
-            PropertyValue::Complex(parts) => {
-                self.open(name, attributes);
-                self.parts(parts);
-                self.close(name);
-            }
-            // No declaration has lists of lists.
-            PropertyValue::Many(values) => {
-                values.iter().for_each(|value| self.value(name, attributes, value))
-            }
-        }
-    }
-
-    fn tag(&mut self, name: &str, attributes: &[(&str, &str)]) {
-        let _ = write!(self.text, "{:1$}<{name}", "", 2 * self.depth);
-        for (name, value) in attributes {
-            let _ = write!(self.text, " {name}=\"{}\"", escaped(value));
-        }
-    }
-
-    fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
-        self.tag(name, attributes);
-        self.text.push_str(">\n");
-        self.depth += 1;
-    }
-
-    fn close(&mut self, name: &str) {
-        self.depth -= 1;
-        let _ = writeln!(self.text, "{:1$}</{name}>", "", 2 * self.depth);
-    }
-
-    fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
-        self.tag(name, attributes);
-        self.text.push_str("/>\n");
-    }
-
-    fn with_text(&mut self, name: &str, attributes: &[(&str, &str)], text: &str) {
-        self.tag(name, attributes);
-        let _ =
-            writeln!(self.text, ">{}</{name}>", escaped(text).replace("&#10;", "\n").replace("&#9;", "\t"));
     }
 }
 
@@ -282,22 +275,6 @@ fn loops(component: &ComponentSpec) -> Vec<Said<'_>> {
 /// What a loop is called unless it is given a name: what follows the last dot of its class.
 fn simple(class: &str) -> &str {
     class.rsplit('.').next().unwrap_or(class)
-}
-
-/// A text as it can stand in an attribute: also what reading would make a blank of.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\t' | '\n' | '\r' => _ = write!(out, "&#{};", character as u32),
-            _ => out.push(character),
-        }
-    }
-    out
 }
 
 /// The task properties that are not as they are by themselves.

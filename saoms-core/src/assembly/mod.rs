@@ -11,7 +11,8 @@ use std::time::Duration;
 
 use saoms_api::{PropertyField, PropertyValue};
 
-pub use expanded::expanded;
+pub use expanded::{Expansion, expanded};
+pub(crate) use expanded::{implementation, looped, names, start, text_of, valued};
 pub use task::{RestartPolicy, TaskProperties};
 pub use traffic::{End, Pace, Topic, Traffic};
 

@@ -20,6 +20,7 @@ mod contracts;
 mod cycles;
 mod described;
 mod endpoint;
+mod expand;
 mod findings;
 mod fleet;
 mod given;
@@ -69,13 +70,14 @@ mod written;
 mod xpath;
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use saoms_api::PropertyValue;
 
-use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
+use crate::assembly::{Assembly, ComponentSpec, Expansion, LoopSpec, Target, TaskSettings, Wire};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
-use crate::model::Contribution;
-use crate::registry::Registry;
+use crate::model::{Component, Contribution};
+use crate::registry::{Class, Registry};
 use crate::source::{Location, Sources};
 
 use arena::Arena;
@@ -142,6 +144,27 @@ pub fn count(
     diagnostics: &mut Diagnostics,
 ) -> Option<usize> {
     examine(contribution, registry, options, sources, diagnostics, |sound, _, _| sound.count())
+}
+
+/// As [`check`] for what is left of the composites when all is resolved: of an assembly what [`expanded`](crate::assembly::expanded) writes of it.
+///
+/// Where classes are taken as given ([`Options::assume_classes`]), includes, inner composites, promotions, replicas, conditions, wires and sources
+/// are resolved all the same. What only the classes know stays as it is written.
+pub fn expand(
+    contribution: &Contribution,
+    registry: &Registry,
+    options: &Options,
+    sources: &Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<Expansion> {
+    examine(contribution, registry, options, sources, diagnostics, |sound, _, report| {
+        let like = contribution.asked_for().first()?;
+        let library = |one: &Component| classes::library(one, contribution, sources);
+        match sound.count() {
+            Some(_) => Some(Expansion::of(&sound.assemble(library)?, like)),
+            None => expand::given(sound, like, options, sources, library, report),
+        }
+    })
 }
 
 /// Looks at everything, and makes something of a fleet without errors.
@@ -351,6 +374,18 @@ struct Sound<'s, 'a> {
     wiring: &'s Wiring,
 }
 
+/// A component of a class, resolved.
+fn spec(
+    path: &str,
+    class: Arc<Class>,
+    library: Option<String>,
+    (values, task): (Vec<(String, PropertyValue)>, Option<TaskSettings>),
+    references: Vec<Wire>,
+    loops: Arc<[LoopSpec]>,
+) -> ComponentSpec {
+    ComponentSpec { path: path.to_owned(), class, library, values, task, references, loops }
+}
+
 impl Sound<'_, '_> {
     /// How many components there are; `None` when something is taken as given.
     fn count(&self) -> Option<usize> {
@@ -370,7 +405,7 @@ impl Sound<'_, '_> {
     }
 
     /// The assembly; `None` when something is taken as given.
-    fn assemble(self, library: impl Fn(&crate::model::Component) -> Option<String>) -> Option<Assembly> {
+    fn assemble(self, library: impl Fn(&Component) -> Option<String>) -> Option<Assembly> {
         let Self { fleet, classes, resolved, wiring } = self;
         // Components that composites implement are not there in a run: the others close ranks.
         let mut count = 0;
@@ -399,15 +434,10 @@ impl Sound<'_, '_> {
                     })
                     .collect(),
             });
-            components.push(ComponentSpec {
-                path: fleet.members[place].path().to_owned(),
-                class: std::sync::Arc::clone(class.class),
-                library: library(fleet.members[place].component),
-                values,
-                task,
-                references: references.collect(),
-                loops: loops.specs,
-            });
+            let member = &fleet.members[place];
+            let class = Arc::clone(class.class);
+            let (path, library) = (member.path(), library(member.component));
+            components.push(spec(path, class, library, (values, task), references.collect(), loops.specs));
         }
         Some(Assembly { components })
     }

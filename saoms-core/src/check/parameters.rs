@@ -29,6 +29,8 @@ pub(super) struct Parameters<'a> {
     found: HashMap<(usize, String), (Location, Raw<'a>)>,
     /// How many more parts of values these can look at.
     parts_left: Cell<usize>,
+    /// Whether the values of properties that have an `element` stay as they are written.
+    pub(super) keeps_elements: bool,
 }
 
 /// Parts of values that sources look at that are more than a path: what would take much longer is a mistake.
@@ -45,6 +47,8 @@ struct Declared<'a> {
     names: OnceCell<Vec<&'a str>>,
     /// Whether a `source` leads to none of them: one of them is probably meant.
     has_wrong_source: bool,
+    /// Whether its composite implements no component.
+    is_outermost: bool,
 }
 
 struct Parameter<'a> {
@@ -100,9 +104,12 @@ impl<'a> Parameters<'a> {
     pub(super) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
         let units = fleet.units.iter().map(|unit| declared(unit, report)).collect();
         let (found, parts_left) = (HashMap::new(), Cell::new(MOST_PARTS));
-        let mut parameters = Self { units, left: MOST_VALUES, found, parts_left };
+        let mut parameters = Self { units, left: MOST_VALUES, found, parts_left, keeps_elements: false };
         for (place, unit) in fleet.units.iter().enumerate() {
-            let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
+            let Some(owner) = fleet.scopes[unit.scope].owner else {
+                parameters.units[place].is_outermost = true;
+                continue;
+            };
             let owner = &fleet.members[owner];
             let outside = Place { unit: owner.unit, composite: owner.composite, instance: owner.instance };
             for property in &owner.component.properties {

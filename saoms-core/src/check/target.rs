@@ -347,7 +347,7 @@ fn several(
 }
 
 /// Whether a target is an address on a network rather than a component.
-fn is_address(text: &str) -> bool {
+pub(super) fn is_address(text: &str) -> bool {
     let scheme = text.split(':').next().unwrap_or_default();
     scheme.len() < text.len()
         && !scheme.contains('/')

@@ -10,6 +10,7 @@ mod element;
 mod fault;
 mod names;
 mod namespaces;
+mod node;
 mod parse;
 mod prolog;
 mod reference;
@@ -24,6 +25,7 @@ mod unbound;
 mod value;
 
 pub use element::{Attribute, Element};
+pub(crate) use node::Node;
 pub use parse::{Parsed, Tangle, parse};
 pub use tree::{Document, ElementId};
 pub(crate) use value::Writing;

@@ -5,7 +5,7 @@
 use saoms_api::declaration::PropertyKind;
 use saoms_api::parse_duration;
 
-use super::node::Node;
+use super::node::{Documented, Node};
 use crate::assembly::TaskProperties;
 use crate::model::Version;
 use crate::registry::{Class, ClassDeclaration, PropertyDeclaration, Registry};

@@ -1,7 +1,7 @@
 //! Which file describes which namespace.
 
 use super::Schema;
-use super::node::Node;
+use super::node::{Documented, Node};
 
 /// An XML catalog (OASIS XML Catalogs 1.1) by which an editor finds the schema of a file from the namespace of its root.
 pub fn catalog(schemas: &[Schema]) -> String {

@@ -19,7 +19,7 @@ mod words;
 
 pub use catalog::catalog;
 
-use self::node::Node;
+use self::node::{Documented, Node};
 use self::words::Words;
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::registry::Registry;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::node::Node;
+use super::node::{Documented, Node};
 use super::root;
 use super::sca::{attributes as declared, holding, name_of};
 use super::words::{Names, Words};

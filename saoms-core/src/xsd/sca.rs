@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::node::Node;
+use super::node::{Documented, Node};
 use super::own::{any, type_of};
 use super::{OWN_FILE, root};
 use crate::load::vocabulary::{

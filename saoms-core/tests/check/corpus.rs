@@ -14,7 +14,7 @@ use saoms_core::xml;
 use crate::support::shown;
 
 /// The folder of the collection: `shared/corpus` beside the workspace, or beside one of the folders around it.
-fn collection() -> Option<PathBuf> {
+pub(crate) fn collection() -> Option<PathBuf> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
     workspace.ancestors().map(|folder| folder.join("shared/corpus")).find(|folder| folder.is_dir())
 }

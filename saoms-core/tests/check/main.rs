@@ -8,6 +8,7 @@ mod component_types;
 mod corpus;
 mod environment;
 mod expanded;
+mod expanded_given;
 mod files;
 mod findings;
 mod fleets;

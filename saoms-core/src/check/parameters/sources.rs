@@ -11,7 +11,9 @@ use crate::check::value_type::{self, Typed};
 use crate::check::xpath::XPath;
 use crate::check::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::model::Property;
 use crate::source::Text;
+use crate::xml::Element;
 
 impl<'a> Parameters<'a> {
     /// What a `source` stands for. Faults are reported.
@@ -41,7 +43,7 @@ impl<'a> Parameters<'a> {
                 Some(Given::Component(_, outside)) if property.element().is_none() => outside,
                 _ => property,
             };
-            return Ok(whole.inside_elements_of(typed));
+            return Ok(self.taken_as(typed, whole));
         };
         if whole.0.is_empty() {
             // What has no value has no parts either.
@@ -52,7 +54,7 @@ impl<'a> Parameters<'a> {
             found => found.or_else(|one| malformed(source, start, one, report))?,
         };
         // Without more steps it is the value itself.
-        let Some(from) = path.find('/') else { return Ok(whole.inside_elements_of(property)) };
+        let Some(from) = path.find('/') else { return Ok(self.taken_as(property, whole)) };
         let levels = Rc::new(Levels::of(whole));
         if from == 0
             && let Some(parameter) = self.units[place].by_name.get_mut(name)
@@ -63,6 +65,51 @@ impl<'a> Parameters<'a> {
             Err(Fault { is_understood: false, .. }) => self.by_xpath(place, source, report),
             found => found.or_else(|one| malformed(source, start, one, report)),
         }
+    }
+
+    /// What is taken of the values of a property.
+    fn taken_as(&self, property: &Property, values: Raw<'a>) -> Raw<'a> {
+        if self.keeps_elements { values } else { values.inside_elements_of(property) }
+    }
+
+    /// The `element` of the values that a `source` leads to, and where it is written.
+    pub(in crate::check) fn element_of(&self, unit: usize, source: &str) -> Option<(&'a Text, Element<'a>)> {
+        let (name, path) = expression(source)?;
+        if path.is_some_and(|path| path.contains('/')) {
+            return None;
+        }
+        let parameter = self.units[unit].by_name.get(name)?;
+        if let Some(Given::Component(outside, outer)) = parameter.given
+            && parameter.property.element().is_none()
+        {
+            let outer_element = outer.origin.element(&outside.composite.document);
+            return match outer.element() {
+                Some(of) => Some((of, outer_element)),
+                None => self.element_of(outside.unit, outer.source()?),
+            };
+        }
+        let element = parameter.property.origin.element(&parameter.composite.document);
+        Some((parameter.property.element()?, element))
+    }
+
+    /// A `source` that nobody can follow yet as one of the outermost composite, with the properties of that which it names. `None` where there is none
+    /// that says the same.
+    pub(in crate::check) fn open(&self, unit: usize, source: &str) -> Option<(String, Vec<String>)> {
+        let (mut unit, mut source) = (unit, source.to_owned());
+        while !self.units[unit].is_outermost {
+            let (name, path) = expression(&source)?;
+            let Some(Given::Component(outside, outer)) = self.units[unit].by_name.get(name)?.given else {
+                return None;
+            };
+            source = format!("{}{}", outer.source()?.as_str(), path.unwrap_or_default());
+            unit = outside.unit;
+        }
+        let is_in_name = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ':');
+        let after = source.split('$').skip(1);
+        let names = after
+            .map(|rest| rest[..rest.find(|letter| !is_in_name(letter)).unwrap_or(rest.len())].to_owned());
+        let names = names.collect();
+        Some((source, names))
     }
 
     /// Finds the property of a name that a `source` has at a byte, and notes that it is used. One that is not there is reported.
@@ -169,7 +216,7 @@ impl<'a> Parameters<'a> {
             Err(fault) => return malformed(source, 0, fault, report),
         };
         let found = match &named[..] {
-            [(only, _)] => found.inside_elements_of(self.units[place].by_name[only.as_str()].property),
+            [(only, _)] => self.taken_as(self.units[place].by_name[only.as_str()].property, found),
             _ => found,
         };
         self.found.insert(key, (source.location, found.clone()));
