@@ -37,14 +37,17 @@ impl Hasher for Folding {
     }
 
     fn write(&mut self, bytes: &[u8]) {
-        let (words, rest) = bytes.as_chunks::<8>();
-        for word in words {
-            self.write_u64(u64::from_le_bytes(*word));
-        }
-        if !rest.is_empty() {
-            let mut last = [0; 8];
-            last[..rest.len()].copy_from_slice(rest);
-            self.write_u64(u64::from_le_bytes(last));
+        if let Some(last) = bytes.last_chunk::<8>() {
+            let (words, rest) = bytes.as_chunks::<8>();
+            for word in words {
+                self.write_u64(u64::from_le_bytes(*word));
+            }
+            // The last eight hold some a second time.
+            if !rest.is_empty() {
+                self.write_u64(u64::from_le_bytes(*last));
+            }
+        } else if !bytes.is_empty() {
+            self.write_u64(bytes.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)));
         }
         // `a` and `a\0` differ.
         self.write_u64(bytes.len() as u64);

@@ -115,12 +115,14 @@ impl<'a> Rule<'a> {
         match self.kind {
             PropertyKind::String => self.text(text).map(|()| Scalar::Text(text.to_owned())),
             PropertyKind::Enumeration => self.text(text).map(|()| Scalar::Text(text.trim().to_owned())),
-            PropertyKind::Integer => self.within(text, integer).map(Scalar::Integer),
-            PropertyKind::Float => self.within(text, float).map(Scalar::Float),
-            PropertyKind::Duration => self.within(text, duration).map(Scalar::Duration),
-            PropertyKind::Boolean => self.within(text, boolean).map(Scalar::Boolean),
+            PropertyKind::Integer => self.within(text, integer, is_far).map(Scalar::Integer),
+            PropertyKind::Float => self.within(text, float, |_, _, _| false).map(Scalar::Float),
+            PropertyKind::Duration => self.within(text, duration, |_, _, _| false).map(Scalar::Duration),
+            PropertyKind::Boolean => self.within(text, boolean, |_, _, _| false).map(Scalar::Boolean),
             // No text is one.
-            PropertyKind::Complex => self.within(text, |_| None::<bool>).map(Scalar::Boolean),
+            PropertyKind::Complex => {
+                self.within(text, |_| None::<bool>, |_, _, _| false).map(Scalar::Boolean)
+            }
         }
     }
 
@@ -131,9 +133,9 @@ impl<'a> Rule<'a> {
     pub fn allows(&self, text: &str) -> Result<(), String> {
         match self.kind {
             PropertyKind::String | PropertyKind::Enumeration => self.text(text),
-            PropertyKind::Integer => self.within(text, integer).map(drop),
-            PropertyKind::Float => self.within(text, float).map(drop),
-            PropertyKind::Duration => self.within(text, duration).map(drop),
+            PropertyKind::Integer => self.within(text, integer, is_far).map(drop),
+            PropertyKind::Float => self.within(text, float, |_, _, _| false).map(drop),
+            PropertyKind::Duration => self.within(text, duration, |_, _, _| false).map(drop),
             _ => self.check(text).map(drop),
         }
     }
@@ -150,8 +152,14 @@ impl<'a> Rule<'a> {
         }
     }
 
-    /// Reads a value that has an order, and compares it with the bounds.
-    fn within<T: PartialOrd>(&self, text: &str, read: impl Fn(&str) -> Option<T>) -> Result<T, String> {
+    /// Reads a value that has an order, and compares it with the bounds: but for those that `is_far` knows to be beyond it without reading
+    /// them, of which it is told whether they are the least value.
+    fn within<T: PartialOrd>(
+        &self,
+        text: &str,
+        read: impl Fn(&str) -> Option<T>,
+        is_far: impl Fn(&T, &str, bool) -> bool,
+    ) -> Result<T, String> {
         let trimmed = trim(text);
         if trimmed.is_empty() {
             return Err(format!("the value is empty: expected {}", Expected(self)));
@@ -159,10 +167,12 @@ impl<'a> Rule<'a> {
         let Some(value) = read(trimmed) else {
             return Err(self.refusal(why_not(self.kind, text), text));
         };
-        let bound = |bound: Option<&str>| read(trim(bound?));
-        let below = bound(self.min).is_some_and(|min| value < min);
-        let above = bound(self.max).is_some_and(|max| value > max)
-            || bound(self.exclusive_max).is_some_and(|max| value >= max);
+        let near = |bound: Option<&'a str>, is_least| {
+            bound.map(trim).filter(|bound| !is_far(&value, bound, is_least)).and_then(&read)
+        };
+        let below = near(self.min, true).is_some_and(|min| value < min);
+        let above = near(self.max, false).is_some_and(|max| value > max)
+            || near(self.exclusive_max, false).is_some_and(|max| value >= max);
         if below || above { Err(self.refusal("out of range", text)) } else { Ok(value) }
     }
 
@@ -218,24 +228,20 @@ fn duration(text: &str) -> Option<Duration> {
 
 /// A whole number; those of ordinary size are read much faster than 128 bits are.
 fn integer(text: &str) -> Option<i128> {
-    /// Whatever these digits are, the number has 64 bits.
-    const FEW: usize = 18;
-    let (is_negative, digits) = match text.as_bytes() {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] | digits => (false, digits),
-    };
-    if digits.is_empty() || digits.len() > FEW {
-        return text.parse().ok();
+    match text.parse::<i64>() {
+        Ok(number) => Some(i128::from(number)),
+        Err(_) => text.parse().ok(),
     }
-    let mut number = 0_i64;
-    for digit in digits {
-        let digit = digit.wrapping_sub(b'0');
-        if digit > 9 {
-            return None;
-        }
-        number = number * 10 + i64::from(digit);
-    }
-    Some(i128::from(if is_negative { -number } else { number }))
+}
+
+/// Whether a whole number is certainly above this least, or below this greatest value: most of these are the ends of a type, far away, and
+/// reading them takes longer than reading the number.
+fn is_far(number: &i128, bound: &str, is_least: bool) -> bool {
+    /// Numbers of more digits are at least so large.
+    const NEAR: std::ops::Range<i128> = -999_999_999..1_000_000_000;
+    let digits = if is_least { bound.strip_prefix('-') } else { Some(bound) };
+    digits.is_some_and(|digits| digits.len() > 9 && matches!(digits.as_bytes(), [b'1'..=b'9', ..]))
+        && NEAR.contains(number)
 }
 
 /// What keeps a text from being a value of the type.
@@ -320,38 +326,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whole_numbers_are_those_of_the_standard_library() {
-        let texts = [
+    fn bounds_that_are_not_read_are_beyond_the_number() {
+        let bounds = [
             "0",
-            "-0",
-            "+0",
             "7",
             "-7",
-            "+7",
-            "007",
-            "-",
-            "+",
-            "",
-            "--7",
-            "+-7",
-            "7-",
-            "7.0",
-            "7 ",
-            " 7",
-            "1_000",
-            "٣",
-            "999999999999999999",
-            "-999999999999999999",
-            "9999999999999999999",
+            "999999999",
+            "1000000000",
+            "-999999999",
+            "-1000000000",
+            "4294967295",
+            "-2147483648",
             "9223372036854775808",
-            "170141183460469231731687303715884105727",
-            "170141183460469231731687303715884105728",
-            "0x7",
-            "7\0",
-            "00000000000000000000000000000000000000000000000000000000007",
+            "-170141183460469231731687303715884105728",
+            "0000000001",
+            "-0000000001",
         ];
-        for text in texts {
-            assert_eq!(integer(text), text.parse().ok(), "{text}");
+        let numbers =
+            [0, 1, -1, 999_999_999, -999_999_999, 1_000_000_000, -1_000_000_000, i128::MAX, i128::MIN];
+        let mut unread = 0;
+        for (bound, number) in bounds.iter().flat_map(|bound| numbers.map(|number| (*bound, number))) {
+            let read: i128 = bound.parse().unwrap();
+            for is_least in [false, true] {
+                let is_far = is_far(&number, bound, is_least);
+                assert!(
+                    !is_far || if is_least { read < number } else { read > number },
+                    "{bound} of {number}"
+                );
+                unread += usize::from(is_far);
+            }
         }
+        assert_eq!(unread, 30, "of each of the larger bounds, where the number is of ordinary size");
     }
 }

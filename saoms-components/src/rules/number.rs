@@ -21,7 +21,7 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
-    let mut first: HashMap<u32, &Known> = HashMap::new();
+    let mut first: HashMap<u32, &Known> = HashMap::with_capacity(robots.len());
     let mut findings = Vec::new();
     for robot in robots.iter() {
         let Some(other) = first.get(&robot.number) else {

@@ -27,7 +27,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let robots = robots(fleet);
-    let mut first: HashMap<(Option<usize>, Block), &Known> = HashMap::new();
+    let mut first: HashMap<(Option<usize>, Block), &Known> = HashMap::with_capacity(robots.len());
     let mut findings = Vec::new();
     for robot in robots.iter() {
         let key = (robot.world, robot.charger);

@@ -115,12 +115,22 @@ fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], repo
 }
 
 fn repeated<'a>(
-    names: impl Iterator<Item = &'a Text>,
+    names: impl ExactSizeIterator<Item = &'a Text> + Clone,
     component: &Component,
     what: &str,
     rule: &'static str,
     report: &mut Report<'_>,
 ) {
+    /// So many are compared with each other sooner than they are in a table.
+    const FEW: usize = 8;
+    let are_own = || {
+        let mut later = names.clone();
+        std::iter::from_fn(|| later.next().map(|name| (name, later.clone())))
+            .all(|(name, mut later)| name.is_empty() || later.all(|other| other.value != name.value))
+    };
+    if names.len() <= FEW && are_own() {
+        return;
+    }
     let mut seen: HashMap<&str, Location> = HashMap::new();
     for name in names.filter(|name| !name.is_empty()) {
         if let Some(first) = seen.get(name.as_str()) {

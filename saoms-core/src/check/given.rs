@@ -12,6 +12,7 @@ use super::report::{Report, escaped, list, replacing};
 use super::target::parts;
 use super::value_type::{self, Match, Typed};
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
+use crate::hash::Set;
 use crate::model::{Component, ComponentType, ImplementationKind, Multiplicity, Part, Property, Reference};
 use crate::source::{Location, Text};
 
@@ -158,8 +159,8 @@ pub(super) fn contracts(component: &Component, known: Known<'_>, report: &mut Re
 }
 
 /// The references that composites promote, by their scopes and components; without a name where a component is promoted as a whole.
-pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> HashSet<(usize, &'a str, Option<&'a str>)> {
-    let mut all = HashSet::new();
+pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> Set<(usize, &'a str, Option<&'a str>)> {
+    let mut all = Set::default();
     if fleet.members.iter().all(|member| member.kind != Kind::Given) {
         return all;
     }
@@ -178,7 +179,7 @@ pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> HashSet<(usize, &'a str, Option
 pub(super) fn unwired<'f>(
     place: usize,
     fleet: &'f Fleet<'_>,
-    promoted: &HashSet<(usize, &str, Option<&str>)>,
+    promoted: &Set<(usize, &str, Option<&str>)>,
     is_wired: impl Fn(&'f str) -> bool,
     report: &mut Report<'_>,
 ) {

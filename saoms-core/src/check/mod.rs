@@ -332,7 +332,7 @@ fn components<'f, 'a>(
             continue;
         };
         let class = &classes[index];
-        unique.add(member, class, &checked, report);
+        unique.add((place, fleet), class, &checked, report);
         let is_periodic = class.class.declaration().is_periodic();
         let mut task =
             is_periodic.then(|| task::check(member.component, (index, class), &checked, &mut before, report));

@@ -113,14 +113,15 @@ impl<'a> Report<'a> {
     /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
     #[inline]
     pub(super) fn about(&mut self, member: &Member<'_>) {
-        if !member.is_copy {
-            if self.copy.is_some() {
-                self.copy = None;
-            }
-            return;
+        if member.is_copy || self.copy.is_some() {
+            self.about_copy(member);
         }
+    }
+
+    #[cold]
+    fn about_copy(&mut self, member: &Member<'_>) {
         let index = member.instance.map(|instance| instance.index);
-        self.copy = Some(Copied { path: member.path().into(), index });
+        self.copy = member.is_copy.then(|| Copied { path: member.path().into(), index });
     }
 
     /// Lets what follows be about the replica of this name and index.

@@ -33,9 +33,14 @@ pub(super) fn check<'s>(
     let mut places = Vec::with_capacity(fleet.members.len());
     // One of each class is enough, and one for all of which nobody knows the class.
     let mut missing = Vec::new();
-    let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
+    let mut known: HashSet<*const ClassIndex<'_>> = HashSet::new();
+    let mut misses_unknown = false;
     let mut miss = |class: Option<&'s ClassIndex<'_>>| {
-        if known.insert(class.map(std::ptr::from_ref)) {
+        let is_new = match class {
+            Some(class) => known.insert(class),
+            None => !std::mem::replace(&mut misses_unknown, true),
+        };
+        if is_new {
             missing.push(class.map(declarations));
         }
     };

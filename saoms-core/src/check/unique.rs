@@ -8,7 +8,7 @@ use saoms_api::declaration::{PropertyKind, Scalar, parse_scalar};
 use smol_str::SmolStr;
 
 use super::classes::ClassIndex;
-use super::fleet::Member;
+use super::fleet::Fleet;
 use super::properties::Checked;
 use super::replicas::with_index;
 use super::report::{Report, replacing};
@@ -18,90 +18,102 @@ use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
 
-/// Collects values that components must not share.
+/// Collects values that components must not share. A large fleet has many, so that what is kept of each is small.
 #[derive(Default)]
 pub(super) struct Unique<'a> {
-    /// The first user of a value, by the word that the properties share.
-    seen: Map<(&'a str, Canonical), Seen<'a>>,
-    /// The first task of an ID.
-    tasks: Map<Canonical, Seen<'a>>,
+    /// The words that properties share.
+    words: Vec<&'a str>,
+    /// The first user of a value, by the place of the word.
+    seen: Map<(u32, Canonical), Seen>,
+    /// The first task of an ID, with the place of the word by which that is unique.
+    tasks: Map<Canonical, (Seen, Option<u32>)>,
 }
 
 #[derive(Clone, Copy)]
-struct Seen<'a> {
-    component: &'a str,
+struct Seen {
+    /// The place of the component.
+    member: u32,
     place: Location,
-    /// Whether it is unique by the class's own word.
-    is_declared: Option<&'a str>,
 }
 
 impl<'a> Unique<'a> {
     /// Adds what a component gives, or what its class presets.
     pub(super) fn add(
         &mut self,
-        member: &'a Member<'_>,
+        (place, fleet): (usize, &Fleet<'_>),
         class: &ClassIndex<'a>,
         checked: &Checked,
         report: &mut Report<'_>,
     ) {
-        if member.is_partial {
+        let own = &fleet.members[place];
+        if own.is_partial {
             return;
         }
-        let component = member.path();
+        // Fleets are limited to fewer.
+        let member = place as u32;
         for &place in &class.slots.unique {
             let slot = &class.slots.all[place];
             let Some(declaration) = slot.main() else { continue };
-            let word = declaration.unique.as_deref();
             let (value, place) = match checked.at(place) {
                 Some(given) => (Some(&given.value), given.place),
-                None => (class.slots.preset(&declaration.name), member.component.name.location),
+                None => (class.slots.preset(&declaration.name), own.component.name.location),
             };
             let Some(value) = value.and_then(|value| Canonical::of(value, declaration)) else { continue };
-            let seen = Seen { component, place, is_declared: word };
+            let seen = Seen { member, place };
+            let word = declaration.unique.as_deref().map(|word| self.word(word));
             if let Some(word) = word {
-                self.declared(word, value.clone(), seen, declaration, member, report);
+                self.declared((word, value.clone()), seen, declaration, fleet, report);
             }
             if slot.is_task_id() {
-                self.task(value, seen, report);
+                self.task(value, (seen, word), fleet, report);
             }
         }
     }
 
+    /// The place of a word; few are used.
+    fn word(&mut self, word: &'a str) -> u32 {
+        let known = self.words.iter().position(|known| *known == word);
+        known.unwrap_or_else(|| {
+            self.words.push(word);
+            self.words.len() - 1
+        }) as u32
+    }
+
     fn declared(
         &mut self,
-        word: &'a str,
-        value: Canonical,
-        seen: Seen<'a>,
+        key: (u32, Canonical),
+        seen: Seen,
         declaration: &PropertyDeclaration,
-        member: &Member<'_>,
+        fleet: &Fleet<'_>,
         report: &mut Report<'_>,
     ) {
-        let entry = match self.seen.entry((word, value)) {
+        let entry = match self.seen.entry(key) {
             Entry::Occupied(entry) => entry,
             Entry::Vacant(entry) => {
                 entry.insert(seen);
                 return;
             }
         };
-        let ((_, value), first) = (entry.key(), entry.get());
+        let ((word, value), first) = (entry.key(), entry.get());
+        let [earlier, later] = [first, &seen].map(|one| &fleet.members[one.member as usize]);
         // That there are two components of one name is told.
-        if first.component == seen.component {
+        if earlier.path() == later.path() {
             return;
         }
         let message = format!(
             "components {} and {} have the same {} {}",
-            quoted(first.component),
-            quoted(seen.component),
+            quoted(earlier.path()),
+            quoted(later.path()),
             quoted(&declaration.name),
             quoted(&value.to_string())
         );
         let one = Diagnostic::new(&codes::NOT_UNIQUE, seen.place, message);
-        let one = one.help(format!("every {word} needs its own"));
-        let own = member.component.properties.iter().filter_map(Property::only_text);
+        let one = one.help(format!("every {} needs its own", self.words[*word as usize]));
+        let own = later.component.properties.iter().filter_map(Property::only_text);
         let is_own = own.clone().any(|text| text.location == seen.place);
         report.push(match first.place == seen.place {
             // Of replicas.
-            true if member.instance.is_some() && is_own => {
+            true if later.instance.is_some() && is_own => {
                 let meant = match value {
                     Canonical::Integer(_) => "${index}".to_owned(),
                     Canonical::Text(text) => with_index(text),
@@ -116,23 +128,30 @@ impl<'a> Unique<'a> {
     }
 
     /// Tasks that share an ID run all the same, but people cannot tell them apart.
-    fn task(&mut self, value: Canonical, seen: Seen<'a>, report: &mut Report<'_>) {
+    fn task(
+        &mut self,
+        value: Canonical,
+        (seen, word): (Seen, Option<u32>),
+        fleet: &Fleet<'_>,
+        report: &mut Report<'_>,
+    ) {
         let entry = match self.tasks.entry(value) {
             Entry::Occupied(entry) => entry,
             Entry::Vacant(entry) => {
-                entry.insert(seen);
+                entry.insert((seen, word));
                 return;
             }
         };
-        let (value, first) = (entry.key(), entry.get());
-        let is_told = seen.is_declared.is_some() && seen.is_declared == first.is_declared;
-        if is_told || first.component == seen.component {
+        let (value, (first, first_word)) = (entry.key(), entry.get());
+        let is_told = word.is_some() && word == *first_word;
+        let [earlier, later] = [first, &seen].map(|one| fleet.members[one.member as usize].path());
+        if is_told || earlier == later {
             return;
         }
         let message = format!(
             "components {} and {} share the ID {}",
-            quoted(first.component),
-            quoted(seen.component),
+            quoted(earlier),
+            quoted(later),
             quoted(&value.to_string())
         );
         report.push(
@@ -146,7 +165,7 @@ impl<'a> Unique<'a> {
 /// What is equal for equal values: `07` and `7` are one number.
 #[derive(Clone, PartialEq, Eq, Hash)]
 enum Canonical {
-    Integer(i128),
+    Integer(i64),
     Text(SmolStr),
 }
 
@@ -157,7 +176,11 @@ impl Canonical {
             return Some(Self::Text(text.trim().into()));
         }
         Some(match parse_scalar(declaration.kind, text)? {
-            Scalar::Integer(number) => Self::Integer(number),
+            // Of larger ones there are few.
+            Scalar::Integer(number) => match i64::try_from(number) {
+                Ok(number) => Self::Integer(number),
+                Err(_) => Self::Text(number.to_string().into()),
+            },
             Scalar::Float(number) => Self::Text(number.to_string().into()),
             Scalar::Duration(duration) => Self::Text(saoms_api::format_duration(duration).into()),
             Scalar::Boolean(value) => Self::Text(value.to_string().into()),

@@ -229,7 +229,7 @@ impl Loader<'_> {
         if let Some(attribute) = self.attribute(element, "name")
             && let Some(name) = attribute.plain_name()
         {
-            if attribute.raw_value().starts_with(|first: char| matches!(first, '0'..='9' | '-' | '.')) {
+            if matches!(attribute.raw_value().as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..]) {
                 self.no_name(&name);
             }
             return name;

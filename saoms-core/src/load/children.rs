@@ -212,7 +212,15 @@ impl Loader<'_> {
     }
 
     /// Reports text in an element that holds elements alone.
+    #[inline]
     pub(super) fn no_text(&mut self, element: Element<'_>) {
+        if element.has_text() {
+            self.text_in(element);
+        }
+    }
+
+    #[cold]
+    fn text_in(&mut self, element: Element<'_>) {
         let Some(span) = element.text_span() else { return };
         let location = span.in_file(element.document().file());
         if self.is_closed_early(element)

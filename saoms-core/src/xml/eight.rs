@@ -35,6 +35,23 @@ pub(super) fn any(bytes: &[u8], odd: impl Fn(u64) -> u64) -> bool {
     odd(all) != 0
 }
 
+/// Whether both hold the same bytes.
+#[inline]
+pub(super) fn same(one: &[u8], other: &[u8]) -> bool {
+    let is_same = |(one, other): (&[u8; 8], &[u8; 8])| u64::from_le_bytes(*one) == u64::from_le_bytes(*other);
+    if one.len() != other.len() {
+        return false;
+    }
+    match (one.last_chunk(), other.last_chunk()) {
+        // The last eight hold some a second time.
+        (Some(one_last), Some(other_last)) => {
+            let (one, other) = (one.as_chunks().0, other.as_chunks().0);
+            is_same((one_last, other_last)) && one.iter().zip(other).all(is_same)
+        }
+        _ => one.iter().zip(other).all(|(one, other)| one == other),
+    }
+}
+
 /// Where the first of three bytes is.
 #[inline]
 pub(super) fn first_of(bytes: &[u8], wanted: [u8; 3]) -> Option<usize> {

@@ -15,39 +15,47 @@ pub struct Element<'a> {
 }
 
 impl<'a> Element<'a> {
+    #[inline]
     pub(super) fn new(document: &'a Document, id: ElementId) -> Self {
         assert!((id.0 as usize) < document.nodes.len(), "the element is of this document");
         Self { document, id }
     }
 
+    #[inline]
     fn node(self) -> &'a Node {
         &self.document.nodes[self.id.0 as usize]
     }
 
+    #[inline]
     fn tag(self) -> &'a Shape {
         self.document.shapes.get(self.node().shape)
     }
 
+    #[inline]
     fn at(self, id: u32) -> Option<Self> {
         (id != NONE).then_some(Self { document: self.document, id: ElementId(id) })
     }
 
     /// Its identifier in its document.
+    #[inline]
     pub fn id(self) -> ElementId {
         self.id
     }
 
     /// The document.
+    #[inline]
     pub fn document(self) -> &'a Document {
         self.document
     }
 
     /// The name as written, with its prefix.
+    #[inline]
     pub fn name(self) -> &'a str {
         slice(self.document, self.name_span())
     }
 
     /// The name without its prefix.
+    #[inline]
     pub fn local_name(self) -> &'a str {
         if self.tag().has_prefix { split(self.name()).1 } else { self.name() }
     }
@@ -63,6 +71,7 @@ impl<'a> Element<'a> {
     }
 
     /// Whether two elements of one document are in the same namespace.
+    #[inline]
     pub(crate) fn shares_namespace(self, other: Self) -> bool {
         self.tag().namespace == other.tag().namespace
     }
@@ -78,17 +87,20 @@ impl<'a> Element<'a> {
     }
 
     /// The name in the start tag.
+    #[inline]
     pub fn name_span(self) -> Span {
         let start = self.node().start + 1;
         Span::new(start, start + self.tag().name_len)
     }
 
     /// Where the name in the start tag is.
+    #[inline]
     pub fn name_location(self) -> Location {
         self.name_span().in_file(self.document.file)
     }
 
     /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
+    #[inline]
     pub fn content_span(self) -> Span {
         let Node { tag_end, end, is_closed, .. } = *self.node();
         if tag_end == end || !is_closed {
@@ -106,6 +118,7 @@ impl<'a> Element<'a> {
     }
 
     /// Whether it was read to its end; only those that were open at a fault were not.
+    #[inline]
     pub fn is_closed(self) -> bool {
         self.node().is_closed
     }
@@ -116,6 +129,7 @@ impl<'a> Element<'a> {
     }
 
     /// The elements directly inside, in order.
+    #[inline]
     pub fn children(self) -> impl Iterator<Item = Self> + use<'a> {
         let next = self.id.0 + 1;
         let first = match self.document.nodes.get(next as usize) {
@@ -133,6 +147,7 @@ impl<'a> Element<'a> {
     }
 
     /// A number that elements have in common whose start tags are the same but for the values, white space and the namespaces included.
+    #[inline]
     pub(crate) fn shape(self) -> usize {
         self.node().shape as usize
     }
@@ -150,6 +165,7 @@ impl<'a> Element<'a> {
     ///
     /// # Panics
     /// When there are not as many.
+    #[inline]
     pub(crate) fn nth_attribute(self, at: usize) -> Attribute<'a> {
         let document = self.document;
         let part = &document.shapes.parts(self.node().shape)[at];
@@ -175,6 +191,7 @@ impl<'a> Element<'a> {
     }
 
     /// The attribute of this name in no namespace.
+    #[inline]
     pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
         self.attributes().find(|one| one.part.namespace == NO_NAMESPACE && one.name() == name)
     }
@@ -220,6 +237,7 @@ impl<'a> Element<'a> {
     }
 
     /// Whether text other than white space is directly inside.
+    #[inline]
     pub fn has_text(self) -> bool {
         self.node().has_text
     }
@@ -254,6 +272,7 @@ impl<'a> Element<'a> {
 
     /// From the first to behind the last character of the text directly inside, white space at both ends not
     /// counted; `None` when there is nothing but white space.
+    #[inline]
     pub fn text_span(self) -> Option<Span> {
         if !self.has_text() {
             return None;
@@ -268,6 +287,7 @@ impl<'a> Element<'a> {
     }
 
     /// The text directly inside without white space at its ends, and where it is; `None` when there is none.
+    #[inline]
     pub fn trimmed_text(self) -> Option<Text> {
         if !self.has_text() {
             return None;
@@ -296,6 +316,7 @@ pub struct Attribute<'a> {
 
 impl<'a> Attribute<'a> {
     /// The name as written, with its prefix.
+    #[inline]
     pub fn name(self) -> &'a str {
         slice(self.document, self.name_span())
     }
@@ -321,6 +342,7 @@ impl<'a> Attribute<'a> {
     }
 
     /// The value as written.
+    #[inline]
     pub fn raw_value(self) -> &'a str {
         slice(self.document, self.value)
     }
@@ -347,6 +369,7 @@ impl<'a> Attribute<'a> {
     }
 
     /// The value and where it is, when it is a name as most are: not empty, and of ASCII without white space and `/`.
+    #[inline]
     pub(crate) fn plain_name(self) -> Option<Text> {
         let name = self.raw_value();
         let is_plain = !name.is_empty() && value::is_plain_name(name.as_bytes());
@@ -354,6 +377,7 @@ impl<'a> Attribute<'a> {
     }
 
     /// The value and where it is, when it is one word as most are, without white space or references.
+    #[inline]
     pub(crate) fn only_word(self) -> Option<Text> {
         let word = self.raw_value();
         let is_word = !word.is_empty() && value::is_plain(word.as_bytes());
@@ -361,6 +385,7 @@ impl<'a> Attribute<'a> {
     }
 
     /// The value and where it is, white space at its ends left out.
+    #[inline]
     pub fn trimmed(self) -> Text {
         // One look at the bytes of most values tells that they mean themselves.
         self.only_word().unwrap_or_else(|| self.located(value::trim(self.raw_value())))

@@ -6,7 +6,7 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::characters::{blank_length, first_forbidden, forbidden, is_blank};
-use super::eight::first_of;
+use super::eight::{first_of, same};
 use super::fault::{Checked, Fault, Input};
 use super::namespaces::{Namespaces, refusal};
 use super::shape::Known;
@@ -275,10 +275,12 @@ impl<'a> Parser<'a> {
     fn end_tag(&mut self, start: u32) -> Checked<u32> {
         if let Some(open) = self.open.last() {
             // Nearly every end tag has the name of its start tag, and nothing behind it.
-            let name = self.name(&self.nodes[open.node as usize]);
-            let rest = &self.input.bytes()[start as usize + 2..];
-            if rest.get(name.len()) == Some(&b'>') && rest.starts_with(name.as_bytes()) {
-                return Ok(self.close(start + name.len() as u32 + 3));
+            let name = self.name_span(&self.nodes[open.node as usize]);
+            let bytes = self.input.bytes();
+            let (from, end) = (start as usize + 2, (start + 2 + name.len()) as usize);
+            let is_it = |found| same(found, &bytes[name.start as usize..name.end as usize]);
+            if bytes.get(end) == Some(&b'>') && bytes.get(from..end).is_some_and(is_it) {
+                return Ok(self.close(end as u32 + 1));
             }
         }
         let (name, end) = tag::end_tag(self.input, start)?;

@@ -5,7 +5,7 @@
 
 use std::hash::{BuildHasher, Hasher};
 
-use super::eight::first_of;
+use super::eight::{first_of, same};
 use super::fault::Input;
 use super::tag::{RawAttribute, StartTag};
 use super::tree::{NONE, XMLNS};
@@ -264,7 +264,7 @@ impl Shapes {
 fn behind(bytes: &[u8], at: usize, like: Span) -> Option<usize> {
     let like = &bytes[like.start as usize..like.end as usize];
     let end = at + like.len();
-    (bytes.get(at..end)? == like).then_some(end)
+    same(bytes.get(at..end)?, like).then_some(end)
 }
 
 /// Where a value ends that starts at `start`, behind its quote, when nothing in it has to be looked at more closely.
