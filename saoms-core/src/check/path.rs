@@ -190,6 +190,7 @@ impl<'p> Test<'p> {
                 true => format!("there is no part{asked}: there are no parts here"),
                 false => format!("there is no part{asked}; the parts are {}", list(known.iter().copied())),
             };
+            let message = message + self.of_values();
             return Fault::new(at, message).near(self.name.unwrap_or_default(), known);
         }
         let (name, value) = match &self.predicate {
@@ -199,8 +200,7 @@ impl<'p> Test<'p> {
                 return Fault::new(at, message);
             }
             _ => {
-                let message = format!("there {}, from `[1]` on", is_counted(named.len(), self.name));
-                return Fault::new(at, message);
+                return Fault::new(at, self.no_place(named));
             }
         };
         let values = named.iter().take(MOST_LOOKED_AT).filter_map(|one| attribute(*one, name)).take(50);
@@ -211,6 +211,34 @@ impl<'p> Test<'p> {
         };
         let message = format!("no part here has {} as its {}: {known}", quoted(value), quoted(name));
         Fault::new(at, message).near(value, values.iter().map(|value| &**value))
+    }
+}
+
+impl Test<'_> {
+    /// What is said of a path into `<value>` elements: a variable is the values, not what they are in.
+    pub(super) fn of_values(&self) -> &'static str {
+        if self.name == Some("value") {
+            "; the values of a property are `$name` itself, the second is `$name[2]`"
+        } else {
+            ""
+        }
+    }
+
+    /// Why no element of these is at a place: it counts within each of the elements that they are in.
+    fn no_place(&self, named: &[Element<'_>]) -> String {
+        let parent = |one: &Element<'_>| one.parent().map(Element::id);
+        let groups: Vec<usize> =
+            named.chunk_by(|one, other| parent(one) == parent(other)).map(<[Element<'_>]>::len).collect();
+        let counted = is_counted(named.len(), self.name);
+        match groups[..] {
+            [_] | [] => format!("there {counted}, from `[1]` on"),
+            _ => {
+                let (most, count) = (groups.iter().max().copied().unwrap_or_default(), groups.len());
+                format!(
+                    "there {counted} in {count} elements, at most {most} in each, and a place counts in each: `($name/path)[2]` is the second of all"
+                )
+            }
+        }
     }
 }
 

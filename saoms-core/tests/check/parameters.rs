@@ -119,6 +119,11 @@ fn sources_are_paths() {
         "$many[3]",
         "$many[a]",
         "$many/x",
+        "$many/value[2]",
+        "$many/text()",
+        "$many[2]/text()",
+        "$b/bay/x[2]",
+        "($b/bay/x)[2]",
         "$s/x",
         "$b/",
         "$b[99999999999999999999999]",
@@ -152,6 +157,11 @@ fn sources_are_paths() {
         $many[3]: S2023: the property has 2 values
         $many[a]: S2023: the property has 2 values
         $many/x: S2023: the property has a simple value: there are no parts in it
+        $many/value[2]: S2023: the property has a simple value: there are no parts in it; the values of a property are `$name` itself, the second is `$name[2]`
+        $many/text(): S3011: the property `number` takes one value, and here are 2
+        $many[2]/text(): Text("2"
+        $b/bay/x[2]: S2023: there are 3 parts `x` in 3 elements, at most 1 in each, and a place counts in each: `($name/path)[2]` is the second of all
+        ($b/bay/x)[2]: Text("5"
         $s/x: S2023: the property has a simple value: there are no parts in it
         $b/: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         $b[99999999999999999999999]: S2023: the property has one value
