@@ -15,6 +15,7 @@ const MOST_WORDS: usize = 1_000_000;
 impl Loader<'_> {
     /// Whether an element of this kind has no attribute but these usual ones, which it can have: there is nothing else to read. The others
     /// of one that has more are checked.
+    #[inline(always)]
     pub(super) fn is_plain(&mut self, element: Element<'_>, kind: &'static Kind, usual: &[&str]) -> bool {
         let is_plain = self.has_only(element, usual);
         if !is_plain {
@@ -178,6 +179,7 @@ impl Loader<'_> {
     }
 
     /// The value of an attribute, white space at its ends left out.
+    #[inline(always)]
     pub(super) fn optional(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
         self.attribute(element, name).map(Attribute::trimmed)
     }
@@ -194,17 +196,22 @@ impl Loader<'_> {
     }
 
     /// The value of an attribute that has to be there, and not be empty.
+    #[inline(always)]
     pub(super) fn required(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
-        let Some(attribute) = self.attribute(element, name) else {
-            self.missing(element, name);
-            return None;
-        };
-        let value = attribute.trimmed();
-        if value.is_empty() {
-            self.value_fault(attribute, format!("the attribute {} is empty", quoted(name)), None);
-            return None;
+        let attribute = self.attribute(element, name);
+        let value = attribute.map(Attribute::trimmed).filter(|value| !value.is_empty());
+        if value.is_none() {
+            self.empty_or_missing(element, attribute, name);
         }
-        Some(value)
+        value
+    }
+
+    #[cold]
+    fn empty_or_missing(&mut self, element: Element<'_>, attribute: Option<Attribute<'_>>, name: &str) {
+        match attribute {
+            None => self.missing(element, name),
+            Some(empty) => self.value_fault(empty, format!("the attribute {} is empty", quoted(name)), None),
+        }
     }
 
     fn missing(&mut self, element: Element<'_>, name: &str) {
@@ -263,8 +270,13 @@ impl Loader<'_> {
     }
 
     /// The value of a boolean attribute.
+    #[inline(always)]
     pub(super) fn boolean(&mut self, element: Element<'_>, name: &str) -> Option<Located<bool>> {
         let attribute = self.attribute(element, name)?;
+        self.truth(attribute, name)
+    }
+
+    fn truth(&mut self, attribute: Attribute<'_>, name: &str) -> Option<Located<bool>> {
         let text = attribute.trimmed();
         let value = match text.as_str() {
             "true" | "1" => true,
@@ -305,8 +317,15 @@ impl Loader<'_> {
     }
 
     /// The words of an attribute that is a list.
+    #[inline(always)]
     pub(super) fn list(&mut self, element: Element<'_>, name: &str) -> Vec<Text> {
-        let Some(attribute) = self.attribute(element, name) else { return Vec::new() };
+        match self.attribute(element, name) {
+            Some(attribute) => self.words(attribute, name),
+            None => Vec::new(),
+        }
+    }
+
+    fn words(&mut self, attribute: Attribute<'_>, name: &str) -> Vec<Text> {
         if let Some(word) = attribute.only_word() {
             return vec![word];
         }

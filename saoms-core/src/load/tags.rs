@@ -9,7 +9,8 @@ use crate::xml::{Attribute, Element};
 const USUAL: usize = 12;
 
 /// The place of a usual attribute in what is known of a shape.
-#[inline]
+// The compiler finds it beforehand where the name is written out, which takes that all from there to here is inlined.
+#[inline(always)]
 fn usual(name: &str) -> Option<usize> {
     match name {
         "name" => Some(0),
@@ -89,23 +90,23 @@ impl Tag {
 
 impl Loader<'_> {
     /// What is known of an element's tag.
-    #[inline]
-    pub(super) fn tag(&mut self, element: Element<'_>) -> Tag {
-        match self.tags.get(element.shape()) {
-            Some(tag) if tag.is_known => *tag,
-            _ => self.new_tag(element),
+    #[inline(always)]
+    pub(super) fn tag(&mut self, element: Element<'_>) -> &Tag {
+        let shape = element.shape();
+        if !self.tags.get(shape).is_some_and(|tag| tag.is_known) {
+            self.new_tag(element);
         }
+        &self.tags[shape]
     }
 
     #[cold]
-    fn new_tag(&mut self, element: Element<'_>) -> Tag {
+    fn new_tag(&mut self, element: Element<'_>) {
         let shape = element.shape();
         if self.tags.len() <= shape {
             self.tags.resize(element.document().shapes().max(shape + 1), Tag::UNKNOWN);
         }
         let tag = Tag::of(element, self.sure_family(element));
         self.tags[shape] = tag;
-        tag
     }
 
     /// Whose an element is, as [`Loader::family`] has it, and what it is called there: the local name, or what is meant by it.
@@ -148,7 +149,7 @@ impl Loader<'_> {
     }
 
     /// The attribute of this name in no namespace.
-    #[inline]
+    #[inline(always)]
     pub(super) fn attribute<'a>(&mut self, element: Element<'a>, name: &str) -> Option<Attribute<'a>> {
         let tag = self.tag(element);
         match usual(name) {
@@ -159,7 +160,7 @@ impl Loader<'_> {
     }
 
     /// Whether the element has no attribute but some of these, which are usual ones, and declares no namespace.
-    #[inline]
+    #[inline(always)]
     pub(super) fn has_only(&mut self, element: Element<'_>, names: &[&str]) -> bool {
         let allowed = names.iter().filter_map(|name| usual(name)).fold(0, |all, usual| all | 1 << usual);
         self.tag(element).has & !allowed == 0

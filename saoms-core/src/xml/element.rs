@@ -385,7 +385,6 @@ impl<'a> Attribute<'a> {
     }
 
     /// The value and where it is, white space at its ends left out.
-    #[inline]
     pub fn trimmed(self) -> Text {
         // One look at the bytes of most values tells that they mean themselves.
         self.only_word().unwrap_or_else(|| self.located(value::trim(self.raw_value())))
