@@ -44,19 +44,3 @@ pub(super) fn is_blank(bytes: &[u8]) -> bool {
     let is_space = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\r' | b'\n');
     chunks.iter().all(|chunk| chunk == b"        " || chunk.iter().all(is_space)) && rest.iter().all(is_space)
 }
-
-/// How many bytes of white space are at the start.
-pub(super) fn blank_length(bytes: &[u8]) -> usize {
-    // Mostly it is a line end and the blanks of an indentation.
-    let mut at = 0;
-    while let Some(&byte) = bytes.get(at) {
-        if byte == b' ' && bytes[at..].starts_with(b"        ") {
-            at += 8;
-        } else if matches!(byte, b' ' | b'\t' | b'\r' | b'\n') {
-            at += 1;
-        } else {
-            break;
-        }
-    }
-    at
-}

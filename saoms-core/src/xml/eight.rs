@@ -17,6 +17,28 @@ pub(super) fn up_to_blank(word: u64) -> u64 {
     word.wrapping_sub(ONES * (b' ' as u64 + 1)) & !word & HIGH
 }
 
+/// The highest bit of each byte that is beyond a blank.
+#[inline]
+fn beyond_blank(word: u64) -> u64 {
+    // Nothing is carried from one byte to the next: seven bits and this make less than 256.
+    let rest = (word & !HIGH) + ONES * (0x7f - b' ' as u64);
+    (rest | word) & HIGH
+}
+
+/// How many bytes at the start are blanks or come before them.
+#[inline]
+pub(super) fn blanks(bytes: &[u8]) -> usize {
+    let (chunks, rest) = bytes.as_chunks::<8>();
+    for (index, chunk) in chunks.iter().enumerate() {
+        let found = beyond_blank(u64::from_le_bytes(*chunk));
+        if found != 0 {
+            return index * 8 + found.trailing_zeros() as usize / 8;
+        }
+    }
+    let found = rest.iter().position(|byte| *byte > b' ').unwrap_or(rest.len());
+    bytes.len() - rest.len() + found
+}
+
 /// Whether some eight bytes have a bit set by `odd`.
 #[inline]
 pub(super) fn any(bytes: &[u8], odd: impl Fn(u64) -> u64) -> bool {
@@ -65,4 +87,56 @@ pub(super) fn first_of(bytes: &[u8], wanted: [u8; 3]) -> Option<usize> {
     }
     let at = rest.iter().position(|byte| wanted.contains(byte))?;
     Some(bytes.len() - rest.len() + at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every byte at every place of texts of up to 20 bytes of another.
+    fn texts() -> impl Iterator<Item = Vec<u8>> {
+        let bytes = [0, 9, b' ', b'!', b'/', b'<', b'a', 0x7f, 0x80, 0xa0, 0xff];
+        let lengths = bytes.into_iter().flat_map(|around| (0..20).map(move |length| vec![around; length]));
+        lengths.flat_map(move |text| {
+            let odd = (0..text.len()).flat_map(move |at| bytes.map(|byte| (at, byte)));
+            let changed = text.clone();
+            odd.map(move |(at, byte)| {
+                let mut text = changed.clone();
+                text[at] = byte;
+                text
+            })
+            .chain([text])
+        })
+    }
+
+    #[test]
+    fn blanks_end_at_the_first_byte_beyond_them() {
+        for text in texts() {
+            let found = text.iter().position(|byte| *byte > b' ').unwrap_or(text.len());
+            assert_eq!(blanks(&text), found, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn bytes_are_found_where_they_are_first() {
+        for text in texts() {
+            let wanted = [b'<', 0x80, b' '];
+            assert_eq!(
+                first_of(&text, wanted),
+                text.iter().position(|byte| wanted.contains(byte)),
+                "{text:?}"
+            );
+            assert_eq!(any(&text, |word| equal(word, b'/')), text.contains(&b'/'), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn the_same_is_what_has_the_same_bytes() {
+        let all: Vec<Vec<u8>> = texts().step_by(7).collect();
+        for one in &all {
+            for other in all.iter().step_by(5).chain([one]) {
+                assert_eq!(same(one, other), one == other, "{one:?} {other:?}");
+            }
+        }
+    }
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
-use super::characters::{blank_length, first_forbidden, forbidden, is_blank};
-use super::eight::{first_of, same};
+use super::characters::{first_forbidden, forbidden, is_blank};
+use super::eight::{blanks, first_of, same};
 use super::fault::{Checked, Fault, Input};
 use super::namespaces::{Namespaces, refusal};
 use super::shape::Known;
@@ -319,7 +319,8 @@ impl<'a> Parser<'a> {
 
     fn text(&mut self, start: u32) -> Checked<u32> {
         let rest = &self.input.bytes()[start as usize..];
-        let blank = blank_length(rest);
+        // Of what comes before a blank, XML allows white space alone.
+        let blank = blanks(rest);
         if matches!(rest.get(blank), None | Some(b'<' | b'&')) {
             return Ok(start + blank as u32);
         }
