@@ -15,13 +15,16 @@ use super::symbol::Symbol;
 use super::syntax::local;
 use super::workspace::Around;
 
-/// A file and those around it: composites, then the files beside them that hold values, then composites of other contributions. Files are named by their places;
+/// A file and those around it: composites, then the files beside them that hold values, then composites of contributions from which it imports, then
+/// those of contributions that import from it. Files are named by their places;
 /// that of the file itself is 0.
 #[derive(Debug)]
 pub(super) struct Scene {
     pub(super) files: Vec<Arc<File>>,
     /// How many of the files are of the contribution of the first one.
     own: usize,
+    /// How many are of it, or are imported by it: those behind are of contributions that import from it.
+    known: usize,
     pub(super) registry: Arc<Registry>,
     /// By the local names of their composites.
     by_name: HashMap<String, Vec<usize>>,
@@ -55,7 +58,7 @@ struct Unit {
 
 impl Scene {
     /// These files, of which the first is asked about.
-    pub(super) fn new(Around { files, own }: Around, registry: Arc<Registry>) -> Self {
+    pub(super) fn new(Around { files, own, known }: Around, registry: Arc<Registry>) -> Self {
         let mut by_name: HashMap<String, Vec<usize>> = HashMap::new();
         for (place, file) in files.iter().enumerate() {
             if let Some(name) = &file.outline.name {
@@ -65,7 +68,8 @@ impl Scene {
         let units = files.iter().map(|_| OnceLock::new()).collect();
         let users = files.iter().map(|_| OnceLock::new()).collect();
         let beside = beside(&files);
-        let mut scene = Self { files, own, registry, by_name, includes: Vec::new(), units, users, beside };
+        let includes = Vec::new();
+        let mut scene = Self { files, own, known, registry, by_name, includes, units, users, beside };
         scene.includes = (0..scene.files.len()).map(|file| scene.included(file)).collect();
         scene
     }
@@ -73,6 +77,11 @@ impl Scene {
     /// Whether a file belongs to another contribution than the first one.
     pub(super) fn is_imported(&self, file: usize) -> bool {
         file >= self.own
+    }
+
+    /// Whether a file is of a contribution that imports from that of the first one, which cannot name it.
+    pub(super) fn imports_this(&self, file: usize) -> bool {
+        file >= self.known
     }
 
     /// The file of values that a composite calls so.

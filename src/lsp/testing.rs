@@ -51,7 +51,7 @@ pub(super) fn scene_at(path: &Path, text: &str) -> Scene {
 }
 
 fn made(files: Vec<Arc<File>>) -> Scene {
-    Scene::new(Around { own: files.len(), files }, Arc::clone(&REGISTRY))
+    Scene::new(Around { own: files.len(), known: files.len(), files }, Arc::clone(&REGISTRY))
 }
 
 /// A composite of 1.1 with this inside.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
-use saoms_core::load::{MAX_SIZE, composites_near, description_near, imported_near};
+use saoms_core::load::{MAX_SIZE, composites_near, description_near, imported_near, importing_near};
 use saoms_core::source::{OpenTexts, identity};
 
 use super::file::File;
@@ -31,14 +31,17 @@ struct Listing {
     composites: Vec<PathBuf>,
     description: Option<PathBuf>,
     imported: Vec<PathBuf>,
+    importing: Vec<PathBuf>,
 }
 
 /// A file, first, and those that it has to do with.
 #[derive(Clone, Debug)]
 pub(super) struct Around {
     pub(super) files: Vec<Arc<File>>,
-    /// How many of them are of its contribution; those behind are imported.
+    /// How many of them are of its contribution.
     pub(super) own: usize,
+    /// How many of them are of it or imported; those behind import from it.
+    pub(super) known: usize,
 }
 
 /// By what a change on disk shows.
@@ -86,7 +89,8 @@ impl Workspace {
     }
 
     /// The composites that one in this file can name, and it itself, first; then what describes their contribution, and the files that they take
-    /// values from; last the composites that the contribution imports. Around such a file are the composites around one that takes values from it.
+    /// values from; then the composites that the contribution imports, and last those of
+    /// contributions that import from it. Around such a file are the composites around one that takes values from it.
     pub(super) fn around(&mut self, path: &Path) -> Around {
         let mut folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let mut others = self.composites_in(&folder, path);
@@ -112,12 +116,15 @@ impl Workspace {
             }
         }
         let own = all.len();
-        for path in self.listing(&folder).imported {
-            if known.insert(path.clone()) {
-                all.extend(self.file(&path, false));
-            }
-        }
-        Around { files: all, own }
+        let Listing { imported, importing, .. } = self.listing(&folder);
+        let mut add = |paths: Vec<PathBuf>, all: &mut Vec<Arc<File>>| {
+            let new: Vec<PathBuf> = paths.into_iter().filter(|path| known.insert(path.clone())).collect();
+            all.extend(new.iter().filter_map(|path| self.file(path, false)));
+            all.len()
+        };
+        let known = add(imported, &mut all);
+        add(importing, &mut all);
+        Around { files: all, own, known }
     }
 
     /// All composites in these folders, and those around the files that are open.
@@ -145,11 +152,12 @@ impl Workspace {
         }
         let composites = composites_near(folder, &self.open);
         let description = description_near(folder).map(|path| identity(&path));
-        let imported = match &description {
-            Some(_) => imported_near(folder, &self.open).iter().map(|path| identity(path)).collect(),
+        let found = |of: fn(&Path, &OpenTexts) -> Vec<PathBuf>| match &description {
+            Some(_) => of(folder, &self.open).iter().map(|path| identity(path)).collect(),
             None => Vec::new(),
         };
-        let found = Listing { composites, description, imported };
+        let (imported, importing) = (found(imported_near), found(importing_near));
+        let found = Listing { composites, description, imported, importing };
         self.listings.insert(folder.to_owned(), (Instant::now(), found.clone()));
         found
     }

@@ -65,5 +65,26 @@ fn what_is_imported_is_completed_explained_and_found() {
     rename["newName"] = json!("width");
     let refused = editor.ask("textDocument/rename", rename);
     assert!(refused["error"]["message"].as_str().unwrap().contains("another contribution"), "{refused}");
+    // Where it is defined, all use of it is: that in contributions that import it as well.
+    editor.open("robots/hall.composite", &inner);
+    editor.wait_for("robots/hall.composite", |all| all == ["S2026 2:16"]);
+    let hall = editor.uri("robots/hall.composite");
+    let column = inner.lines().nth(2).unwrap().find("size").unwrap();
+    let rename = json!({ "textDocument": { "uri": hall }, "position": { "line": 2, "character": column }, "newName": "width" });
+    let edits = editor.ask("textDocument/rename", rename);
+    let changes = edits["result"]["changes"].as_object().unwrap();
+    let mut files: Vec<(String, usize)> =
+        changes.iter().map(|(uri, edits)| (uri.clone(), edits.as_array().unwrap().len())).collect();
+    files.sort();
+    assert_eq!(files, [(uri.clone(), 1), (hall.clone(), 1)], "{edits}");
+    // The composites there are none that this one can name.
+    let naming = inner
+        .replace("saoms.World", "")
+        .replace("implementation.rust class", "implementation.composite name");
+    editor.change("robots/hall.composite", 2, json!([{ "text": naming }]));
+    let column = naming.lines().nth(3).unwrap().find("name=\"\"").unwrap() + 6;
+    let place = json!({ "textDocument": { "uri": hall }, "position": { "line": 3, "character": column } });
+    let answer = editor.ask("textDocument/completion", place);
+    assert!(!labels(&answer).iter().any(|one| one.contains("fleet")), "{answer}");
     assert_eq!(editor.end(), 0);
 }

@@ -26,6 +26,7 @@ mod fleet;
 mod given;
 mod global;
 mod instance;
+mod lacking;
 mod levels;
 mod lexical;
 mod loops;

@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 
 use super::options::Options;
+use super::parameters::is_misspelt;
 use super::report::{Report, list};
 use super::value_type;
 use crate::diagnostic::{codes, nearest, quoted};
@@ -16,6 +17,8 @@ use crate::source::{Location, Text};
 pub(super) struct Names {
     all: HashMap<String, Name>,
     used: RefCell<HashSet<String>>,
+    /// Those that the component gives values to and the composite does not have, which is reported.
+    undeclared: HashSet<String>,
 }
 
 struct Name {
@@ -44,7 +47,11 @@ impl Names {
         options: &Options,
     ) -> Self {
         let mut names = Self::default();
-        for composite in with_included(main, contribution) {
+        let composites = with_included(main, contribution);
+        let is_declared = |name: &str| {
+            composites.iter().any(|composite| composite.properties.iter().any(|one| one.name == *name))
+        };
+        for composite in &composites {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {
                     let text = given(property, outside, options).or_else(|| property.simple_value().cloned());
@@ -52,11 +59,17 @@ impl Names {
                     let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
                     // What has to be supplied and is not is told where it should be.
                     let must = property.must_supply().is_some_and(|must| must.value);
-                    let is_told = Cell::new(must && text.is_none() && !property.has_value());
+                    let is_unset = text.is_none() && !property.has_value();
+                    let is_misspelt =
+                        |outside: Outside<'_>| is_misspelt(&property.name, outside.component, is_declared);
+                    let is_told = Cell::new(is_unset && (must || outside.is_some_and(is_misspelt)));
                     Name { mistyped, is_told, text, value }
                 });
             }
         }
+        let given = outside.into_iter().flat_map(|outside| &outside.component.properties);
+        let undeclared = given.filter(|given| !is_declared(&given.name));
+        names.undeclared = undeclared.map(|given| given.name.to_string()).collect();
         names
     }
 
@@ -75,7 +88,8 @@ impl Names {
                 is_told || report.of_all(|report| !value_type::holds_by_name(property, text, report))
             }
             Some(Name { is_told, text: None, .. }) => is_told.replace(true),
-            _ => false,
+            Some(_) => false,
+            None => self.undeclared.contains(name),
         }
     }
 

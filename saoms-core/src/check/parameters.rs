@@ -47,8 +47,10 @@ struct Declared<'a> {
     names: OnceCell<Vec<&'a str>>,
     /// Whether a `source` leads to none of them: one of them is probably meant.
     has_wrong_source: bool,
-    /// Whether its composite implements no component.
-    is_outermost: bool,
+    /// Whether one of them has no name, which is reported.
+    has_nameless: bool,
+    /// The component that the composite implements.
+    owner: Option<&'a Component>,
 }
 
 struct Parameter<'a> {
@@ -102,14 +104,13 @@ impl<'a> Declared<'a> {
 impl<'a> Parameters<'a> {
     /// Collects the properties and gives them what counts in place of their own values.
     pub(super) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
-        let units = fleet.units.iter().map(|unit| declared(unit, report)).collect();
+        let owner = |unit: &Unit<'_>| Some(fleet.members[fleet.scopes[unit.scope].owner?].component);
+        let with_owner = |unit| Declared { owner: owner(unit), ..declared(unit, report) };
+        let units = fleet.units.iter().map(with_owner).collect();
         let (found, parts_left) = (HashMap::new(), Cell::new(MOST_PARTS));
         let mut parameters = Self { units, left: MOST_VALUES, found, parts_left, keeps_elements: false };
         for (place, unit) in fleet.units.iter().enumerate() {
-            let Some(owner) = fleet.scopes[unit.scope].owner else {
-                parameters.units[place].is_outermost = true;
-                continue;
-            };
+            let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];
             let outside = Place { unit: owner.unit, composite: owner.composite, instance: owner.instance };
             for property in &owner.component.properties {
@@ -181,7 +182,8 @@ impl<'a> Parameters<'a> {
                     is_known = true;
                 }
             }
-            if !is_known {
+            // One that could not be read may have it.
+            if !is_known && !is_any_unread(fleet, report) {
                 let mut names: Vec<&str> =
                     Self::outermost(fleet).flat_map(|unit| self.units[unit].names()).copied().collect();
                 names.sort_unstable();
@@ -255,17 +257,67 @@ impl<'a> Parameters<'a> {
         Some(Typed { property: found.property, document: &found.composite.document })
     }
 
-    /// Where the composite property is that a `source` names, and how it can get a value.
-    pub(super) fn supply(&self, unit: usize, source: &str) -> Option<(Location, String)> {
+    /// A diagnostic about the composite property that a `source` names, with where it is and how it can get a value.
+    pub(super) fn supply(&self, unit: usize, source: &str, one: Diagnostic) -> Diagnostic {
+        let declared = &self.units[unit];
+        let Some((name, parameter)) = self.named_by(unit, source) else { return one };
+        let one = one.label(parameter.property.name.location, "declared here, without a value");
+        let Some(owner) = declared.owner else { return one.help(from_outside(parameter.property)) };
+        let help = format!(
+            "add `<property name=\"{name}\">...</property>` to the component {}, which the composite implements",
+            quoted(&owner.name)
+        );
+        one.label(owner.name.location, "gives it none").help(help)
+    }
+
+    fn named_by<'n>(&self, unit: usize, source: &'n str) -> Option<(&'n str, &Parameter<'a>)> {
         let (name, _) = expression(source)?;
-        let Parameter { property, given, .. } = self.units[unit].by_name.get(name)?;
-        let help = match given {
-            Some(Given::Component(..)) => {
-                format!("give {} a value in the component that the composite implements", quoted(name))
-            }
-            _ => from_outside(property),
+        Some((name, self.units[unit].by_name.get(name)?))
+    }
+
+    /// Whether it is told why the composite property that a `source` names has no value: it is misspelt where it is given, or comes from a file, as
+    /// those of components can.
+    pub(super) fn is_told(&self, unit: usize, source: &str) -> bool {
+        let declared = &self.units[unit];
+        let Some((name, Parameter { composite, property, .. })) = self.named_by(unit, source) else {
+            return false;
         };
-        Some((property.name.location, help))
+        let is_declared = |name: &str| declared.by_name.contains_key(name);
+        declared.owner.is_some_and(|owner| is_misspelt(name, owner, is_declared))
+            || property.origin.element(&composite.document).attribute("file").is_some()
+    }
+
+    /// Lets any property of a composite be meant by what is wrong in it.
+    pub(super) fn leave_open(&mut self, unit: usize) {
+        self.units[unit].has_wrong_source = true;
+    }
+
+    /// Counts what composites of which not all is known take from those around them.
+    fn pass_on(&mut self, fleet: &Fleet<'a>) {
+        let mut passed: HashSet<(usize, &str)> = HashSet::new();
+        for unit in (0..self.units.len()).rev() {
+            let is_open =
+                self.units[unit].has_wrong_source || fleet.scopes[fleet.units[unit].scope].is_faulty;
+            if !is_open && passed.is_empty() {
+                continue;
+            }
+            let all = self.units[unit].by_name.iter();
+            let open = all.filter(|(name, _)| is_open || passed.contains(&(unit, **name)));
+            let from: Vec<(usize, &'a str)> = open
+                .filter_map(|(_, parameter)| match parameter.given {
+                    Some(Given::Component(place, given)) => {
+                        Some((place.unit, expression(given.source()?)?.0))
+                    }
+                    _ => None,
+                })
+                .collect();
+            for (outer, name) in from {
+                if let Some(parameter) = self.units[outer].by_name.get_mut(name) {
+                    parameter.is_used = true;
+                    passed.insert((outer, name));
+                }
+            }
+        }
     }
 
     /// What `source` stands for in this unit. Faults are reported.
@@ -292,7 +344,8 @@ impl<'a> Parameters<'a> {
     }
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
-    pub(super) fn finish(self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+    pub(super) fn finish(mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+        self.pass_on(fleet);
         // A composite may be there several times; what is used in one of them is used.
         let all = self.units.iter().flat_map(|declared| declared.by_name.values());
         let used = all.filter(|parameter| parameter.is_used).map(|parameter| parameter.property.origin);
@@ -306,8 +359,9 @@ impl<'a> Parameters<'a> {
                 }
                 let name = &property.name;
                 let must = property.must_supply().is_some_and(|must| must.value);
-                let is_given =
-                    parameter.given.is_some() || owner.is_some_and(|owner| is_misspelt(name, owner, unit));
+                let is_declared = |name: &str| declared.by_name.contains_key(name);
+                let is_given = parameter.given.is_some()
+                    || owner.is_some_and(|owner| is_misspelt(name, owner.component, is_declared));
                 if must && !property.has_value() && !is_given {
                     owner.into_iter().for_each(|owner| report.about(owner));
                     report.push(missing(property, owner.map(|owner| owner.component), report.assumes));
@@ -335,7 +389,11 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
         .composites
         .iter()
         .flat_map(|composite| composite.properties.iter().map(move |property| (*composite, property)));
-    for (composite, property) in properties.filter(|(_, property)| !property.name.is_empty()) {
+    for (composite, property) in properties {
+        if property.name.is_empty() {
+            all.has_nameless = true;
+            continue;
+        }
         // What is not there may say otherwise what another composite says that is there in place of it, or be the same composite.
         let is_instead = |first: &Parameter<'_>| unit.is_absent && !std::ptr::eq(first.composite, composite);
         let first = all.by_name.get(property.name.as_str());
@@ -361,13 +419,18 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
 }
 
 /// Whether the component that a composite implements gives this property under a misspelt name, which is reported.
-fn is_misspelt(name: &str, owner: &Member<'_>, unit: &Unit<'_>) -> bool {
-    let is_known = |given: &Property| {
-        let declared = unit.composites.iter().flat_map(|composite| &composite.properties);
-        declared.into_iter().any(|declared| declared.name == given.name.as_str())
-    };
-    let given = owner.component.properties.iter();
-    given.into_iter().any(|given| nearest(&given.name, [name]).is_some() && !is_known(given))
+pub(super) fn is_misspelt(name: &str, owner: &Component, is_declared: impl Fn(&str) -> bool) -> bool {
+    let mut given = owner.properties.iter();
+    given.any(|given| nearest(&given.name, [name]).is_some() && !is_declared(&given.name))
+}
+
+/// Whether a file could not be read that may hold a composite, which is reported.
+fn is_any_unread(fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
+    let composites = fleet.contribution.composites();
+    let is_of_files = |one: &&Diagnostic| one.code.id.starts_with("S00") || one.code.id.starts_with("S01");
+    let faults = report.diagnostics().iter().filter(|one| one.severity == Severity::Error);
+    let mut files = faults.filter(is_of_files).map(|one| one.location.file);
+    files.any(|file| composites.iter().all(|composite| composite.file() != file))
 }
 
 /// A composite property that has to be given a value, by the component that the composite implements where there is one.

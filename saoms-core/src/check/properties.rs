@@ -6,19 +6,19 @@ use saoms_api::PropertyValue;
 
 use super::described;
 use super::fleet::{Member, Unit};
+use super::lacking;
 use super::parameters::{Found, Parameters, Place};
 use super::raw::{Piece, Raw, raw};
 use super::report::Report;
 use super::slots::{Slot, Slots};
 use super::value_type::{self, Match, Typed};
 use super::values::{Path, Use, Values};
-use crate::assembly::TaskProperties;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::expression::has_expression;
 use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::{Document, Element};
+use crate::xml::Document;
 
 /// What a component gives for one property of its class.
 pub(super) struct Given {
@@ -122,12 +122,12 @@ impl Checked {
 
 /// Who gives values to properties: a component, or what it says about one of its loops.
 pub(super) struct Giver<'m, 'a> {
-    what: &'static str,
-    name: &'a Text,
-    origin: Origin,
-    properties: &'a [Property],
+    pub(super) what: &'static str,
+    pub(super) name: &'a Text,
+    pub(super) origin: Origin,
+    pub(super) properties: &'a [Property],
     /// The component.
-    member: &'m Member<'a>,
+    pub(super) member: &'m Member<'a>,
     /// What a file beside the class says, whose values hold where the component gives none.
     described: Option<&'a ComponentType>,
 }
@@ -147,7 +147,7 @@ impl<'m, 'a> Giver<'m, 'a> {
 
 impl<'a> Giver<'_, 'a> {
     /// The properties that a file beside the class gives values to, with its document.
-    fn defaults(&self) -> impl Iterator<Item = (&'a Property, &'a Document)> + use<'a> {
+    pub(super) fn defaults(&self) -> impl Iterator<Item = (&'a Property, &'a Document)> + use<'a> {
         let described = self.described.into_iter();
         described.flat_map(|one| {
             let with_values = one.properties.iter().filter(|property| property.has_value());
@@ -181,7 +181,7 @@ pub(super) fn check<'a>(
             continue;
         }
         let Some(place) = slots.place(&property.name) else {
-            report_unknown(property, slots, report);
+            lacking::unknown(property, giver, slots, report);
             if let Some(source) = property.source() {
                 let _ = parameters.resolve(member.unit, source, report);
             }
@@ -222,6 +222,9 @@ pub(super) fn check<'a>(
                 given.push(value);
             }
             Err(()) => {
+                if property.only_text().is_some_and(|text| has_expression(text)) {
+                    parameters.leave_open(member.unit);
+                }
                 is_sound = false;
                 unsure.push(place);
             }
@@ -260,19 +263,16 @@ pub(super) fn check<'a>(
         unsure.push(place);
         // What is given wrongly is reported already.
         match first[place] {
-            None => report_missing(giver, declaration, slots, report),
+            None => lacking::missing(giver, declaration, slots, report),
             Some(property) if unset.contains(&&property.name) => {
                 let message = format!("the property {} has no value: its source has none", quoted(name));
                 let at = property.source().map_or(property.tag(), |source| source.location);
                 let one = Diagnostic::new(&codes::PROPERTY_MISSING, at, message);
-                report.push(
-                    match property.source().and_then(|source| parameters.supply(member.unit, source)) {
-                        Some((declared, help)) => {
-                            one.label(declared, "declared here, without a value").help(help)
-                        }
-                        None => one,
-                    },
-                );
+                match property.source() {
+                    Some(source) if parameters.is_told(member.unit, source) => {}
+                    Some(source) => report.push(parameters.supply(member.unit, source, one)),
+                    None => report.push(one),
+                }
             }
             Some(_) => {}
         }
@@ -340,69 +340,6 @@ fn converted(
     Ok(Given { slot, value: value.ok_or(())?, place, more, source: used.source })
 }
 
-fn report_unknown(property: &Property, slots: &Slots<'_>, report: &mut Report<'_>) {
-    let (name, at) = (&property.name, property.name.location);
-    let of = quoted(slots.name);
-    let is_task =
-        slots.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
-    let message = format!("{} {of} has no property {}", slots.what, quoted(name));
-    let known = ("its properties are", slots.names());
-    let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
-    report.push(match is_task {
-        true => one.help(format!("{of} is passive: it is never executed and has no task properties")),
-        false if slots.names().next().is_none() => one.help(format!("{of} has no properties at all")),
-        false => one,
-    });
-}
-
-fn report_missing(
-    giver: &Giver<'_, '_>,
-    declaration: &PropertyDeclaration,
-    slots: &Slots<'_>,
-    report: &mut Report<'_>,
-) {
-    if giver.member.has_open_values() {
-        return;
-    }
-    let name = declaration.name.as_str();
-    let document = &giver.member.composite.document;
-    let element = giver.origin.element(document);
-    let is_meant = |given: &Property| {
-        given.name.is_empty() || slots.place(&given.name).is_none() && nearest(&given.name, [name]).is_some()
-    };
-    let is_property = |child: Element<'_>| match child.local_name() {
-        "property" => false,
-        // As other languages call it.
-        "param" | "parameter" | "arg" | "argument" => {
-            child.attribute("name").is_some_and(|given| given.value() == name)
-        }
-        other => nearest(other, ["property"]).is_some(),
-    };
-    // As an attribute, which SCA 1.0 lets pass.
-    let is_attribute = || {
-        let implementation = giver.member.component.implementation.as_ref();
-        let mut elements = std::iter::once(element)
-            .chain(implementation.map(|implementation| implementation.origin.element(document)));
-        giver.member.composite.version.is_1_1() && elements.any(|one| one.attribute(name).is_some())
-    };
-    if giver.properties.iter().any(is_meant) || element.children().any(is_property) || is_attribute() {
-        // It is there, misspelt, and that is reported.
-        return;
-    }
-    // That of SCA, in which the properties of loops are as well.
-    let prefix = giver.member.component.origin.element(document).prefix();
-    let tag = prefix.map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
-    let who = match giver.name.is_empty() {
-        true => format!("the {}", giver.what),
-        false => format!("{} {}", giver.what, quoted(giver.name)),
-    };
-    let message = format!("{who} lacks the property {}", quoted(name));
-    report.push(
-        Diagnostic::new(&codes::PROPERTY_MISSING, giver.name.location, message)
-            .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),
-    );
-}
-
 /// Checks that what a component gives the composite that implements it are properties of that, of types that fit.
 pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'_>) {
     let declared = || {
@@ -423,8 +360,17 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
         let (name, at) = (&property.name, property.name.location);
         let of = quoted(&inner.main().name);
         let message = format!("composite {of} has no property {}", quoted(name));
-        let known: Vec<&str> =
-            declared().map(|(one, _)| one.name.as_str()).filter(|name| !name.is_empty()).collect();
+        let known: Vec<&str> = declared().map(|(one, _)| one.name.as_str()).collect();
+        if known.contains(&"") {
+            // It is the one without a name, which is reported.
+            continue;
+        }
+        if let Some(source) = lacking::taken_inside(name, inner) {
+            let one = Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message).label(source, "taken here");
+            let help = format!("declare it in the composite: `<property name=\"{name}\"/>`");
+            report.push(one.help(help));
+            continue;
+        }
         let known = ("its properties are", known.iter().copied());
         let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
         report.push(one);

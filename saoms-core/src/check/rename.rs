@@ -49,12 +49,22 @@ pub(super) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
     (pairs, faults)
 }
 
-/// A pair with another separator, as it is meant.
-pub(super) fn pair_of(text: &str) -> Option<String> {
-    let (old, new) = ["->", "=", ":", ";"].iter().find_map(|separator| text.split_once(separator))?;
-    let (old, new) = (old.trim(), new.trim());
-    let is_name = |name: &str| !name.is_empty() && !name.contains([':', ',', '=', '-', ';', '>', '<', '&']);
-    (is_name(old) && is_name(new)).then(|| format!("{old},{new}"))
+/// Pairs with other separators, as they are meant.
+pub(super) fn pairs_of(text: &str) -> Option<String> {
+    let is_name =
+        |name: &str| !name.is_empty() && !name.contains([':', ',', '=', '-', ';', '>', '<', '&', '|']);
+    let pair = |pair: &str| {
+        let (old, new) =
+            [",", "->", "=", ":", ";"].iter().find_map(|separator| pair.split_once(separator))?;
+        let (old, new) = (old.trim(), new.trim());
+        (is_name(old) && is_name(new)).then(|| format!("{old},{new}"))
+    };
+    if let Some(meant) = pair(text).filter(|meant| meant != text) {
+        return Some(meant);
+    }
+    let separator = [";", "|", ":"].into_iter().find(|separator| text.contains(separator))?;
+    let all: Option<Vec<String>> = text.split(separator).map(|one| pair(one.trim())).collect();
+    Some(all?.join("::"))
 }
 
 /// The pieces of `text[range]` between separators.

@@ -126,8 +126,22 @@ impl<'a> Plan<'a> {
 
     /// Finds the line of each replica. What is wrong with the lines is reported.
     fn rows(&mut self, table: &Table, report: &mut Report<'_>) {
+        if self.count == 0 {
+            // As where the number comes from outside: nothing in the table is about anybody now.
+            return;
+        }
         let last = self.next.saturating_add(self.count as i64 - 1);
         let by_name = (table.key == *"name").then(|| self.by_name());
+        if let Some(other) = self.other_key(table, by_name.as_ref()) {
+            let message = format!(
+                "the first column is {}, and its values are of {}",
+                quoted(&table.key),
+                quoted(other)
+            );
+            let one = Diagnostic::new(&codes::OVERRIDES, table.key.location, message);
+            report.push(one.suggest(replacing(&table.key, other), table.key.location, other));
+            return;
+        }
         let free = OnceCell::new();
         let mut seen: HashMap<i64, &Text> = HashMap::new();
         for (place, row) in table.rows.iter().enumerate() {
@@ -170,6 +184,26 @@ impl<'a> Plan<'a> {
             }
             seen.insert(index, &row.key);
             self.rows.insert(index, place);
+        }
+    }
+
+    /// What the first column should be called, where all lines are about replicas by what it does not say.
+    fn other_key(&self, table: &Table, by_name: Option<&HashMap<String, i64>>) -> Option<&'static str> {
+        let mut keys = table.rows.iter().map(|row| row.key.as_str()).peekable();
+        keys.peek()?;
+        match by_name {
+            Some(names) => {
+                let is_index = |key: &str| !names.contains_key(key) && key.parse::<i64>().is_ok();
+                keys.all(is_index).then_some("index")
+            }
+            None => {
+                // As a rule the first says that they are numbers.
+                if keys.peek().is_some_and(|key| key.parse::<i64>().is_ok()) {
+                    return None;
+                }
+                let names = self.by_name();
+                keys.all(|key| names.contains_key(key)).then_some("name")
+            }
         }
     }
 

@@ -38,6 +38,9 @@ impl<'a> Unfolding<'a> {
             let instance = plan.instance(index);
             let (made, faults) = instance.of(component, None);
             self.faults(&names, faults, report);
+            if let Some(asked) = component.condition() {
+                _ = condition(asked, &names, &mut |name| instance.value(name), report);
+            }
             let Replica { component: made, instance } =
                 self.replicas.add(Replica { component: made, instance });
             return self.member(component, made, Some(instance), Presence::Absent, report);

@@ -76,6 +76,8 @@ struct Rule {
     set: SetBy,
     scope: Scope,
     is_used: bool,
+    /// Whether it is wrong, which is reported: what is no error and it may be about is not told beside that.
+    is_wrong: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -123,9 +125,18 @@ impl Severities {
         let mut rules: Vec<Rule> = Vec::new();
         // The rules of each place about each code.
         let mut said: HashMap<(&str, Scope), Vec<usize>> = HashMap::new();
-        let mut add = |code: &'o Text, level: Level, reason: Option<&Text>, scope: Scope| {
-            if !known.iter().any(|known| known.id == code.as_str()) {
+        let mut add = |code: &'o Text, level: Level, reason: Option<&Text>, scope: Scope, is_wrong: bool| {
+            let is_known = known.iter().any(|known| known.id == code.as_str());
+            if !is_known {
                 diagnostics.push(unknown(code, &known));
+            }
+            if is_wrong || !is_known {
+                if let Some(meant) = meant(code, &known) {
+                    let set =
+                        SetBy { level: Level::Allow, at: code.location, is_option: false, reason: None };
+                    let code = meant.to_owned();
+                    rules.push(Rule { code, set, scope, is_used: true, is_wrong: true });
+                }
                 return;
             }
             let reason = reason.map(|reason| reason.as_str().to_owned());
@@ -141,7 +152,7 @@ impl Severities {
                 return;
             }
             known.push(rules.len());
-            rules.push(Rule { code: code.as_str().to_owned(), set, scope, is_used: false });
+            rules.push(Rule { code: code.as_str().to_owned(), set, scope, is_used: false, is_wrong: false });
         };
         let asked_for = contribution.asked_for().len();
         for (place, composite) in contribution.composites().iter().enumerate() {
@@ -151,11 +162,11 @@ impl Severities {
                     None if place < asked_for => Scope::Fleet,
                     None => Scope::File(composite.file()),
                 };
-                add(&rule.code, rule.level.value, Some(&rule.reason), scope);
+                add(&rule.code, rule.level.value, Some(&rule.reason), scope, rule.is_wrong);
             }
         }
         for setting in &options.severities {
-            add(&setting.code, setting.level.value, setting.reason.as_ref(), Scope::Option);
+            add(&setting.code, setting.level.value, setting.reason.as_ref(), Scope::Option, false);
         }
         rules.sort_by_key(|rule| rule.scope.size());
         let preventing = registry.rules().iter().filter(|rule| rule.prevents_start());
@@ -169,7 +180,7 @@ impl Severities {
 
     /// Whether anything is said about a code.
     pub(super) fn mentions(&self, code: &Code) -> bool {
-        self.by_code.contains_key(code.id)
+        self.by_code.get(code.id).is_some_and(|rules| rules.iter().any(|place| !self.rules[*place].is_wrong))
     }
 
     /// Sets the severities of the diagnostics from this place on.
@@ -189,6 +200,9 @@ impl Severities {
             };
             let Some(place) = own.filter(is_element).or_else(of_other).or(own) else { return };
             let rule = &mut self.rules[place];
+            if rule.is_wrong && one.severity == Severity::Error {
+                return;
+            }
             rule.is_used = true;
             let is_lowered = rule.set.level != Level::Set(Severity::Error);
             let is_fixed = !codes::is_judgement(one.code) || self.preventing.contains(&one.code.id);
@@ -254,9 +268,14 @@ fn twice(code: &Text, level: Level, first: &SetBy) -> Diagnostic {
 
 fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {
     let one = Diagnostic::new(&codes::SEVERITY, code.location, format!("there is no code {}", quoted(code)));
-    let by_name = known.iter().find(|known| known.name == code.as_str()).map(|known| known.id);
-    match by_name.or_else(|| nearest(code, known.iter().map(|known| known.id))) {
+    match meant(code, known) {
         Some(meant) => one.suggest(super::report::replacing(code, meant), code.location, meant),
         None => one.help("each diagnostic shows its code, and `docs/diagnostics.md` lists them"),
     }
+}
+
+/// The code that is meant by one, or by what a code is called.
+fn meant(code: &Text, known: &[&'static Code]) -> Option<&'static str> {
+    let by_name = known.iter().find(|known| known.name == code.as_str()).map(|known| known.id);
+    by_name.or_else(|| nearest(code, known.iter().map(|known| known.id)))
 }

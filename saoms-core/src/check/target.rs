@@ -138,10 +138,13 @@ impl<'t> Uri<'t> {
                 });
                 return None;
             }
-            let groups = fleet.group_names(scope);
+            // A reference of a composite can stand for those of all replicas.
+            let is_promoted = rule == Some(Side::Reference.rule());
+            let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
             let own = own.map(|own| fleet.members[own].component.name.as_str());
             let names = fleet.names(scope).filter(|name| Some(*name) != own);
-            let known = ("the components are", names.chain(groups));
+            let known =
+                ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
             let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known);
             report.push(match rule {
                 Some(rule) => one.rule(rule),
@@ -450,10 +453,14 @@ fn offered(
     }
 }
 
-/// `component/service`.
-pub(super) fn uri(provider: Provider, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> String {
-    let component = &fleet.members[provider.member].component.name;
-    let service =
-        fleet.class_of(provider.member, classes).map_or("", |class| &class.services[provider.service].name);
-    format!("{component}/{service}")
+/// `component/service`: how a service is named where the component is that offers it, which may do so for one inside of it.
+pub(super) fn uri(
+    (offering, provider): (usize, Provider),
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
+) -> String {
+    let component = &fleet.members[offering].component.name;
+    let offers = fleet.offers(offering, classes);
+    let service = offers.iter().find(|(_, offer)| *offer == Offer::Service(provider));
+    format!("{component}/{}", service.map_or("", |(name, _)| name))
 }

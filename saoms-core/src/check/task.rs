@@ -189,7 +189,7 @@ fn renames<'a>(
             None => {
                 one = one.help("write `OLD,new` for each topic, and `::` between two of them");
                 let pair = text.get(fault.at.clone()).unwrap_or_default();
-                if let Some(meant) = rename::pair_of(pair) {
+                if let Some(meant) = rename::pairs_of(pair) {
                     one = one.suggest(replacing(pair, &meant), at, meant);
                 }
             }

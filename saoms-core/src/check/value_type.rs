@@ -121,7 +121,7 @@ pub(super) fn is_right(typed: Typed<'_>, value: &str) -> bool {
 fn is_written(property: &Property, (_, _, is_one): &SimpleType, value: &str) -> bool {
     // Many values may be written as a list, as in files of SCA 1.0.
     let is_list = property.many().is_some_and(|many| many.value);
-    is_one(value) || is_list && value.split_whitespace().all(is_one)
+    is_one(value) || is_list && !value.trim().is_empty() && value.split_whitespace().all(is_one)
 }
 
 fn is_of(
@@ -134,7 +134,12 @@ fn is_of(
     if is_written(property, kind, value) {
         return true;
     }
-    let at = if value.is_empty() { property.tag() } else { value.location };
+    // In a text of its own an empty value can be seen.
+    let is_hidden = value.is_empty() && value.location.file == property.tag().file;
+    let at = if is_hidden { property.tag() } else { value.location };
+    if report.skip(code, Severity::Error, at) || is_told_of(value, report) {
+        return false;
+    }
     let message = format!(
         "the property {} is of the type {}: found {}, expected {}",
         quoted(&property.name),
@@ -145,6 +150,13 @@ fn is_of(
     let one = Diagnostic::new(code, at, message).label(of.location, "the type");
     report.push(one.help("change the value, or the type"));
     false
+}
+
+/// Whether it is told that a value is none for the class that takes it, which says more.
+fn is_told_of(value: &Text, report: &Report<'_>) -> bool {
+    let of_classes =
+        [&codes::VALUE_TYPE, &codes::VALUE_EMPTY, &codes::VALUE_RANGE, &codes::VALUE_NOT_ALLOWED];
+    of_classes.into_iter().any(|code| report.has_told(code, value.location))
 }
 
 /// The type of a property, where it is one of XML Schema that has no elements inside.

@@ -289,16 +289,22 @@ fn wrong(
         None => {}
     }
     if has_expression(text) {
-        return one.help("`${...}` stands for a number in components with a `saoms:count` alone");
+        let one = one.help("`${...}` stands for a number in components with a `saoms:count` alone");
+        let name = text.trim().strip_prefix("${").and_then(|rest| rest.strip_suffix('}')).map(str::trim);
+        return match name.filter(|name| is_name(name) && *name != INDEX) {
+            Some(name) => one.help(by_source(name)),
+            None => one,
+        };
     }
     let argument = text.trim().strip_prefix("$(arg ").and_then(|rest| rest.strip_suffix(')'));
     match argument.or_else(|| text.trim().strip_prefix('$')).map(str::trim).filter(|name| is_name(name)) {
-        Some(name) => one.help(format!(
-            "write `source=\"${name}\"` for the value of the property {} of the composite",
-            quoted(name)
-        )),
+        Some(name) => one.help(by_source(name)),
         None => one,
     }
+}
+
+fn by_source(name: &str) -> String {
+    format!("write `source=\"${name}\"` for the value of the property {} of the composite", quoted(name))
 }
 
 fn code(text: &str, declaration: &PropertyDeclaration, said: &str) -> &'static Code {

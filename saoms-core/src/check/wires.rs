@@ -370,8 +370,8 @@ impl<'f, 'a> Wires<'f, 'a> {
             None => fleet.multiplicity_of(place).is_many(),
         };
         if found.len() > 1 && !is_many {
-            let names: Vec<String> =
-                found.iter().take(50).map(|provider| uri(*provider, fleet, classes)).collect();
+            let others = all.iter().filter(|(offering, _)| *offering != member).take(50);
+            let names: Vec<String> = others.map(|one| uri(*one, fleet, classes)).collect();
             let message = format!(
                 "autowire finds several services for reference {} of component {}",
                 quoted(name),

@@ -119,6 +119,9 @@ impl Loader<'_> {
                     false => one.help(format!("write `<{} name=\"{name}\">{value}</{0}>`", element.name())),
                 }
             }
+            Some("name") if attribute.value().trim().ends_with(".composite") => one.help(
+                "a composite is named by its `name`, with the prefix of its `targetNamespace`, and not by its file",
+            ),
             Some(meant) if free.contains(&meant) => {
                 one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
             }
@@ -481,6 +484,10 @@ fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
             matches!(written, "file" | "href" | "src" | "ref" | "location" | "composite" | "class")
         }
         ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
+        // In a component it may be the property that is called so.
+        ("property", "name") => {
+            written == "id" && element.parent().is_some_and(|around| around.parent().is_none())
+        }
         ("wire", "source") => written == "from",
         ("wire", "target") => written == "to",
         _ => false,

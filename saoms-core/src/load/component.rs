@@ -21,8 +21,8 @@ impl Loader<'_> {
         self.no_text(element);
         let name = self.name(element);
         let replicas = if is_plain { None } else { self.replicas(element) };
-        // A name that uses the index is one of replicas, also where nothing says how many there are.
-        let replicas = replicas.or_else(|| has_index(&name).then(Replicas::default));
+        // A name with an expression is one of replicas, also where nothing says how many there are.
+        let replicas = replicas.or_else(|| is_of_replicas(&name, element).then(Replicas::default));
         self.is_replicated = replicas.is_some();
         let [properties, services, references, ..] = self.counted(element);
         let mut component = Component {
@@ -209,7 +209,8 @@ impl Loader<'_> {
     }
 }
 
-/// Whether a name has the index of replicas in it.
-fn has_index(name: &str) -> bool {
-    has_expression(name) && expression::names(name).iter().any(|name| name == INDEX)
+/// Whether a name is one of replicas: it uses the index, or anything else where SAOMS is spoken of at all. Templates of others have such names, too.
+fn is_of_replicas(name: &str, element: Element<'_>) -> bool {
+    let is_of_saoms = || element.document().namespaces().any(|one| one == SAOMS_NAMESPACE);
+    has_expression(name) && (is_of_saoms() || expression::names(name).iter().any(|name| name == INDEX))
 }

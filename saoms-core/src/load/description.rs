@@ -10,7 +10,7 @@ use super::vocabulary::CONTRIBUTION;
 use super::{Loader, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::Version;
-use crate::source::{Sources, Text};
+use crate::source::{FileId, Sources, Text};
 use crate::xml::{self, Element};
 
 /// What is imported and exported.
@@ -44,6 +44,8 @@ pub(super) struct Description {
     pub(super) imports: Vec<Entry>,
     pub(super) exports: Vec<Entry>,
     pub(super) deployables: Vec<Deployable>,
+    /// Whether what it says could not be read, which is reported.
+    pub(super) is_faulty: bool,
 }
 
 /// The file that describes the contribution in a folder.
@@ -90,6 +92,7 @@ impl Description {
             };
             let new: Vec<Deployable> = more.deployables.into_iter().filter(is_new).collect();
             made.deployables.extend(new);
+            made.is_faulty |= more.is_faulty;
         }
         Some(made)
     }
@@ -102,10 +105,20 @@ impl Description {
     /// Reads a description.
     fn read(path: PathBuf, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
         let mut made = Self { path, ..Self::default() };
-        let Some(file) = read(&made.path, max_size, sources, diagnostics) else { return made };
+        // What is wrong with it is told once, however often it is read.
+        let shown = made.path.display().to_string();
+        let is_it = |file: FileId| sources.get(file).path() == shown;
+        let (mut untold, is_told) =
+            (Diagnostics::new(), diagnostics.iter().any(|one| is_it(one.location.file)));
+        let diagnostics = if is_told { &mut untold } else { diagnostics };
+        let Some(file) = read(&made.path, max_size, sources, diagnostics) else {
+            made.is_faulty = true;
+            return made;
+        };
         let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
         if let Some(fault) = fault {
             diagnostics.push(fault);
+            made.is_faulty = true;
             return made;
         }
         let Some(document) = document.map(Arc::new) else { return made };
@@ -116,10 +129,14 @@ impl Description {
             diagnostics.push(of_another_kind(root, CONTRIBUTION.name, help));
             return made;
         };
+        let known = diagnostics.len();
         let mut loader = Loader::new(version, root.namespace(), diagnostics);
         loader.check_attributes(root, &CONTRIBUTION);
         loader.no_text(root);
         root.children().for_each(|child| made.add(child, &mut loader));
+        // What composites have to conform to they have by another rule (SCA Assembly 1.1, 13).
+        diagnostics.adjust(known, |one| one.rule = Some("ASM12027"));
+        made.locations(root, file, sources, diagnostics);
         made
     }
 
@@ -166,6 +183,23 @@ impl Description {
 }
 
 impl Description {
+    /// Warns of imports from folders that do not exist.
+    fn locations(&self, root: Element<'_>, file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) {
+        let own = Path::new(sources.get(file).path()).parent().unwrap_or(Path::new(""));
+        let folder = if own.ends_with("META-INF") { own.parent().unwrap_or(Path::new("")) } else { own };
+        let imports = root.children().filter(|child| child.local_name().starts_with("import"));
+        for location in imports.filter_map(|child| Some(child.attribute("location")?.trimmed())) {
+            let path = folder.join(location.as_str());
+            if location.is_empty() || location.contains(':') || path.exists() {
+                continue;
+            }
+            let message = format!("there is no folder {}", quoted(&location));
+            let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location.location, message);
+            let help = format!("it is looked for as {}", quoted(&path.display().to_string()));
+            diagnostics.push(one.severity(Severity::Warning).help(help));
+        }
+    }
+
     /// Warns of a deployable that is named twice, or without the namespace that it is in: what is found by its name alone is run.
     fn judge(&self, what: &Text, namespace: Option<&str>, child: Element<'_>, loader: &mut Loader<'_>) {
         let local = what.split_once(':').map_or(what.as_str(), |(_, local)| local);

@@ -1,5 +1,8 @@
 //! What bytes that are no UTF-8 probably are.
 
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::source::{FileId, Span};
+
 /// An encoding that bytes show by themselves, with its name for `iconv`.
 pub(super) fn by_its_bytes(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
@@ -22,6 +25,19 @@ pub(super) fn declared(bytes: &[u8]) -> Option<String> {
     let (name, _) = after[1..].split_once(quote)?;
     let is_name = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_.:".contains(&byte));
     (is_name && !name.is_empty()).then(|| name.to_owned())
+}
+
+/// The warning that a file says to be in an encoding that it cannot be in: one of two or four bytes for each letter. Other programs refuse it.
+pub(super) fn contradiction(file: FileId, text: &str) -> Option<Diagnostic> {
+    const WIDE: [&str; 4] = ["UTF-16", "UTF-32", "UCS-2", "UCS-4"];
+    let name = declared(text.as_bytes())?;
+    let upper = name.to_ascii_uppercase();
+    WIDE.iter().find(|wide| upper.starts_with(**wide) || upper.ends_with(*wide))?;
+    let start = text.find(&name)? as u32;
+    let place = Span::new(start, start + name.len() as u32).in_file(file);
+    let message = format!("the file is declared to be in {}, and is in UTF-8", quoted(&name));
+    let one = Diagnostic::new(&codes::FILE_ENCODING, place, message).severity(Severity::Warning);
+    Some(one.suggest(format!("replace {} with `UTF-8`", quoted(&name)), place, "UTF-8"))
 }
 
 /// What a file is whose first bytes are known to be of something else than text.

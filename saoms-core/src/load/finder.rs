@@ -3,12 +3,19 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::component_type;
 use super::declared::Declared;
 use super::imports::Imports;
 use super::shelf::Shelf;
-use crate::diagnostic::Candidates;
-use crate::source::OpenTexts;
+use super::{component_type, load_file, read};
+use crate::diagnostic::{Candidates, Diagnostics, Severity, quoted};
+use crate::source::{OpenTexts, Sources};
+
+/// Files of a folder that are read to say why they hold no composite.
+const MOST_UNREAD: usize = 20;
+/// How large such a file may be.
+const MOST_BYTES: u64 = 1_000_000;
+/// How many of them are named.
+const SHOWN: usize = 3;
 
 /// Finds what composites name in other files, and looks at each folder and each first tag of a file once: one for all fleets of a folder lets checks
 /// of them take time that grows with their number, and not with its square.
@@ -24,6 +31,8 @@ pub struct Finder {
     folders: HashMap<PathBuf, bool>,
     /// Which of the component types that were looked for are there.
     side_files: HashMap<PathBuf, bool>,
+    /// The files of folders that are called as composites and are none, with the reason.
+    unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,
 }
 
 impl Finder {
@@ -36,6 +45,7 @@ impl Finder {
             candidates: Candidates::default(),
             folders: HashMap::new(),
             side_files: HashMap::new(),
+            unread: HashMap::new(),
         }
     }
 
@@ -48,4 +58,31 @@ impl Finder {
         };
         may_be && *self.side_files.entry(path.to_owned()).or_insert_with(|| path.is_file())
     }
+
+    /// Why files in a folder are not read that may hold a composite of this name, the one that is called as it first.
+    pub(super) fn unread(&mut self, folder: &Path, local: &str, open: &OpenTexts) -> Vec<String> {
+        if !self.unread.contains_key(folder) {
+            let all = self.shelf.unread(folder).into_iter().take(MOST_UNREAD);
+            let all = all.filter_map(|path| Some((reason(&path, open)?, path)));
+            let all = all.map(|(reason, path)| (path, reason)).collect();
+            self.unread.insert(folder.to_owned(), all);
+        }
+        let all = &self.unread[folder];
+        let is_called_so = |path: &Path| path.file_stem().is_some_and(|stem| stem == local);
+        let first = all.iter().filter(|(path, _)| is_called_so(path));
+        let others = all.iter().filter(|(path, _)| !is_called_so(path));
+        let shown = |(path, reason): &(PathBuf, String)| {
+            format!("{} is no composite: {reason}", quoted(&path.display().to_string()))
+        };
+        first.chain(others).take(SHOWN).map(shown).collect()
+    }
+}
+
+/// What is wrong with a file that should be a composite.
+fn reason(path: &Path, open: &OpenTexts) -> Option<String> {
+    let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
+    let file = read(path, MOST_BYTES, &mut sources, &mut diagnostics);
+    file.and_then(|file| load_file(file, &sources, &mut diagnostics));
+    let fault = diagnostics.into_sorted().into_iter().find(|one| one.severity == Severity::Error)?;
+    Some(fault.message)
 }

@@ -108,6 +108,16 @@ impl Imports {
         })
     }
 
+    /// Whether the description of the contribution in `root` could not be read, which is reported: what it imports is not known.
+    pub(super) fn is_faulty(
+        &mut self,
+        root: &Path,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> bool {
+        self.description(root, sources, diagnostics).is_some_and(|one| one.is_faulty)
+    }
+
     /// Why a composite of these namespaces cannot be found through the description of the contribution in `root`; nothing where it has none.
     pub(super) fn hints(
         &mut self,
@@ -206,6 +216,30 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
         for other in from.iter() {
             let composites = shelf.contribution(other).0.into_iter();
             all.extend(composites.filter(|path| shelf.is_of(path, &namespace)));
+        }
+    }
+    all
+}
+
+/// The files of the composites in contributions beside that of `folder` that import what it exports. What is wrong with their descriptions is not told.
+pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
+    let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
+    let mut imports = Imports { max_size: MAX_SIZE, ..Imports::default() };
+    let root = shelf::root(folder);
+    let description = imports.description(&root, &mut sources, &mut diagnostics);
+    let entries = description.into_iter().flat_map(|one| &one.exports);
+    let exported: Vec<String> = entries.filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
+    if exported.is_empty() {
+        return Vec::new();
+    }
+    let mut shelf = Shelf::new(open.clone());
+    let mut all = Vec::new();
+    let own = identity(&root);
+    for Neighbour { folder: other, .. } in beside(&root).iter().filter(|one| one.identity != own) {
+        let mut is_imported =
+            |what: &String| imports.imports(other, Kind::Namespace, what, &mut sources, &mut diagnostics);
+        if exported.iter().any(&mut is_imported) {
+            all.extend(shelf.contribution(other).0);
         }
     }
     all

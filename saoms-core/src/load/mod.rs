@@ -42,7 +42,7 @@ use std::sync::Arc;
 pub use component_type::load_component_type;
 pub use finder::Finder;
 pub use folder::{FolderFleet, composites_below, load_folder};
-pub use imports::imported_near;
+pub use imports::{imported_near, importing_near};
 pub use named::load_named;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 pub use shelf::{composites_near, description_near};
@@ -97,7 +97,10 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
             swallowed = loader.swallowed;
         }
     }
-    let Some(fault) = fault else { return composite };
+    let Some(fault) = fault else {
+        encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
+        return composite;
+    };
     match composite.zip(swallowed) {
         Some((composite, swallowed)) => diagnostics.push(swallowed.fault(&composite.document, &fault)),
         None if contradicts(&fault, sources, diagnostics) => {}

@@ -133,6 +133,7 @@ impl Finder {
                     self.imports.find(&mut self.shelf, &root, namespaces, local, sources, diagnostics)
                 });
                 let link = match found {
+                    None if self.imports.is_faulty(&root, sources, diagnostics) => Link::Faulty,
                     None => Link::Missing(self.missing(folder, &root, &wanted, sources, diagnostics)),
                     Some(found) => {
                         if warned.insert(found.clone()) {
@@ -184,6 +185,7 @@ impl Finder {
             ));
         }
         let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
+        searched.extend(self.unread(folder, local, sources.open()));
         let around = (&mut self.shelf, &mut self.candidates);
         searched.extend(self.imports.hints(around, root, namespaces, local, sources, diagnostics));
         Missing { near, searched }

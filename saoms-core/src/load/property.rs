@@ -2,9 +2,9 @@
 
 use super::Loader;
 use super::children::Family;
-use super::vocabulary::{COMPONENT, COMPOSITE, Kind};
-use crate::diagnostic::{nearest, quoted};
-use crate::model::{Origin, OutsideKind, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
+use super::vocabulary::{COMPONENT, COMPOSITE, Kind, OWN_ELEMENTS};
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::model::{Origin, OutsideKind, Part, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
 use crate::xml::{Attribute, Element, ElementId};
 
@@ -26,15 +26,24 @@ impl Loader<'_> {
                         values.push(value(child));
                     }
                 }
+                // What is of SAOMS is no value of a user's.
+                own if child.namespace() == SAOMS_NAMESPACE && OWN_ELEMENTS.contains(&own) => {
+                    _ = self.unexpected(child, kind, Family::Own);
+                }
                 _ => content.push(child.id()),
             }
         }
-        if !values.is_empty() {
-            self.no_text(element);
+        let mut text = element.trimmed_text();
+        if let (Some(first), Some(span)) = (values.first(), element.text_span()) {
+            text = None;
+            let at = span.in_file(element.document().file());
+            let message = format!("the property {} is given a value in two ways", quoted(&name));
+            let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message);
+            self.report(one.label(first.tag(), "the other one").help("keep one of them"));
         }
         let value = self.attribute(element, "value").map(Attribute::trimmed);
         let is_attribute = value.is_some();
-        let (simple, inside) = match element.trimmed_text() {
+        let (simple, inside) = match text {
             Some(text) if is_attribute => (value, Some(text)),
             text => (value.or(text), None),
         };

@@ -106,8 +106,17 @@ pub(super) fn value(
         Box::new(one)
     })?;
     text(path, bytes, &VALUE).map_err(|wrong| {
-        let Wrong { code, message, help, .. } = *wrong;
-        Box::new(Diagnostic::new(code, named, message).help(help))
+        let Wrong { code, shown, at, message, help, .. } = *wrong;
+        let one = Diagnostic::new(code, named, message).help(help);
+        if shown.is_empty() {
+            return Box::new(one);
+        }
+        // The place is in a text that is none: people find it by its numbers.
+        let before = &shown[..at as usize];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+        let file = quoted(&path.display().to_string());
+        Box::new(one.help(format!("it is in line {line}, column {column} of {file}")))
     })
 }
 
@@ -167,6 +176,12 @@ impl Failure {
                 };
                 Diagnostic::new(&codes::FILE_TOO_LARGE, location, message)
                     .help("the limit is set with `--max-size`")
+            }
+            Self::Io(error) if error.kind() == io::ErrorKind::NotFound && fs::read_link(path).is_ok() => {
+                let target = fs::read_link(path).unwrap_or_default();
+                let message = "this link leads to no file";
+                let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, message);
+                one.help(format!("it leads to {}", quoted(&target.display().to_string())))
             }
             Self::Io(error) if error.kind() == io::ErrorKind::NotFound => {
                 let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");

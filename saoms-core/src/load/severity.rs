@@ -14,10 +14,14 @@ impl Loader<'_> {
         let code = self.required(element, "code");
         let level = self.level(element);
         let reason = self.required(element, "reason");
-        let (Some(code), Some(level), Some(reason)) = (code, level, reason) else { return };
+        let Some(code) = code else { return };
+        let is_wrong = level.is_none() || reason.is_none();
+        let level = level.unwrap_or_else(|| Located::new(Level::Allow, code.location));
+        let reason = reason.unwrap_or_else(|| Located::new("".into(), code.location));
         let file = element.document().file();
         let within = parent.parent().is_some().then(|| parent.span().in_file(file));
-        self.severities.push(SeverityRule { origin: Origin::of(element), code, level, reason, within });
+        let origin = Origin::of(element);
+        self.severities.push(SeverityRule { origin, code, level, reason, is_wrong, within });
     }
 
     fn level(&mut self, element: Element<'_>) -> Option<Located<Level>> {

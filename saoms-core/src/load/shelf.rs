@@ -244,6 +244,12 @@ impl Shelf {
         seen
     }
 
+    /// The files in a folder whose endings say that they are composites, and which are none as far as could be read.
+    pub(super) fn unread(&mut self, folder: &Path) -> Vec<PathBuf> {
+        let all = self.listing(folder).composites.clone();
+        all.into_iter().filter(|path| self.head(path).is_none()).collect()
+    }
+
     /// Where composites were looked for, as a sentence.
     pub(super) fn searched(&mut self, folder: &Path) -> String {
         let root = self.root(folder);

@@ -38,7 +38,12 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         // As the lines look.
         let has_number =
             lines.as_slice().first().and_then(|line| line.first()?.parse::<i64>().ok()).is_some();
-        key.value = nearest(&key, KEYS).unwrap_or(KEYS[usize::from(!has_number)]).into();
+        let near = nearest(&key, KEYS);
+        if near.is_none() && !has_number {
+            // Nobody knows what they are about, or whether this is a table at all.
+            lines = Vec::new().into_iter();
+        }
+        key.value = near.unwrap_or(KEYS[usize::from(!has_number)]).into();
     }
     let properties: Vec<Text> = head.collect();
     let mut first: HashMap<&str, Location> = HashMap::new();
@@ -60,29 +65,25 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         let mut cells = line.into_iter();
         let Some(of) = cells.next() else { continue };
         let mut values: Vec<Option<Text>> = cells.by_ref().take(properties.len()).map(given).collect();
-        if let Some(beyond) = cells.next() {
-            let columns = properties.len() + 1;
-            let one = report(
-                beyond.location,
-                format!("a line with {count} values, and there are {columns} columns"),
-            );
-            diagnostics.push(one.help("a value that holds a comma stands between two `\"`"));
-        }
-        if values.len() < properties.len() {
-            let columns = properties.len() + 1;
-            let message = format!("a line with {count} values, and there are {columns} columns");
-            let one = report(of.location, message);
-            diagnostics.push(one.help(
-                "a column that says nothing about a replica is an empty value: end the line with its comma",
-            ));
-        }
-        if count == properties.len() + 1 {
-            let unusable = values.iter_mut().zip(&is_usable).filter(|(_, is_usable)| !**is_usable);
-            unusable.for_each(|(value, _)| *value = None);
-        } else {
+        if count != properties.len() + 1 {
             // Which of its values belongs to which column is not known.
-            values = vec![None; properties.len()];
+            let at = cells.next().map_or(of.location, |beyond| beyond.location);
+            let (values, columns) = (many(count, "value"), many(properties.len() + 1, "column"));
+            let one = report(at, format!("a line with {values}, and there are {columns}"));
+            diagnostics.push(one.help(match (of.contains([';', '\t']), count > properties.len()) {
+                (true, _) => "the values of a line stand between commas",
+                (_, true) => "a value that holds a comma stands between two `\"`",
+                _ => {
+                    "a column that says nothing about a replica is an empty value: end the line with its comma"
+                }
+            }));
+            if !of.contains([';', '\t']) {
+                rows.push(Row { key: of, values: vec![None; properties.len()] });
+            }
+            continue;
         }
+        let unusable = values.iter_mut().zip(&is_usable).filter(|(_, is_usable)| !**is_usable);
+        unusable.for_each(|(value, _)| *value = None);
         rows.push(Row { key: of, values });
     }
     Some(Table { file, key, properties, rows })
@@ -100,6 +101,10 @@ fn separated(file: FileId, text: &str) -> Option<Diagnostic> {
     let message = format!("the values of this table stand between {shown}, and have to stand between commas");
     let one = Diagnostic::new(&codes::OVERRIDES, place, message);
     Some(one.help("save it as comma-separated values; a value that holds a comma stands between two `\"`"))
+}
+
+fn many(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// An empty value is none.

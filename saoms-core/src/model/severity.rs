@@ -16,6 +16,8 @@ pub struct SeverityRule {
     pub level: Located<Level>,
     /// `reason`.
     pub reason: Text,
+    /// Whether it is wrong, which is reported: what it is about is not told beside that.
+    pub is_wrong: bool,
     /// The element that it stands in; `None` for the composite itself.
     pub within: Option<Location>,
 }

@@ -1,6 +1,6 @@
 //! The names of classes that an unknown one was probably meant to be.
 
-use crate::diagnostic::nearest_few;
+use crate::diagnostic::{nearest, nearest_few};
 
 /// How many names are offered.
 const OFFERED: usize = 3;
@@ -27,6 +27,14 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
     all.extend(ending);
     if all.is_empty() {
         all = nearest_few(name, names(), OFFERED);
+        // A package that names share makes all of them alike: of those in one what follows it counts.
+        let package = name.strip_suffix(last).unwrap_or_default();
+        let is_like = |known: &&str| {
+            known
+                .strip_prefix(package)
+                .is_none_or(|simple| package.is_empty() || nearest(last, [simple]).is_some())
+        };
+        all.retain(is_like);
     }
     if all.is_empty() {
         let spelt = nearest_few(last, names().map(simple), OFFERED).into_iter();

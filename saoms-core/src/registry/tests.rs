@@ -109,7 +109,7 @@ fn unknown_names_get_the_nearest_ones() {
     let mut registry = Registry::new();
     registry.add(Registration::of::<FarEye>()).unwrap();
     registry.add(Registration::of::<Eye>()).unwrap();
-    assert_eq!(registry.nearest("a.Eye01"), ["a.Eye001", "a.Eye"]);
+    assert_eq!(registry.nearest("a.Eye01"), ["a.Eye001"], "by what follows the package");
     assert_eq!(registry.nearest("A.eye"), ["a.Eye"], "nothing else beside the same but for case");
     assert_eq!(registry.nearest("Eye"), ["a.Eye", "a.far.away.Eye"], "the shorter first");
     assert_eq!(registry.nearest("org.example.robots.eye"), ["a.Eye", "a.far.away.Eye"], "another package");

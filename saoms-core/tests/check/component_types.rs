@@ -256,7 +256,7 @@ fn elements_are_those_of_the_file() {
         4:29-34 error S3007: the property `b` is of the element `t:foo`, and of `t:bar` where it is declared
           Run.componentType:2:97-102 where it is declared
           help: leave `element` out: that of the declaration holds
-        Run.componentType:2:158-166 error S3007: the property `d` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+        6:37-42 error S3007: the property `d` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
           Run.componentType:2:198-205 the type
           help: change the value, or the type
     "#]]

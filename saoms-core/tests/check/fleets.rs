@@ -222,7 +222,6 @@ fn what_is_said_of_many_replicas_is_told_once() {
         5:76-90 error S3001: there is no class `example.Robott` (in `X01`, index 1, and in 2 more)
           help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           fix: replace `example.Robott` with `example.Robot` [5:76-90 "example.Robot"]
-          fix: replace `example.Robott` with `example.Robot001` [5:76-90 "example.Robot001"]
     "#]].assert_eq(&of(
         r#"<component name="R${index:02}" saoms:count="12"><implementation.java class="example.Robot"/>
 <property name="ID">R</property><property name="number">${index * 10}</property><property name="sped">1</property><property name="awake">maybe</property>

@@ -82,7 +82,6 @@ fn names_of_loops_and_their_classes_are_known() {
 4:33-53 error S3001: there is no loop class `example.BatterySafer`
   help: looked among the 12 loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
   fix: replace `example.BatterySafer` with `example.BatterySaver` [4:33-53 \"example.BatterySaver\"]
-  fix: replace `example.BatterySafer` with `example.BatteryMS` [4:33-53 \"example.BatteryMS\"]
 4:63-69 error S4501: component `Cart` has no loop `PathSM`
   fix: replace `PathSM` with `PathMS` [4:63-69 \"PathMS\"]
 "

@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::slips::{GPS, of, robot};
-use crate::support::{outcome, part};
+use crate::support::{faults_of, outcome, part};
 
 /// What is wrong with three halls of two robots: with what the component that a hall implements says, and the property of the hall.
 fn halls(given: &str, property: &str) -> String {
@@ -138,4 +138,68 @@ fn a_type_whose_prefix_means_nothing_is_told() {
         R (example.Robot) ID=Text("R") number=Text("3") gps->
     "#]]
     .assert_eq(&with("my:number"));
+}
+
+#[test]
+fn what_comes_from_outside_is_told_where_it_was_given() {
+    let inside =
+        "<property name=\"n\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">4</property>";
+    let fleet = crate::support::fleet(&format!("{inside}\n{GPS}"));
+    expect![[r#"
+        2:17-18 warning S2026: the property `n` of the composite is used by no component
+          help: a component takes its value with `source="$n"`
+        --set:1:3-3 error S2042: the property `n` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+          2:26-33 the type
+          help: change the value, or the type
+    "#]].assert_eq(&faults_of(&[&fleet], &["n="]));
+    // What cannot be read may declare it.
+    expect![[r#"
+        1:2-11 error S0103: the start tag of `composite` is never closed
+          1:11-11 the file ends here
+    "#]]
+    .assert_eq(&faults_of(&["<composite"], &["n=1"]));
+}
+
+#[test]
+fn of_no_replicas_nothing_is_told_that_some_would_change() {
+    let inside = format!(
+        "<property name=\"site\">north</property>\n<component name=\"R${{index}}\" saoms:count=\"0\" saoms:if=\"site == 'north'\"><implementation.java class=\"example.Gps\"/></component>\n{GPS}"
+    );
+    expect![[r#"
+        G (example.Gps) other->
+    "#]]
+    .assert_eq(&of(&inside));
+}
+
+#[test]
+fn a_property_that_a_component_does_not_give_says_which() {
+    let unit = part(
+        "unit",
+        "",
+        &format!("<property name=\"who\"/>\n{}", robot("R", "<property name=\"number\" source=\"$who\"/>")),
+    );
+    let with = |given: &str| {
+        let component =
+            format!("<component name=\"U\"><implementation.composite name=\"t:unit\"/>{given}</component>");
+        outcome(&[&part("fleet", "", &component), &unit], &[])
+    };
+    expect![[r#"
+        unit:4:33-37 error S3006: the property `number` has no value: its source has none
+          unit:2:17-20 declared here, without a value
+          2:18-19 gives it none
+          help: add `<property name="who">...</property>` to the component `U`, which the composite implements
+    "#]]
+    .assert_eq(&with(""));
+    expect![[r#"
+        2:78-82 error S3004: composite `unit` has no property `whoo`
+          fix: replace `whoo` with `who` [2:78-82 "who"]
+    "#]]
+    .assert_eq(&with("<property name=\"whoo\">1</property>"));
+    expect![[r#"
+        2:78-82 error S3004: composite `unit` has no property `whom`
+          fix: replace `whom` with `who` [2:78-82 "who"]
+        2:111-116 error S3004: composite `unit` has no property `other`
+          help: its properties are `who`
+    "#]]
+    .assert_eq(&with("<property name=\"whom\" value=\"1\"/><property name=\"other\" value=\"1\"/>"));
 }

@@ -49,7 +49,6 @@ fn unknown_classes_are_offered_the_nearest() {
         2:49-64 error S3001: there is no class `example.Robt001`
           help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           fix: replace `example.Robt001` with `example.Robot001` [2:49-64 "example.Robot001"]
-          fix: replace `example.Robt001` with `example.Robot` [2:49-64 "example.Robot"]
         3:49-70 error S3001: there is no class `org.example.navigator`
           help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           fix: replace `org.example.navigator` with `example.Navigator` [3:49-70 "example.Navigator"]

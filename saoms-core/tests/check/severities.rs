@@ -243,6 +243,8 @@ fn what_is_wrong_with_severities_is_found() {
     expect![[r#"
         2:23-27 error S2048: there is no code `S400`
           fix: replace `S400` with `S4001` [2:23-27 "S4001"]
+        2:77-92 error S2048: there is no code `unused-property`
+          fix: replace `unused-property` with `S2026` [2:77-92 "S2026"]
         2:101-105 error S1011: `level` is `deny` and has to be `allow`, `note`, `warning` or `error`
           fix: replace it with `error` [2:101-105 "error"]
         3:2-16 error S1008: `saoms:severity` needs the attribute `reason`

@@ -365,7 +365,7 @@ fn words_of_other_languages_are_told_once() {
     .assert_eq(&with("target=\"G\"", "target=\"G/whereabouts\""));
     expect![[r#"
         4:92-96 error S1007: `include` has no attribute `file`
-          fix: replace `file` with `name` [4:92-96 "name"]
+          help: a composite is named by its `name`, with the prefix of its `targetNamespace`, and not by its file
     "#]]
     .assert_eq(&with("</component>", "</component><include file=\"part.composite\"/>"));
     expect![[r#"

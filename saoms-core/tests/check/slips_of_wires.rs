@@ -132,3 +132,56 @@ fn beside_an_include_that_leads_nowhere_no_reference_lacks_a_target() {
     let given: String = given.iter().map(|one| shown(one, &sources)).collect();
     assert!(!given.contains("S2018"), "{given}");
 }
+
+/// A composite that promotes a receiver, and a fleet of one component of it and a receiver of its own.
+fn with_unit(inside: &str) -> String {
+    let unit = part("unit", "", &format!("<service name=\"where\" promote=\"G/position\"/>{GPS}"));
+    let fleet = part(
+        "fleet",
+        "",
+        &format!("<component name=\"U\"><implementation.composite name=\"t:unit\"/></component>\n{inside}"),
+    );
+    outcome(&[&fleet, &unit], &[])
+        .lines()
+        .filter(|line| !line.ends_with("->"))
+        .fold(String::new(), |all, line| all + line + "\n")
+}
+
+#[test]
+fn what_is_inside_is_named_by_what_is_promoted() {
+    let target = |target: &str| {
+        with_unit(&robot(
+            "R",
+            &format!("<property name=\"number\">1</property>\n<reference name=\"gps\" target=\"{target}\"/>"),
+        ))
+    };
+    let said = ["U/G/position", "U.G/position", "U.G", "U/N"].map(target).concat();
+    expect![[r#"
+        5:33-34 error S2012: component `U` has no service `G`
+          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
+          fix: replace `U/G/position` with `U/where` [5:31-43 "U/where"]
+        5:31-34 error S2011: there is no component `U.G`
+          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
+          fix: replace `U.G/position` with `U/where` [5:31-43 "U/where"]
+        5:31-34 error S2011: there is no component `U.G`
+          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
+          fix: replace `U.G` with `U/where` [5:31-34 "U/where"]
+        5:33-34 error S2012: component `U` has no service `N`
+          help: its services are `where`
+          fix: replace `N` with `where` [5:33-34 "where"]
+    "#]]
+    .assert_eq(&said);
+    let own =
+        robot("R", "<property name=\"number\">1</property>\n<reference name=\"gps\" autowire=\"true\"/>");
+    expect![[r#"
+        6:18-21 error S2019: autowire finds several services for reference `gps` of component `R`
+          help: name one as its `target`: `U/where` and `G/position`
+    "#]]
+    .assert_eq(&with_unit(&format!("{GPS}\n{own}")));
+    expect![[r#"
+        3:15-27 error S2010: `U/G/position` has the wrong form
+          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
+          fix: replace `U/G/position` with `U/where` [3:15-27 "U/where"]
+    "#]]
+    .assert_eq(&with_unit("<wire source=\"U/G/position\" target=\"U\"/>"));
+}

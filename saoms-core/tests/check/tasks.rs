@@ -68,6 +68,7 @@ fn topic_renames() {
         POSTOPIC,a:ORDERS,b
         3:30-49 error S4002: bad `topicRename`: 3 names where a pair has two
           help: write `OLD,new` for each topic, and `::` between two of them
+          fix: replace `POSTOPIC,a:ORDERS,b` with `POSTOPIC,a::ORDERS,b` [3:30-49 "POSTOPIC,a::ORDERS,b"]
         POSTOPC, pos001::POS002, pos002
         3:30-37 warning S4003: class `example.Robot001` uses no topic `POSTOPC`: nothing is renamed
           fix: replace `POSTOPC` with `POSTOPIC` [3:30-37 "POSTOPIC"]

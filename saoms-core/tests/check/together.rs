@@ -156,7 +156,6 @@ fn a_file_that_is_given_twice_is_told_once() {
         3:49-63 error S3001: there is no class `example.Robott`
           help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           fix: replace `example.Robott` with `example.Robot` [3:49-63 "example.Robot"]
-          fix: replace `example.Robott` with `example.Robot001` [3:49-63 "example.Robot001"]
         more.composite:1:99-104 error S2001: there are two composites `fleet` in one namespace
           1:99-104 the first
           help: give each its own name; was one file given twice?
@@ -167,7 +166,6 @@ fn a_file_that_is_given_twice_is_told_once() {
         3:49-63 error S3001: there is no class `example.Robott`
           help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           fix: replace `example.Robott` with `example.Robot` [3:49-63 "example.Robot"]
-          fix: replace `example.Robott` with `example.Robot001` [3:49-63 "example.Robot001"]
         more.composite:1:99-104 error S2001: there are two composites `fleet` in one namespace
           1:99-104 the first
           help: give each its own name; was one file given twice?
@@ -177,7 +175,6 @@ fn a_file_that_is_given_twice_is_told_once() {
         more.composite:3:49-63 error S3001: there is no class `example.Robott`
           help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
           fix: replace `example.Robott` with `example.Robot` [more.composite:3:49-63 "example.Robot"]
-          fix: replace `example.Robott` with `example.Robot001` [more.composite:3:49-63 "example.Robot001"]
     "#]].assert_eq(&faults_of(&[&text, &other], &[]));
 }
 
@@ -285,8 +282,7 @@ fn slips_that_many_make_have_hints() {
         $(arg tick) => help: a component takes its value with `source="$tick"`
         help: write `source="$tick"` for the value of the property `tick` of the composite
 
-        ${100 + index} => help: a component takes its value with `source="$tick"`
-        help: `${...}` stands for a number in components with a `saoms:count` alone
+        ${100 + index} => help: `${...}` stands for a number in components with a `saoms:count` alone
 
         0.5.1 sec => help: a component takes its value with `source="$tick"`
 

@@ -88,3 +88,20 @@ fn component_types_of_imported_packages_are_found() {
         assert_eq!(links(&files, "fleet/fleet.composite"), expected);
     }
 }
+
+#[test]
+fn what_is_wrong_with_a_description_is_told_once() {
+    let export = "<export namespace='urn:b'/>";
+    // What it imports is not known.
+    expect![[r#"
+        fleet/fleet.composite: b:hall is faulty
+        fleet/META-INF/sca-contribution.xml S0102
+    "#]]
+    .assert_eq(&between("<import namespace='urn:b'>", export));
+    expect![[r#"
+        fleet/fleet.composite: b:hall -> halls/deep/hall.composite
+        halls/deep/hall.composite: b:door -> halls/door.composite
+        fleet/META-INF/sca-contribution.xml S0001
+    "#]]
+    .assert_eq(&between("<import namespace='urn:b' location='../nowhere'/>", export));
+}

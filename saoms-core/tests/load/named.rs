@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use expect_test::expect;
 use saoms_core::diagnostic::Diagnostics;
 use saoms_core::load::{MAX_SIZE, load, load_named};
 use saoms_core::model::{Contribution, Link, Naming};
@@ -275,4 +276,17 @@ fn what_a_composite_names_is_no_pipe_and_no_device() {
         .collect();
     let message = "the file cannot be read: it is no regular file";
     assert_eq!(found, ["pipe", "/dev/zero", "pipe"].map(|at| ("S0003", at, message)));
+}
+
+#[test]
+fn files_that_are_no_composites_are_named_with_the_reason() {
+    let files = [
+        ("fleet.composite", composite("urn:a", "fleet", "<include name='b:hall'/>")),
+        ("hall.composite", "<\0c\0".to_owned()),
+        ("more.composite", " ".to_owned()),
+        ("other.composite", "<contribution xmlns='http://www.osoa.org/xmlns/sca/1.0'/>".to_owned()),
+    ];
+    expect![[r#"
+        fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` is no composite: the file is in UTF-16LE, and UTF-8 is expected; `more.composite` is no composite: the file is empty; `other.composite` is no composite: the root element is `contribution` and has to be `composite`
+    "#]].assert_eq(&links(&files, "fleet.composite"));
 }

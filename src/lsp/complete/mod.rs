@@ -37,6 +37,9 @@ pub(super) fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
     if file.is_beside {
         return beside(scene, at);
     }
+    if let Some(entities) = entities(scene, at) {
+        return entities;
+    }
     match file.tree.cursor(&file.text, at) {
         Cursor::ElementName { parent, element, name } => elements::in_tag(scene, parent, element, &name),
         Cursor::EndTag { element, name } => elements::end(scene, element, &name, at),
@@ -50,6 +53,25 @@ pub(super) fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
         Cursor::Text { parent } => in_text(scene, parent, at),
         Cursor::Opaque => Vec::new(),
     }
+}
+
+/// What can be written behind a `&`: the characters that cannot stand for themselves everywhere (XML 1.0, 4.6). `None` where there is none.
+fn entities(scene: &Scene, at: usize) -> Option<Vec<Proposal>> {
+    const ENTITIES: [(&str, &str); 5] =
+        [("&amp;", "&"), ("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'")];
+    let text = &scene.file().text;
+    let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '#';
+    let start = text[..at].trim_end_matches(is_part).strip_suffix('&')?.len();
+    let can_be = matches!(
+        scene.file().tree.cursor(text, at),
+        Cursor::Text { parent: Some(_) } | Cursor::AttributeValue { .. }
+    );
+    let behind = text[at..].len() - text[at..].trim_start_matches(is_part).len();
+    let end = at + behind + usize::from(text[at + behind..].starts_with(';'));
+    let one = |(name, meant): (&str, &str)| {
+        Proposal::new(name, CompletionItemKind::CONSTANT, &(start..end)).detail(meant)
+    };
+    can_be.then(|| ENTITIES.map(one).into())
 }
 
 /// What can be written in a file that holds values.

@@ -47,8 +47,8 @@ pub(super) fn classes(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
         Proposal::new(class.name(), CompletionItemKind::CLASS, range)
             .detail(kind)
             .doc(describe::class(class))
-            // The manual's own names are for its own files.
-            .rank(if class.is_alias() { 6 } else { 5 })
+            // Those of larger packages are for files of theirs, as the manual's own names are.
+            .rank(if class.is_alias() { 9 } else { 4 + class.name().matches('.').count().min(4) as u8 })
     })
     .collect()
 }
@@ -209,8 +209,9 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
     let root = file.tree.elements.first().map(|root| root.name.end);
     let default = file.tree.resolve(&file.text, element, "");
     // What a contribution runs is its own.
-    let is_known = |place: usize| !(file.is_description() && scene.is_imported(place));
-    let others = scene.files.iter().enumerate().skip(1).filter(|(place, _)| is_known(*place));
+    let is_hidden =
+        |place: usize| scene.imports_this(place) || file.is_description() && scene.is_imported(place);
+    let others = scene.files.iter().enumerate().skip(1).filter(|(place, _)| !is_hidden(*place));
     others
         .filter_map(|(place, other)| {
             let name = &other.outline.name.as_ref()?.text;

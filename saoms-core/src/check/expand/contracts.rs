@@ -133,7 +133,7 @@ impl<'a> Expanding<'_, 'a> {
         let references = class.references.iter().zip(self.wiring.of(place));
         let references = references.map(|(declared, found)| {
             let end = |provider: &crate::check::target::Provider| {
-                let uri = uri(*provider, self.fleet, self.classes);
+                let uri = uri((provider.member, *provider), self.fleet, self.classes);
                 let service = uri.split_once('/').map_or("", |(_, service)| service);
                 format!("{}/{service}", self.names[provider.member])
             };

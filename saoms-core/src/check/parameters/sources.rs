@@ -96,7 +96,7 @@ impl<'a> Parameters<'a> {
     /// that says the same.
     pub(in crate::check) fn open(&self, unit: usize, source: &str) -> Option<(String, Vec<String>)> {
         let (mut unit, mut source) = (unit, source.to_owned());
-        while !self.units[unit].is_outermost {
+        while self.units[unit].owner.is_some() {
             let (name, path) = expression(&source)?;
             let Some(Given::Component(outside, outer)) = self.units[unit].by_name.get(name)?.given else {
                 return None;
@@ -126,6 +126,10 @@ impl<'a> Parameters<'a> {
             return Ok(());
         }
         unit.has_wrong_source = true;
+        // That it is not there is told where a component gives it a value, or where one is declared without its name.
+        if unit.has_nameless || unit.owner.is_some_and(|owner| owner.property(name).is_some()) {
+            return Err(());
+        }
         let names = unit.names();
         let at = report.part(source, start..start + name.len());
         let message = format!("the composite has no property {}", quoted(name));

@@ -42,6 +42,14 @@ impl Wires<'_, '_> {
         if !is_required || fleet.lacks_include(fleet.members[member].scope) {
             return;
         }
+        // A name that stands twice, and a target that stands where none can, are told.
+        let is_text = reference.is_some_and(|reference| {
+            let element = reference.origin.element(&fleet.members[member].composite.document);
+            reference.targets.is_empty() && element.has_text()
+        });
+        if is_text || fleet.is_repeated(member) {
+            return;
+        }
         let is_meant =
             [&self.astray, &self.promoted.astray].iter().any(|one| one.means(place, fleet, classes));
         if is_meant || astray::is_misspelt(place, fleet, classes) {

@@ -77,12 +77,25 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, Fault> {
             at += first.len_utf8();
             continue;
         }
+        if let Some(fault) = in_braces(rest, at) {
+            return Err(fault);
+        }
         let (token, length) = token(rest, first, ends_operand(all.last()))
             .map_err(|message| Fault::unknown(at..at + first.len_utf8(), message))?;
         all.push((token, at..at + length));
         at += length;
     }
     Ok(all)
+}
+
+/// A property whose name stands in braces, as where texts are made of others.
+fn in_braces(rest: &str, at: usize) -> Option<Fault> {
+    let (inside, _) = rest.strip_prefix("${")?.split_once('}')?;
+    let name = inside.trim();
+    let is_name = name.starts_with(is_first) && qualified(name) == name.len();
+    let written = &rest[..inside.len() + 3];
+    let fault = Fault::unknown(at..at + written.len(), "names of properties stand without braces here");
+    Some(Fault { instead: Some((written.to_owned(), format!("${name}"))), ..fault }).filter(|_| is_name)
 }
 
 fn token(rest: &str, first: char, is_behind_operand: bool) -> Result<(Token, usize), String> {

@@ -346,7 +346,7 @@ fn what_cannot_be_is_found_at_its_place() {
     );
     faults_1_1(
         &format!("<component name='a'>{JAVA}<property name='p'>1<value>2</value></property></component>"),
-        "2:74 [1] error S1012 text in `property`, which holds no text",
+        "2:74 [1] error S3012 the property `p` is given a value in two ways",
     );
     faults_1_0(
         &format!("<component name='a b'>{JAVA}</component><component name='a/b'>{JAVA}</component>"),

@@ -227,3 +227,21 @@ fn what_is_typed_is_looked_for_in_the_labels() {
     let sorted: Vec<&str> = all.iter().map(|one| one.label.as_str()).collect();
     assert_eq!(sorted, ["restart", "saoms.Restless", "moreRest", "chargeX"]);
 }
+
+#[test]
+fn behind_an_ampersand_stands_a_character() {
+    let all = ["&amp;", "&apos;", "&gt;", "&lt;", "&quot;"];
+    let scenario = format!("{ROBOT}<property name=\"ID\">R&|</property></component>");
+    assert_eq!(proposed(&composite(&scenario)), all);
+    assert_eq!(proposed(&composite("<wire s:if=\"1 &l| 2\"/>")), all);
+    assert_eq!(taken("<a b=\"1 &l|t; 2\"/>", "&lt;", true), "<a b=\"1 &lt; 2\"/>");
+    assert!(proposed(&composite("<!-- R & D &| -->")).is_empty());
+}
+
+#[test]
+fn classes_of_small_packages_come_first() {
+    let class = proposed(&composite("<component name=\"R\"><implementation.rust class=\"|\"/></component>"));
+    let first = class.iter().position(|one| one.starts_with("saoms.")).unwrap();
+    let other = class.iter().position(|one| one.starts_with("resources.")).unwrap();
+    assert!(first < other, "{class:?}");
+}

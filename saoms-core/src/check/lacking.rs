@@ -1,0 +1,119 @@
+//! Properties that are not there: given and not declared, or declared and not given.
+
+use super::fleet::Unit;
+use super::properties::Giver;
+use super::report::Report;
+use super::slots::Slots;
+use crate::assembly::TaskProperties;
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::model::Property;
+use crate::registry::PropertyDeclaration;
+use crate::source::{Location, Text};
+use crate::xml::Element;
+
+/// Reports a property that a class or a loop does not have.
+pub(super) fn unknown(
+    property: &Property,
+    giver: &Giver<'_, '_>,
+    slots: &Slots<'_>,
+    report: &mut Report<'_>,
+) {
+    let (name, at) = (&property.name, property.name.location);
+    let of = quoted(slots.name);
+    let is_task =
+        slots.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
+    let message = format!("{} {of} has no property {}", slots.what, quoted(name));
+    let known = ("its properties are", slots.names());
+    let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
+    let one = match stands_for(giver, slots) {
+        Some(lacking) => one.help(format!("{} is lacking: it may be what is meant", quoted(lacking))),
+        None => one,
+    };
+    report.push(match is_task {
+        true => one.help(format!("{of} is passive: it is never executed and has no task properties")),
+        false if slots.names().next().is_none() => one.help(format!("{of} has no properties at all")),
+        false => one,
+    });
+}
+
+/// The property that has to be given and is not, where it is the only one and one is given that there is not: that is probably meant for it.
+fn stands_for<'s>(giver: &Giver<'_, '_>, slots: &'s Slots<'_>) -> Option<&'s str> {
+    let mut unknown = giver.properties.iter().filter(|given| slots.place(&given.name).is_none());
+    let (given, None) = (unknown.next()?, unknown.next()) else { return None };
+    if given.name.is_empty() || nearest(&given.name, slots.names()).is_some() {
+        return None;
+    }
+    let is_given = |name: &str| {
+        giver.properties.iter().any(|given| given.name == *name)
+            || giver.defaults().any(|(given, _)| given.name == *name)
+            || slots.preset(name).is_some()
+    };
+    let required = slots.required.iter().filter_map(|place| slots.all[*place].main());
+    let mut lacking = required.map(|one| one.name.as_str()).filter(|name| !is_given(name));
+    let (lacking, None) = (lacking.next()?, lacking.next()) else { return None };
+    Some(lacking)
+}
+
+/// Where a component of a composite takes the value of a property that the composite does not have.
+pub(super) fn taken_inside(name: &str, inner: &Unit<'_>) -> Option<Location> {
+    let components = inner.composites.iter().flat_map(|composite| &composite.components);
+    let mut sources = components.flat_map(|one| &one.properties).filter_map(Property::source);
+    let is_inner = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.');
+    let is_it = |source: &&Text| {
+        let mut behind = source.split('$').skip(1).filter_map(|rest| rest.strip_prefix(name));
+        behind.any(|rest| !rest.starts_with(is_inner))
+    };
+    Some(sources.find(is_it)?.location)
+}
+
+/// Reports a property that has to be given and is not.
+pub(super) fn missing(
+    giver: &Giver<'_, '_>,
+    declaration: &PropertyDeclaration,
+    slots: &Slots<'_>,
+    report: &mut Report<'_>,
+) {
+    if giver.member.has_open_values() {
+        return;
+    }
+    let name = declaration.name.as_str();
+    let document = &giver.member.composite.document;
+    let element = giver.origin.element(document);
+    let is_meant = |given: &Property| {
+        given.name.is_empty() || slots.place(&given.name).is_none() && nearest(&given.name, [name]).is_some()
+    };
+    let is_property = |child: Element<'_>| match child.local_name() {
+        "property" => false,
+        // As other languages call it.
+        "param" | "parameter" | "arg" | "argument" => {
+            child.attribute("name").is_some_and(|given| given.value() == name)
+        }
+        other => nearest(other, ["property"]).is_some(),
+    };
+    // As an attribute, which SCA 1.0 lets pass.
+    let is_attribute = || {
+        let implementation = giver.member.component.implementation.as_ref();
+        let mut elements = std::iter::once(element)
+            .chain(implementation.map(|implementation| implementation.origin.element(document)));
+        giver.member.composite.version.is_1_1() && elements.any(|one| one.attribute(name).is_some())
+    };
+    if stands_for(giver, slots) == Some(name) {
+        return;
+    }
+    if giver.properties.iter().any(is_meant) || element.children().any(is_property) || is_attribute() {
+        // It is there, misspelt, and that is reported.
+        return;
+    }
+    // That of SCA, in which the properties of loops are as well.
+    let prefix = giver.member.component.origin.element(document).prefix();
+    let tag = prefix.map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
+    let who = match giver.name.is_empty() {
+        true => format!("the {}", giver.what),
+        false => format!("{} {}", giver.what, quoted(giver.name)),
+    };
+    let message = format!("{who} lacks the property {}", quoted(name));
+    report.push(
+        Diagnostic::new(&codes::PROPERTY_MISSING, giver.name.location, message)
+            .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),
+    );
+}
