@@ -1,7 +1,8 @@
 //! `saoms graph`: draws a composite.
 
-use std::fs;
-use std::io::{self, IsTerminal};
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
 use saoms_core::check::{Census, Options, Variable};
@@ -16,7 +17,7 @@ use crate::Exit;
 use crate::arguments::{GraphArguments, Picture};
 use crate::fleet::{SET, SEVERITY, options, read_or_input};
 use crate::folder::one_fleet;
-use crate::output::{eprint, try_print};
+use crate::output::{eprint, unless_closed};
 use crate::plugins::{registry, search};
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
@@ -77,14 +78,16 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         ));
     }
     let diagram = Diagram::of(&contribution, &registry, &census);
+    // A picture of a large composite needs the memory.
+    drop((contribution, census, registry, sources, finder));
     let text = match picture {
         Picture::Svg => svg(&diagram),
         Picture::Mermaid => mermaid(&diagram),
         Picture::Dot => dot(&diagram),
     };
     let written = match path {
-        Some(path) => fs::write(path, text),
-        None => try_print(&text),
+        Some(path) => File::create(path).and_then(|file| written(file, text)),
+        None => unless_closed(written(io::stdout().lock(), text)),
     };
     match written {
         Ok(()) => Exit::Done,
@@ -94,6 +97,12 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
             Exit::Failed
         }
     }
+}
+
+fn written(to: impl Write, text: impl Display) -> io::Result<()> {
+    let mut to = BufWriter::new(to);
+    write!(to, "{text}")?;
+    to.flush()
 }
 
 fn by_ending(path: &Path) -> Option<Picture> {

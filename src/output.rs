@@ -10,7 +10,12 @@ pub(crate) fn print(text: &str) {
 /// Writes text to standard output. A reader that went away (`saoms components | head`) is not an error.
 pub(crate) fn try_print(text: &str) -> io::Result<()> {
     let mut output = io::stdout().lock();
-    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+    unless_closed(output.write_all(text.as_bytes()).and_then(|()| output.flush()))
+}
+
+/// What came of writing, where it is no fault that nobody reads on.
+pub(crate) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
+    match result {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         result => result,
     }

@@ -77,6 +77,9 @@ fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
     assert!(code == 2 && error.contains("`hall.jpeg` says no format"), "{error}");
     let (code, _, error) = graph(&["composites/hall.composite", "-o", "no/such/folder/hall.svg"]);
     assert!(code == 1 && error.contains("cannot be written to `no/such/folder/hall.svg`"), "{error}");
+    // What is written while it is made can fail in its middle.
+    let (code, _, error) = graph(&["composites/hall.composite", "--format", "svg", "-o", "/dev/full"]);
+    assert!(cfg!(not(target_os = "linux")) || code == 1 && error.contains("No space left"), "{error}");
 }
 
 #[test]

@@ -3,32 +3,36 @@
 use std::fmt::Write as _;
 
 use super::diagram::{Component, Diagram, End, LinkKind, Port, State};
+use super::picture::{Picture, Sink};
 use super::text::left_out;
 
 /// Draws a diagram in the language of Graphviz: components are records with services on the left and references on the
 /// right, topics ellipses, composites clusters.
-pub fn dot(diagram: &Diagram) -> String {
-    let mut out = format!("digraph {} {{\n  rankdir=LR;\n", quoted(&diagram.name));
+pub fn dot(diagram: &Diagram) -> Picture<'_> {
+    Picture { diagram, draw }
+}
+
+fn draw(diagram: &Diagram, out: &mut Sink<'_>) {
+    let _ = writeln!(out, "digraph {} {{\n  rankdir=LR;", quoted(&diagram.name));
     out.push_str(
         "  node [fontname=\"Helvetica\", fontsize=11];\n  edge [fontname=\"Helvetica\", fontsize=9];\n",
     );
-    open("composite", &diagram.name, &mut out);
-    composite(diagram, "", &mut out);
+    open("composite", &diagram.name, out);
+    composite(diagram, "", out);
     if let Some(note) = left_out(diagram) {
         let _ = writeln!(out, "  // {note}");
     }
     out.push_str("}\n");
-    out
 }
 
 /// Starts the cluster `id`.
-fn open(id: &str, label: &str, out: &mut String) {
+fn open(id: &str, label: &str, out: &mut Sink<'_>) {
     let _ = writeln!(out, "  subgraph cluster_{id} {{\n    label={};", quoted(label));
     out.push_str("    style=rounded; color=\"#46617e\"; fontname=\"Helvetica\";\n");
 }
 
 /// Draws a composite in the cluster that is open, and ends that; the names of all nodes in it start with `prefix`.
-fn composite(diagram: &Diagram, prefix: &str, out: &mut String) {
+fn composite(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     for (place, component) in diagram.components.iter().enumerate() {
         let style = match component.state {
             State::Known => "style=\"rounded,filled\", fillcolor=\"#d8e6f5\", color=\"#46617e\"",
@@ -75,7 +79,7 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut String) {
     edges(diagram, prefix, out);
 }
 
-fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
+fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     for link in &diagram.links {
         let from = match link.from {
             End::Component { component, port } => {

@@ -3,12 +3,17 @@
 use std::fmt::Write as _;
 
 use super::diagram::{Diagram, End, LinkKind, State};
+use super::picture::{Picture, Sink};
 use super::text::left_out;
 
 /// Draws a diagram as a flowchart of Mermaid.
-pub fn mermaid(diagram: &Diagram) -> String {
-    let mut out = "flowchart LR\n".to_owned();
-    composite(diagram, "", "composite", &escaped(&diagram.name), &mut out);
+pub fn mermaid(diagram: &Diagram) -> Picture<'_> {
+    Picture { diagram, draw }
+}
+
+fn draw(diagram: &Diagram, out: &mut Sink<'_>) {
+    out.push_str("flowchart LR\n");
+    composite(diagram, "", "composite", &escaped(&diagram.name), out);
     if let Some(note) = left_out(diagram) {
         let _ = writeln!(out, "  %% {note}");
     }
@@ -17,11 +22,10 @@ pub fn mermaid(diagram: &Diagram) -> String {
     out.push_str("  classDef missing fill:#fff,stroke:#c0392b,stroke-dasharray:5 3\n");
     out.push_str("  classDef service fill:#86c067,stroke:#3d7a22\n");
     out.push_str("  classDef reference fill:#b59ad6,stroke:#62399a\n");
-    out
 }
 
 /// Draws a composite as the group `id`; the names of all nodes in it start with `prefix`.
-fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut String) {
+fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut Sink<'_>) {
     let _ = writeln!(out, "  subgraph {id} [\"{}\"]", if label.is_empty() { "?" } else { label });
     for (place, component) in diagram.components.iter().enumerate() {
         let mut label = escaped(&component.label());
@@ -58,7 +62,7 @@ fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut S
     edges(diagram, prefix, out);
 }
 
-fn edges(diagram: &Diagram, prefix: &str, out: &mut String) {
+fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     for link in &diagram.links {
         let (from, source) = match link.from {
             End::Component { component, port } => {

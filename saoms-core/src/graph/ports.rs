@@ -24,7 +24,10 @@ impl Side {
     }
 }
 
-/// What the ports are found by, of those components that somebody asked about.
+/// Ports of a component that are gone through without an index.
+const FEW: usize = 8;
+
+/// What the ports are found by, of those components that have many.
 #[derive(Default)]
 pub(super) struct Ports {
     sides: HashMap<(usize, Side), Index>,
@@ -62,6 +65,14 @@ impl Ports {
 
     /// The place of the port of this name, which is there from now on.
     pub(super) fn named(&mut self, diagram: &mut Diagram, component: usize, side: Side, name: &str) -> usize {
+        let ports = side.ports(diagram, component);
+        if ports.len() < FEW {
+            let known = ports.iter().position(|port| port.name == name);
+            return known.unwrap_or_else(|| {
+                ports.push(Port::named(name));
+                ports.len() - 1
+            });
+        }
         let index = self.index(diagram, component, side);
         if let Some(place) = index.by_name.get(name) {
             return *place;
@@ -80,9 +91,17 @@ impl Ports {
         component: usize,
         interface: Option<&str>,
     ) -> usize {
-        let index = self.index(diagram, component, Side::Services);
-        let fitting = interface.and_then(|interface| index.by_interface.get(interface));
-        match fitting.copied().or(index.first) {
+        let services = &diagram.components[component].services;
+        let meant = if services.len() < FEW {
+            let fits = |port: &Port| interface.is_some() && port.interface.as_deref() == interface;
+            let first = || services.iter().position(|port| port.name != TASK_SERVICE);
+            services.iter().position(fits).or_else(first)
+        } else {
+            let index = self.index(diagram, component, Side::Services);
+            let fitting = interface.and_then(|interface| index.by_interface.get(interface));
+            fitting.copied().or(index.first)
+        };
+        match meant {
             Some(place) => place,
             None => self.named(diagram, component, Side::Services, ""),
         }

@@ -8,6 +8,7 @@ use super::layout::measure::{CHEVRON, CHIP_HEIGHT, CHIP_SIZE, Chip, LABEL, NAME_
 use super::layout::{
     LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, border, heading, layout,
 };
+use super::picture::{Picture, Sink};
 use super::text::{left_out, width, xml};
 
 /// The colours of topics, dark enough for lines on white (Okabe, Ito: Color universal design, 2008; yellow left out).
@@ -34,9 +35,13 @@ text{font-family:Helvetica,Arial,'Liberation Sans',sans-serif;fill:#1c2733}\
 /// Services are green chevrons on the left, references purple chevrons on the right, properties yellow boxes on top.
 /// Topics are rails below the components; a triangle into a rail publishes, one out of it reads. Details (interfaces,
 /// values, types of messages) are shown as tooltips.
-pub fn svg(diagram: &Diagram) -> String {
+pub fn svg(diagram: &Diagram) -> Picture<'_> {
+    Picture { diagram, draw }
+}
+
+fn draw(diagram: &Diagram, text: &mut Sink<'_>) {
     let layout = layout(diagram, true);
-    let mut out = Out::default();
+    let mut out = Out { text, topics: HashMap::new() };
     let Layout { width, height, .. } = layout;
     let _ = writeln!(
         out.text,
@@ -47,7 +52,6 @@ pub fn svg(diagram: &Diagram) -> String {
     out.draw(diagram, &layout);
     out.legend(diagram, &layout);
     out.text.push_str("</svg>\n");
-    out.text
 }
 
 /// Where the lines are from the sides of a component that join what is inside to it.
@@ -55,14 +59,13 @@ const TIE: i32 = 4;
 /// The names of one rail that its tooltip has.
 const MOST_NAMES: usize = 40;
 
-#[derive(Default)]
-struct Out {
-    text: String,
+struct Out<'o, 's> {
+    text: &'o mut Sink<'s>,
     /// The topics that have a colour: one is of the same colour in all composites.
     topics: HashMap<String, &'static str>,
 }
 
-impl Out {
+impl Out<'_, '_> {
     fn draw(&mut self, diagram: &Diagram, layout: &Layout) {
         self.composite(diagram, layout);
         layout.lines.iter().for_each(|line| self.line(line));
@@ -338,7 +341,7 @@ impl Out {
         if let Some(note) = left_out(diagram) {
             entry(self, &note, &|_, _| ());
         }
-        self.text.push('\n');
+        self.text.push_str("\n");
     }
 
     fn rect(&mut self, class: &str, Rect { x, y, width, height }: Rect, round: i32) {

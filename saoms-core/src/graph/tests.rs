@@ -33,7 +33,7 @@ fn together(texts: impl IntoIterator<Item = String>) -> Diagram {
 
 /// The edges of the flowchart, each a line.
 fn edges(content: &str, expected: Expect) {
-    let chart = mermaid(&diagram(content));
+    let chart = mermaid(&diagram(content)).to_string();
     let edges = chart.lines().map(str::trim).filter(|line| line.contains("->"));
     expected.assert_eq(&edges.map(|line| format!("{line}\n")).collect::<String>());
 }
@@ -84,7 +84,7 @@ fn what_is_named_and_not_there_is_missing() {
     );
     let found: Vec<_> = diagram.components.iter().map(|one| (&*one.name, one.state)).collect();
     assert_eq!(found, [("A", State::Known), ("B", State::Missing), ("C", State::Missing)]);
-    assert!(svg(&diagram).contains("the composite has no such component"));
+    assert!(svg(&diagram).to_string().contains("the composite has no such component"));
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn autowire_finds_what_composites_promote() {
             <component name='S'><implementation.java class='a.A'/><service name='s'>{interface}</service></component>
         </composite>",
     ];
-    let drawn = mermaid(&together(texts.map(|text| text.replace("{interface}", interface))));
+    let drawn = mermaid(&together(texts.map(|text| text.replace("{interface}", interface)))).to_string();
     let wires = drawn.lines().map(str::trim).filter(|line| line.contains("-->"));
     expect![[r#"
         c0_r0 -->|"many → in"| c1_s0
@@ -148,7 +148,7 @@ fn a_picture_has_a_part_of_very_many_wires_of_autowire_and_says_so() {
     };
     let diagram = diagram(&format!(" autowire='true'>{}", (0..200).map(component).collect::<String>()));
     assert_eq!((diagram.links.len(), diagram.left_out), (20_000, 200 * 199 - 20_000));
-    for drawn in [svg(&diagram), mermaid(&diagram), dot(&diagram)] {
+    for drawn in [svg(&diagram).to_string(), mermaid(&diagram).to_string(), dot(&diagram).to_string()] {
         assert!(drawn.contains("19800 wires are not drawn"));
     }
 }
@@ -161,7 +161,7 @@ fn a_picture_has_a_part_of_very_many_components_that_are_not_there_and_says_so()
     let diagram = diagram(&format!("><component name='A'/>{wires}"));
     assert_eq!((diagram.links.len(), diagram.components.len(), diagram.left_out), (2_000, 2_001, 500));
     assert_eq!(diagram.components[0].references.len(), 2_000);
-    assert!(mermaid(&diagram).contains("500 wires are not drawn"));
+    assert!(mermaid(&diagram).to_string().contains("500 wires are not drawn"));
 }
 
 /// It runs beside the other one, and as a component of it.
@@ -192,14 +192,18 @@ fn names_are_escaped() {
     let diagram = diagram(
         "><component name='&lt;a&gt; &amp; &quot;b&quot; | {c} \\ # ]]'><implementation.java class='x'/></component>",
     );
-    let drawn = svg(&diagram);
+    let drawn = svg(&diagram).to_string();
     let document = roxmltree::Document::parse(&drawn).unwrap();
     let name = document
         .descendants()
         .find(|node| node.attribute("class") == Some("name") && node.text() != Some("c"));
     assert_eq!(name.unwrap().text(), Some(&*diagram.components[0].name));
-    assert!(dot(&diagram).contains(r#"label="\<a\> & \"b\" \| \{c\} \\ # ]]\nx""#), "{}", dot(&diagram));
-    assert!(mermaid(&diagram).contains("#60;a#62; #38; #34;b#34; #124; {c} #92; #35; ]]<br/>x"));
+    assert!(
+        dot(&diagram).to_string().contains(r#"label="\<a\> & \"b\" \| \{c\} \\ # ]]\nx""#),
+        "{}",
+        dot(&diagram)
+    );
+    assert!(mermaid(&diagram).to_string().contains("#60;a#62; #38; #34;b#34; #124; {c} #92; #35; ]]<br/>x"));
 }
 
 #[test]
@@ -234,8 +238,8 @@ fn composites_are_drawn_inside_the_components_that_they_implement() {
           end
           c1 -->|"r → light"| c0_s0
     "#]]
-    .assert_eq(mermaid(&diagram).split("  classDef").next().unwrap());
-    let drawn = svg(&diagram);
+    .assert_eq(mermaid(&diagram).to_string().split("  classDef").next().unwrap());
+    let drawn = svg(&diagram).to_string();
     let document = roxmltree::Document::parse(&drawn).unwrap();
     let names: Vec<_> = document
         .descendants()

@@ -27,6 +27,7 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
         seen: HashSet::new(),
         linked: HashSet::new(),
         left: MOST_MISSING,
+        is_inside,
     };
     let is_replacing = |wire: &Wire| wire.replace().is_some_and(|replace| replace.value);
     let replaced = view.wires().filter(|wire| is_replacing(wire)).filter_map(|wire| wire.source.as_ref());
@@ -45,12 +46,7 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
             None => linker.diagram.left_out += 1,
         }
     }
-    // What is promoted is wired around the composite, where there is something around it.
-    let wired = linker.linked.clone();
     linker.promotions(view);
-    if !is_inside {
-        linker.linked = wired;
-    }
     linker.autowire(view);
 }
 
@@ -64,6 +60,8 @@ struct Linker<'d> {
     linked: HashSet<End>,
     /// How many more components may be drawn as missing.
     left: usize,
+    /// Whether there is something around the composite.
+    is_inside: bool,
 }
 
 impl Linker<'_> {
@@ -181,7 +179,10 @@ impl Linker<'_> {
     fn add(&mut self, kind: LinkKind, from: End, to: End) {
         let link = Link { kind, from, to };
         if self.seen.insert(link) {
-            self.linked.insert(from);
+            // What is promoted is wired around the composite, where there is something around it.
+            if kind == LinkKind::Wire || self.is_inside {
+                self.linked.insert(from);
+            }
             self.diagram.links.push(link);
         }
     }

@@ -27,8 +27,11 @@ fn every_file_has_a_picture() {
         let Some(composite) = load_file(file, &sources, &mut diagnostics) else { continue };
         let count = composite.components.len();
         let diagram = Diagram::of(&Contribution::of(vec![composite]), &registry, &Census::default());
-        assert!(mermaid(&diagram).starts_with("flowchart") && dot(&diagram).starts_with("digraph"));
-        let text = svg(&diagram);
+        assert!(
+            mermaid(&diagram).to_string().starts_with("flowchart")
+                && dot(&diagram).to_string().starts_with("digraph")
+        );
+        let text = svg(&diagram).to_string();
         let picture = Document::parse(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
         let boxes = |classes: &[&str]| -> Vec<[i32; 4]> {
             let is_meant =

@@ -118,7 +118,7 @@ pub(crate) fn journal(bytes: &[u8]) {
 pub(crate) fn draw(fleet: &Contribution, registry: &Registry, sources: &Sources) {
     let census = Census::of(fleet, registry, &Options::default(), sources, &mut Diagnostics::new());
     let diagram = Diagram::of(fleet, registry, &census);
-    let pictures = [svg(&diagram), dot(&diagram), mermaid(&diagram)];
+    let pictures = [svg(&diagram).to_string(), dot(&diagram).to_string(), mermaid(&diagram).to_string()];
     assert!(xml::parse(FileId(0), &Arc::new(pictures[0].clone())).fault.is_none(), "{}", pictures[0]);
 }
 

@@ -1,6 +1,7 @@
 //! What stands in columns, and what joins it: components, parts of the composite at its borders, and lines that pass by.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use super::measure::{GRID, Plan};
 use crate::graph::diagram::{Diagram, End, LinkKind};
@@ -67,7 +68,7 @@ pub(super) struct Items {
 }
 
 impl Items {
-    pub(super) fn of(diagram: &Diagram, plans: &[Plan], columns: &[Vec<usize>]) -> Self {
+    pub(super) fn of(diagram: &Diagram, plans: &[Rc<Plan>], columns: &[Vec<usize>]) -> Self {
         let mut all = Self { components: vec![0; plans.len()], ..Self::default() };
         all.columns = vec![Vec::new(); columns.len() + 2];
         let last = columns.len() + 1;

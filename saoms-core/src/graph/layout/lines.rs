@@ -1,6 +1,7 @@
 //! The lines between columns as strands of channels, and as parts of the picture.
 
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use super::items::{Items, Pin};
 use super::measure::{GRID, Plan};
@@ -39,7 +40,7 @@ pub(super) struct Routes {
 }
 
 impl Routes {
-    pub(super) fn of(diagram: &Diagram, plans: &[Plan], items: &Items) -> Self {
+    pub(super) fn of(diagram: &Diagram, plans: &[Rc<Plan>], items: &Items) -> Self {
         let mut channels: Vec<Vec<Route>> = Vec::new();
         channels.resize_with(items.columns.len() - 1, Vec::new);
         let mut nets: BTreeMap<(usize, usize), (Vec<Pin>, Pin)> = BTreeMap::new();

@@ -14,6 +14,8 @@ mod route;
 #[cfg(test)]
 mod tests;
 
+use std::rc::Rc;
+
 use items::{Items, Kind};
 use lines::Routes;
 use measure::{CHEVRON, Chip, GRID, NAME_SIZE, Plan, SMALL_SIZE, chips, on_grid};
@@ -68,7 +70,7 @@ pub(super) struct Line {
 pub(super) struct Placed {
     /// All of it, with what sticks out above.
     pub(super) rect: Rect,
-    pub(super) plan: Plan,
+    pub(super) plan: Rc<Plan>,
 }
 
 /// A topic.
@@ -132,7 +134,8 @@ pub(super) fn layout(diagram: &Diagram, is_whole: bool) -> Layout {
         }
     }
     let components = diagram.components.iter().zip(has_topics);
-    let plans: Vec<Plan> = components.map(|(component, topics)| Plan::of(component, topics)).collect();
+    let plans: Vec<Rc<Plan>> =
+        components.map(|(component, topics)| Rc::new(Plan::of(component, topics))).collect();
     let count = plans.len();
     let all: Vec<usize> = match count {
         0 => vec![1],
@@ -148,7 +151,7 @@ pub(super) fn layout(diagram: &Diagram, is_whole: bool) -> Layout {
 }
 
 /// Lays out a diagram with at most so many components above each other.
-fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> Layout {
+fn in_rows(diagram: &Diagram, plans: &[Rc<Plan>], rows: usize, is_whole: bool) -> Layout {
     let wires: Vec<(usize, usize)> = diagram
         .links
         .iter()
@@ -212,7 +215,7 @@ fn in_rows(diagram: &Diagram, plans: &[Plan], rows: usize, is_whole: bool) -> La
                 layout.references[place] = Point { x: frame.x + frame.width, y: y + GRID };
             }
             Kind::Component(place) => {
-                let plan = plans[place].clone();
+                let plan = Rc::clone(&plans[place]);
                 let free = widths[item.column] - plan.width;
                 let x = origin.x + lefts[item.column] + free / 2;
                 let rect = Rect { x, y, width: plan.width, height: plan.height };
@@ -276,7 +279,7 @@ impl Sides<'_> {
 }
 
 /// The width of each column; labels of topics stand below the first one with components.
-fn column_widths(diagram: &Diagram, plans: &[Plan], items: &Items) -> Vec<i32> {
+fn column_widths(diagram: &Diagram, plans: &[Rc<Plan>], items: &Items) -> Vec<i32> {
     let widest = |column: &Vec<usize>| {
         let widths = column.iter().map(|&item| match items.items[item].kind {
             Kind::Component(place) => plans[place].width,
