@@ -2,10 +2,12 @@
 //!
 //! Most of a check's time goes to memory: a composite becomes many small pieces, and a few lists that grow with the file. The small ones come
 //! from mimalloc, which takes and frees them faster than the system's allocator. Lists stay with the system, which moves a list that grows by
-//! its page table where mimalloc copies it and holds both; the largest are asked for in huge pages, of which a file of 100 MB needs some
-//! hundreds rather than a hundred thousand. Measured in `benches/README.md`.
+//! its page table where mimalloc copies it and holds both. Once one of them is very large, memory is asked for in huge pages, of which a file
+//! of 100 MB needs some hundreds rather than a hundred thousand. Measured in `benches/README.md`.
 
 use std::alloc::{GlobalAlloc, Layout, System};
+#[cfg(target_os = "linux")]
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use libmimalloc_sys::{
     mi_free, mi_malloc, mi_malloc_aligned, mi_realloc, mi_realloc_aligned, mi_zalloc, mi_zalloc_aligned,
@@ -14,9 +16,13 @@ use libmimalloc_sys::{
 /// What is at least so large, in bytes, comes from the system.
 const LARGE: usize = 1 << 20;
 
-/// What is at least so large, in bytes, is asked for in huge pages: what they round up to is little of it then.
+/// The first list that is at least so large, in bytes, is asked for in huge pages: what they round up to is little of it then.
 #[cfg(target_os = "linux")]
 const HUGE: usize = 32 << 20;
+
+/// Each later one that is at least so large is, too.
+#[cfg(target_os = "linux")]
+const HUGE_LATER: usize = 4 << 20;
 
 /// The allocator of the program.
 pub(crate) struct Memory;
@@ -119,12 +125,25 @@ impl Small {
 fn huge(memory: *mut u8, size: usize) -> *mut u8 {
     /// That of the processors that SAOMS runs on.
     const PAGE: usize = 2 << 20;
-    if size >= HUGE && !memory.is_null() {
-        let before = memory.align_offset(PAGE);
-        // SAFETY: the range lies inside the memory, as that is larger than a page, and the advice changes nothing of what is in it.
+    /// What mimalloc maps at once, in bytes.
+    const AREA: usize = 1 << 30;
+    static IS_ASKED: AtomicBool = AtomicBool::new(false);
+    let is_first = !IS_ASKED.load(Ordering::Relaxed);
+    if size < (if is_first { HUGE } else { HUGE_LATER }) || memory.is_null() {
+        return memory;
+    }
+    let before = memory.align_offset(PAGE);
+    // SAFETY: the range lies inside the memory, as that is larger than a page, and the advice changes nothing of what is in it.
+    unsafe { libc::madvise(memory.add(before).cast(), (size - before) & !(PAGE - 1), libc::MADV_HUGEPAGE) };
+    // Where one list is so large, the small pieces of a model come to several times as much.
+    if is_first && !IS_ASKED.swap(true, Ordering::Relaxed) {
+        // SAFETY: the piece is given back to where it came from. What else may be mapped behind it is not changed by the advice either, and
+        // what is not mapped is passed over.
         unsafe {
-            libc::madvise(memory.add(before).cast(), (size - before) & !(PAGE - 1), libc::MADV_HUGEPAGE)
-        };
+            let piece = mi_malloc(1);
+            libc::madvise(piece.map_addr(|at| at & !(PAGE - 1)), AREA, libc::MADV_HUGEPAGE);
+            mi_free(piece);
+        }
     }
     memory
 }
