@@ -14,7 +14,8 @@ pub(super) fn remove<T, U>(fleet: &mut Fleet<'_>, one: Vec<T>, other: Vec<U>) ->
     let units = places(fleet.units.iter().map(|unit| !unit.is_absent));
     for (place, scope) in fleet.scopes.iter_mut().enumerate() {
         scope.owner = scope.owner.and_then(|owner| members[owner]);
-        scope.members = scope.members.iter().filter_map(|member| members[*member]).collect();
+        let there = scope.members.iter().filter_map(|member| members[*member as usize]);
+        scope.members = there.map(|member| member as u32).collect();
         scope.units = scope.units.iter().filter_map(|unit| units[*unit]).collect();
         debug_assert!(place == 0 || scope.owner.is_some() || scope.units.is_empty());
     }

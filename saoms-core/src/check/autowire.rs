@@ -44,6 +44,7 @@ impl<'c> Services<'c> {
     fn of(scope: usize, fleet: &'c Fleet<'_>, classes: &'c [ClassIndex<'_>]) -> Self {
         let mut all = Self::default();
         for &member in &fleet.scopes[scope].members {
+            let member = member as usize;
             all.is_open |= fleet.service_names(member, classes).is_none();
             for (_, offer) in fleet.offers(member, classes) {
                 match offer {

@@ -41,7 +41,8 @@ pub(super) struct Scope {
     /// The component that it implements; `None` for the outermost.
     pub(super) owner: Option<usize>,
     pub(super) units: Vec<usize>,
-    pub(super) members: Vec<usize>,
+    /// The places of its components; of 32 bits, as each component of a large fleet is here.
+    pub(super) members: Vec<u32>,
     /// Whether a fault that is reported leaves some of it unknown.
     pub(super) is_faulty: bool,
     /// What components are called that could not be made for such a fault, with `*` for what is not known.
@@ -76,8 +77,9 @@ pub(super) struct Member<'a> {
     /// Whether it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is said of what others
     /// would share with it.
     pub(super) is_partial: bool,
-    /// Its path, where that is more than its name.
-    path: Option<Box<str>>,
+    /// Its path, where that is more than its name: a pointer of one word, as few have one.
+    #[expect(clippy::box_collection, reason = "of a large fleet, a word of each component matters")]
+    path: Option<Box<String>>,
 }
 
 /// What implements a component.
@@ -112,7 +114,7 @@ impl<'a> Member<'a> {
 
     /// The name that tells it from all others of the fleet: the names of the components around it, and its own.
     pub(super) fn path(&self) -> &str {
-        self.path.as_deref().unwrap_or(&self.component.name)
+        self.path.as_deref().map_or(&self.component.name, String::as_str)
     }
 
     /// Whether it is there in a run, rather than the composite that it is.
@@ -126,7 +128,7 @@ impl<'a> Member<'a> {
     }
 
     pub(super) fn set_path(&mut self, path: String) {
-        self.path = Some(path.into());
+        self.path = Some(Box::new(path));
     }
 }
 
@@ -194,8 +196,8 @@ impl<'a> Fleet<'a> {
 
     /// The names of all components of a scope, in order.
     pub(super) fn names(&self, scope: usize) -> impl Iterator<Item = &'a str> + Clone {
-        let known = self.scopes[scope].members.iter().filter(|member| !self.members[**member].is_partial);
-        known.map(|member| self.members[*member].component.name.as_str())
+        let all = self.scopes[scope].members.iter().map(|member| &self.members[*member as usize]);
+        all.filter(|member| !member.is_partial).map(|member| member.component.name.as_str())
     }
 
     /// The one unit of the composite that implements a component.

@@ -343,7 +343,8 @@ impl<'a> Unfolding<'a> {
         self.fleet.members.push(member);
         let name = component.name.as_str();
         if is_seen {
-            self.fleet.scopes[scope].members.push(index);
+            // Fleets are limited to fewer.
+            self.fleet.scopes[scope].members.push(index as u32);
         }
         match self.fleet.find(scope, name) {
             _ if name.is_empty() => {}
