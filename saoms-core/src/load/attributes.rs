@@ -359,6 +359,9 @@ impl Loader<'_> {
 
     /// Remembers the name of something that another file may declare.
     pub(super) fn outside(&mut self, element: Element<'_>, name: &Text, kind: OutsideKind) {
+        if !OutsideKind::OF_WSDL.contains(&kind) {
+            self.prefixed_name(name);
+        }
         self.outside.push(OutsideName { name: name.clone(), element: element.id(), kind });
     }
 
@@ -421,7 +424,7 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
 }
 
 /// Whether a name can start with this.
-fn is_first(letter: char) -> bool {
+pub(super) fn is_first(letter: char) -> bool {
     letter.is_alphabetic() || letter == '_' || !letter.is_ascii()
 }
 

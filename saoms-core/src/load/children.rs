@@ -104,7 +104,10 @@ impl Loader<'_> {
                 Some(prefix) => quoted(&format!("{prefix}.*")),
                 None => quoted(child),
             });
-            format!("{place} can hold {}", names.collect::<Vec<_>>().join(", "))
+            match names.collect::<Vec<_>>().join(", ") {
+                none if none.is_empty() => format!("{place} holds no elements of SCA"),
+                names => format!("{place} can hold {names}"),
+            }
         };
         if is_misplaced {
             let message = format!("{} cannot stand in {place}", quoted(element.name()));
@@ -171,7 +174,7 @@ impl Loader<'_> {
                 continue;
             }
             if family == Family::Sca && is_known {
-                self.of_version(child);
+                self.beside(child);
             } else if matches!(family, Family::Sca | Family::Own) {
                 _ = self.unexpected(child, kind, family);
             }

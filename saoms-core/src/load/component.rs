@@ -83,7 +83,7 @@ impl Loader<'_> {
                 component.references.push(self.reference(child, &COMPONENT_REFERENCE));
             }
             (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
-                self.of_version(child);
+                self.beside(child);
             }
             (Family::Sca | Family::Own | Family::Foreign, name) if name.starts_with("implementation.") => {
                 let made = self.implementation(child, family, name);

@@ -82,7 +82,7 @@ impl Loader<'_> {
                 composite.references.push(self.reference(child, &COMPOSITE_REFERENCE));
             }
             (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
-                self.of_version(child);
+                self.beside(child);
             }
             (Family::Own, "severity") => {
                 if let Some(parent) = child.parent() {

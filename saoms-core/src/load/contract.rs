@@ -99,7 +99,7 @@ impl Loader<'_> {
                 (
                     Family::Sca,
                     "operation" | "requires" | "policySetAttachment" | "documentation" | "extensions",
-                ) => self.of_version(child),
+                ) => self.beside(child),
                 (Family::Sca, name) if name.starts_with("interface.") && self.is_defined(child) => {
                     self.interface(child, family, kind, &mut contract);
                 }
@@ -183,11 +183,15 @@ impl Loader<'_> {
         } else {
             self.extension(element, family);
         }
+        let name = self.optional(element, "name");
+        if let (Some(name), Some(attribute)) = (&name, element.attribute("name")) {
+            self.binding_name(name, attribute);
+        }
         Binding {
             origin: Origin::of(element),
             kind: variant(element, "binding."),
             is_sca: family == Family::Sca,
-            name: self.optional(element, "name").map(Box::new),
+            name: name.map(Box::new),
             uri: self.optional(element, "uri"),
             policy: self.policy(element),
         }
@@ -209,7 +213,7 @@ impl Loader<'_> {
                 }
                 (Family::Foreign, _) => {}
                 (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
-                    self.of_version(child);
+                    self.beside(child);
                 }
                 _ => _ = self.unexpected(child, &CALLBACK, family),
             }

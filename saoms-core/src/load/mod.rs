@@ -22,6 +22,7 @@ mod looping;
 mod missing;
 mod named;
 mod near;
+mod policy;
 mod property;
 mod read;
 mod root;

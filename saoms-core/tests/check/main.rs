@@ -19,6 +19,7 @@ mod mutations;
 mod names;
 mod nested;
 mod parameters;
+mod policies;
 mod promotions;
 mod properties;
 mod reference;

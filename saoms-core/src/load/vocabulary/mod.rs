@@ -6,6 +6,7 @@
 mod contribution;
 mod elements;
 mod own;
+mod policy;
 mod types;
 
 pub(super) use contribution::COMPONENT_TYPE;
@@ -17,6 +18,7 @@ pub use elements::{
     OTHERS, VARIANTS, WIRE,
 };
 pub use own::{OWN_ATTRIBUTES, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS};
+pub use policy::{EXTENSIONS, INTENTS, OPERATION, POLICY_SET};
 pub use types::{BUILT_IN_TYPES, XML_SCHEMA};
 
 use crate::model::Version;
