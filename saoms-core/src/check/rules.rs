@@ -32,20 +32,15 @@ pub(super) fn check<'s>(
 ) {
     let mut places = Vec::with_capacity(fleet.members.len());
     // One of each class is enough, and one for all of which nobody knows the class.
-    let mut missing = Vec::new();
-    let mut known: HashSet<*const ClassIndex<'_>> = HashSet::new();
-    let mut misses_unknown = false;
-    let mut miss = |class: Option<&'s ClassIndex<'_>>| {
-        let is_new = match class {
-            Some(class) => known.insert(class),
-            None => !std::mem::replace(&mut misses_unknown, true),
-        };
-        if is_new {
+    let mut missing: Vec<Option<Vec<&'s str>>> = Vec::new();
+    let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
+    let mut miss = |missing: &mut Vec<_>, class: Option<&'s ClassIndex<'_>>| {
+        if known.insert(class.map(std::ptr::from_ref)) {
             missing.push(class.map(declarations));
         }
     };
     if fleet.scopes.iter().any(|scope| scope.is_faulty) {
-        miss(None);
+        miss(&mut missing, None);
     }
     let mut subjects: Vec<Subject<'s>> = Vec::new();
     let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
@@ -56,7 +51,7 @@ pub(super) fn check<'s>(
         let (true, Some(resolved), Some(class)) = (member.runs(), resolved, class) else {
             places.push(None);
             if member.runs() {
-                miss(class);
+                miss(&mut missing, class);
             }
             continue;
         };
@@ -68,9 +63,7 @@ pub(super) fn check<'s>(
     let is_whole = missing.is_empty();
     if has_open_wires {
         let open = parts.iter().filter(|(place, ..)| wiring.of(*place).any(<[_]>::is_empty));
-        let mut known: HashSet<*const ClassIndex<'_>> = HashSet::new();
-        let open = open.filter(|(.., class)| known.insert(*class));
-        missing.extend(open.map(|(.., class)| Some(declarations(class))));
+        open.for_each(|(.., class)| miss(&mut missing, Some(class)));
     }
     let mut lists = Lists::default();
     let views: Vec<ComponentView<'_>> = parts
