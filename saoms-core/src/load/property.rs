@@ -34,7 +34,9 @@ impl Loader<'_> {
             }
         }
         let mut text = element.trimmed_text();
-        if let (Some(first), Some(span)) = (values.first(), element.text_span()) {
+        if let Some(first) = values.first()
+            && let Some(span) = element.text_span()
+        {
             text = None;
             let at = span.in_file(element.document().file());
             let message = format!("the property {} is given a value in two ways", quoted(&name));

@@ -73,6 +73,8 @@ fn places(text: &str) -> HashSet<Span> {
             assert!(slice(attribute.span()).ends_with(['"', '\'']));
             let trimmed = attribute.trimmed().location.span;
             all.extend([attribute.name_span(), attribute.span(), attribute.value_span(), trimmed]);
+            // Of a list, the word that is wrong.
+            all.extend(attribute.words().map(|word| word.location.span));
         }
     }
     all
