@@ -184,7 +184,7 @@ impl Loader<'_> {
             self.extension(element, family);
         }
         let name = self.optional(element, "name");
-        if let (Some(name), Some(attribute)) = (&name, element.attribute("name")) {
+        if let (Some(name), Some(attribute)) = (&name, self.attribute(element, "name")) {
             self.binding_name(name, attribute);
         }
         Binding {
