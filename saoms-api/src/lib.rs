@@ -117,8 +117,8 @@ pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::message::Key;
     pub use crate::property::{
-        PropertyShape, all_names, are_distinct, bounds_fit, chosen, complex, contains, continued, count,
-        default_fits, equal, list, only_known, property, values_of,
+        Preset, PropertyShape, all_names, are_distinct, bounds_fit, chosen, complex, contains, continued,
+        count, default_fits, equal, flat, list, only_known, property,
     };
     pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};

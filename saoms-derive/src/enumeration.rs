@@ -124,6 +124,13 @@ pub(crate) fn property_field(input: &DeriveInput) -> Result<TokenStream> {
                     _ => ::core::result::Result::Err(::std::string::String::from("not allowed")),
                 }
             }
+
+            fn from_choice(text: &str) -> ::core::option::Option<Self> {
+                match text {
+                    #(#allowed => ::core::option::Option::Some(#ident::#variants),)*
+                    _ => ::core::option::Option::None,
+                }
+            }
         }
     })
 }

@@ -30,6 +30,15 @@ impl Literal {
         }
     }
 
+    /// Whether it is a number with a fraction, of no type of its own.
+    pub(crate) fn is_fraction(expression: &Expr) -> bool {
+        match expression {
+            Expr::Lit(ExprLit { lit: Lit::Float(number), .. }) => number.suffix().is_empty(),
+            Expr::Unary(ExprUnary { op: UnOp::Neg(_), expr, .. }) => Literal::is_fraction(expr),
+            _ => false,
+        }
+    }
+
     /// The text in the composite.
     pub(crate) fn text(&self) -> String {
         match self {

@@ -83,7 +83,10 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
             fn from_values(
                 values: &[(::std::string::String, ::saoms_api::PropertyValue)],
             ) -> ::core::result::Result<Self, ::saoms_api::Failure> {
-                ::saoms_api::generated::only_known(values, <Self as ::saoms_api::Properties>::NAMES)?;
+                let given =
+                    &mut ::saoms_api::generated::only_known(values, <Self as ::saoms_api::Properties>::NAMES)?;
+                // Of a struct without properties none is taken.
+                let _ = &given;
                 ::core::result::Result::Ok(#ident { #(#reads),* })
             }
         }
@@ -179,9 +182,7 @@ impl Member<'_> {
         match self {
             Member::Own(property) => property.read(),
             Member::Flat(field, of) => quote! {
-                #field: <#of as ::saoms_api::Properties>::from_values(
-                    &::saoms_api::generated::values_of(values, <#of as ::saoms_api::Properties>::NAMES),
-                )?
+                #field: ::saoms_api::generated::flat::<#of>(given)?
             },
         }
     }
@@ -335,13 +336,21 @@ impl<'a> Property<'a> {
     fn read(&self) -> TokenStream {
         let (field, name, rule) = (self.field, &self.name, self.rule());
         let default = match &self.default {
-            Some((_, text)) => quote!(::core::option::Option::Some(#text)),
+            Some((expression, text)) => {
+                let fraction = match Literal::is_fraction(expression) {
+                    true => quote!(::core::option::Option::Some(#expression)),
+                    false => quote!(::core::option::Option::None),
+                };
+                quote!(::core::option::Option::Some(
+                    const { ::saoms_api::generated::Preset::of(RULE.kind, #text, #fraction) }
+                ))
+            }
             None => quote!(::core::option::Option::None),
         };
         quote! {
             #field: {
                 const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
-                ::saoms_api::generated::property(values, #name, #default, &RULE)?
+                ::saoms_api::generated::property(given, #name, #default, &RULE)?
             }
         }
     }

@@ -115,7 +115,10 @@ impl<'a> Rule<'a> {
         match self.kind {
             PropertyKind::String => self.text(text).map(|()| Scalar::Text(text.to_owned())),
             PropertyKind::Enumeration => self.text(text).map(|()| Scalar::Text(text.trim().to_owned())),
-            PropertyKind::Integer => self.within(text, integer, is_far).map(Scalar::Integer),
+            PropertyKind::Integer => {
+                let plain = self.plain_integer(text).map(Ok);
+                plain.unwrap_or_else(|| self.within(text, integer, is_far)).map(Scalar::Integer)
+            }
             PropertyKind::Float => self.within(text, float, |_, _, _| false).map(Scalar::Float),
             PropertyKind::Duration => self.within(text, duration, |_, _, _| false).map(Scalar::Duration),
             PropertyKind::Boolean => self.within(text, boolean, |_, _, _| false).map(Scalar::Boolean),
@@ -133,11 +136,28 @@ impl<'a> Rule<'a> {
     pub fn allows(&self, text: &str) -> Result<(), String> {
         match self.kind {
             PropertyKind::String | PropertyKind::Enumeration => self.text(text),
+            PropertyKind::Integer if self.plain_integer(text).is_some() => Ok(()),
             PropertyKind::Integer => self.within(text, integer, is_far).map(drop),
             PropertyKind::Float => self.within(text, float, |_, _, _| false).map(drop),
             PropertyKind::Duration => self.within(text, duration, |_, _, _| false).map(drop),
             _ => self.check(text).map(drop),
         }
+    }
+
+    /// The value of a text of a few digits that is within whole bounds of a few digits; `None` where that takes a closer look.
+    #[inline]
+    fn plain_integer(&self, text: &str) -> Option<i128> {
+        let number = few_digits(text)?;
+        let is_within = |bound: Option<&str>, is_least| {
+            bound.is_none_or(|bound| match few_digits(bound) {
+                Some(bound) if is_least => bound <= number,
+                Some(bound) => number <= bound,
+                None => is_far(&i128::from(number), bound, is_least),
+            })
+        };
+        let is_plain =
+            self.exclusive_max.is_none() && is_within(self.min, true) && is_within(self.max, false);
+        is_plain.then_some(i128::from(number))
     }
 
     fn text(&self, text: &str) -> Result<(), String> {
@@ -228,10 +248,26 @@ fn duration(text: &str) -> Option<Duration> {
 
 /// A whole number; those of ordinary size are read much faster than 128 bits are.
 fn integer(text: &str) -> Option<i128> {
-    match text.parse::<i64>() {
-        Ok(number) => Some(i128::from(number)),
-        Err(_) => text.parse().ok(),
+    match few_digits(text) {
+        Some(number) => Some(i128::from(number)),
+        None => text.parse::<i64>().map(i128::from).ok().or_else(|| text.parse().ok()),
     }
+}
+
+/// The number that nothing but a few digits make.
+#[inline]
+fn few_digits(text: &str) -> Option<u32> {
+    /// So many digits fit into 32 bits.
+    const FEW: usize = 9;
+    let mut number: u32 = 0;
+    for byte in text.bytes() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        number = number.wrapping_mul(10).wrapping_add(u32::from(digit));
+    }
+    (1..=FEW).contains(&text.len()).then_some(number)
 }
 
 /// Whether a whole number is certainly above this least, or below this greatest value: most of these are the ends of a type, far away, and

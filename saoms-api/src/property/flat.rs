@@ -53,6 +53,6 @@ pub const fn list(items: &'static str) -> [Text; 3] {
 }
 
 /// The values with these names.
-pub fn values_of(values: &[(String, PropertyValue)], names: &[&str]) -> Vec<(String, PropertyValue)> {
+pub(crate) fn values_of(values: &[(String, PropertyValue)], names: &[&str]) -> Vec<(String, PropertyValue)> {
     values.iter().filter(|(name, _)| names.contains(&name.as_str())).cloned().collect()
 }

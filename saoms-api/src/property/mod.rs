@@ -5,8 +5,9 @@ mod shape;
 mod tests;
 mod types;
 
-pub use flat::{all_names, are_distinct, continued, count, list, values_of};
-pub use read::{chosen, complex, only_known, property};
+pub(crate) use flat::values_of;
+pub use flat::{all_names, are_distinct, continued, count, list};
+pub use read::{Preset, chosen, complex, flat, only_known, property};
 pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits, equal};
 
 use crate::Failure;
@@ -112,6 +113,6 @@ impl Properties for () {
     const NAMES: &'static [&'static str] = &[];
 
     fn from_values(values: &[(String, PropertyValue)]) -> Result<Self, Failure> {
-        only_known(values, Self::NAMES)
+        only_known(values, Self::NAMES).map(drop)
     }
 }

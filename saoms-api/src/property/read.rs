@@ -1,33 +1,75 @@
-use super::PropertyField;
-use crate::declaration::{PropertyKind, Rule, parse_scalar, trim};
+use super::{PropertyField, equal, values_of};
+use crate::declaration::{PropertyKind, Rule, Scalar, parse_scalar, trim};
+use crate::time::read_duration;
 use crate::{Failure, Finding, Place, Properties, PropertyValue};
+
+/// The default of a property: as text, and as the compiler reads it, which it cannot where this is text or a choice.
+#[derive(Clone, Debug)]
+pub struct Preset {
+    text: &'static str,
+    scalar: Option<Scalar>,
+}
+
+impl Preset {
+    /// A default of this kind; a number with a fraction comes as such, too.
+    pub const fn of(kind: PropertyKind, text: &'static str, fraction: Option<f64>) -> Preset {
+        let scalar = match (kind, fraction) {
+            (PropertyKind::Boolean, _) => Some(Scalar::Boolean(equal(text.as_bytes(), b"true"))),
+            (PropertyKind::Float, Some(number)) => Some(Scalar::Float(number)),
+            (PropertyKind::Integer, _) => match i128::from_str_radix(text, 10) {
+                Ok(number) => Some(Scalar::Integer(number)),
+                Err(_) => None,
+            },
+            (PropertyKind::Duration, _) => match read_duration(text) {
+                Ok(duration) => Some(Scalar::Duration(duration)),
+                Err(_) => None,
+            },
+            _ => None,
+        };
+        Preset { text, scalar }
+    }
+
+    /// That the rule allows it was seen to when it was compiled and registered.
+    fn read<T: PropertyField>(self, kind: PropertyKind) -> Result<T, String> {
+        let known = T::from_choice(self.text).map(Ok);
+        let scalar = || self.scalar.or_else(|| parse_scalar(kind, self.text)).and_then(T::from_scalar);
+        let otherwise = || T::from_value(&PropertyValue::Text(self.text.to_owned()));
+        known.or_else(scalar).unwrap_or_else(otherwise)
+    }
+}
 
 /// Reads one property from the values of a composite.
 ///
 /// # Errors
 /// It is missing or not what the rule allows.
+// What is called for each property of each component is inlined, so that names are compared by their known lengths, and defaults are there
+// without being read.
+#[inline]
 pub fn property<T: PropertyField>(
-    values: &[(String, PropertyValue)],
+    values: &mut Values<'_>,
     name: &str,
-    default: Option<&str>,
+    default: Option<Preset>,
     rule: &Rule<'_>,
 ) -> Result<T, Failure> {
-    let failure = |message: String| Failure::from(Finding::new(Place::property(name), message));
-    let given = values.iter().find(|(given, _)| given == name).map(|(_, value)| value);
-    let value = match (given, default) {
-        (Some(value), _) => value,
-        // That the rule allows it was seen to when it was compiled and registered.
-        (None, Some(default)) => {
-            let read = parse_scalar(rule.kind, default).and_then(T::from_scalar);
-            let otherwise = || T::from_value(&PropertyValue::Text(default.to_owned()));
-            return read.unwrap_or_else(otherwise).map_err(failure);
-        }
-        (None, None) => {
-            let missing =
-                || Failure::new(format!("property `{name}` is missing: expected {}", rule.expected()));
-            return T::absent().ok_or_else(missing);
-        }
-    };
+    match (values.take(name), default) {
+        (Some(value), _) => given(value, name, rule),
+        (None, Some(default)) => default.read(rule.kind).map_err(|message| failure(name, message)),
+        (None, None) => T::absent().ok_or_else(|| missing(name, rule)),
+    }
+}
+
+#[cold]
+fn missing(name: &str, rule: &Rule<'_>) -> Failure {
+    Failure::new(format!("property `{name}` is missing: expected {}", rule.expected()))
+}
+
+#[cold]
+fn failure(name: &str, message: String) -> Failure {
+    Finding::new(Place::property(name), message).into()
+}
+
+fn given<T: PropertyField>(value: &PropertyValue, name: &str, rule: &Rule<'_>) -> Result<T, Failure> {
+    let failure = |message| failure(name, message);
     if let (PropertyValue::Text(text), true) = (value, rule.kind.is_scalar())
         && let Some(read) = T::from_scalar(rule.check(text).map_err(failure)?)
     {
@@ -48,21 +90,68 @@ fn accept(value: &PropertyValue, rule: &Rule<'_>) -> Result<(), String> {
     }
 }
 
-/// Refuses names that are not declared, and names that are given twice.
+/// The values that a composite gives, to be taken in the order of the declaration.
+#[derive(Debug)]
+pub struct Values<'v> {
+    all: &'v [(String, PropertyValue)],
+    /// How many were taken; `None` where they are not in that order.
+    taken: Option<usize>,
+}
+
+impl<'v> Values<'v> {
+    /// The value of this name.
+    #[inline]
+    fn take(&mut self, name: &str) -> Option<&'v PropertyValue> {
+        let Some(taken) = &mut self.taken else {
+            return self.all.iter().find(|(given, _)| given == name).map(|(_, value)| value);
+        };
+        let (given, value) = self.all.get(*taken)?;
+        if given != name {
+            return None;
+        }
+        *taken += 1;
+        Some(value)
+    }
+
+    /// Passes over those with these names.
+    fn pass(&mut self, names: &[&str]) {
+        if let Some(taken) = &mut self.taken {
+            let rest = self.all[*taken..].iter();
+            *taken += rest.take_while(|(name, _)| names.contains(&name.as_str())).count();
+        }
+    }
+}
+
+/// Reads the values of a property struct that stands in the place of a field.
+///
+/// # Errors
+/// As [`Properties::from_values`].
+pub fn flat<P: Properties>(values: &mut Values<'_>) -> Result<P, Failure> {
+    let inner = values_of(values.all, P::NAMES);
+    values.pass(P::NAMES);
+    P::from_values(&inner)
+}
+
+/// Refuses names that are not declared, and names that are given twice; `names` are those of the declaration, in order.
 ///
 /// # Errors
 /// The first such name.
-pub fn only_known(values: &[(String, PropertyValue)], names: &[&str]) -> Result<(), Failure> {
-    for (place, (name, _)) in values.iter().enumerate() {
+pub fn only_known<'v>(all: &'v [(String, PropertyValue)], names: &[&str]) -> Result<Values<'v>, Failure> {
+    // In the order of the declaration, as hosts give them, each is there once.
+    let mut rest = names.iter();
+    if all.iter().all(|(name, _)| rest.any(|known| known == name)) {
+        return Ok(Values { all, taken: Some(0) });
+    }
+    for (place, (name, _)) in all.iter().enumerate() {
         if !names.contains(&name.as_str()) {
             let known = if names.is_empty() { "no property".to_owned() } else { names.join(", ") };
             return Err(Failure::new(format!("property `{name}` is unknown: expected {known}")));
         }
-        if values[..place].iter().any(|(earlier, _)| earlier == name) {
+        if all[..place].iter().any(|(earlier, _)| earlier == name) {
             return Err(Failure::new(format!("property `{name}` is given twice")));
         }
     }
-    Ok(())
+    Ok(Values { all, taken: None })
 }
 
 /// Reads a complex value.

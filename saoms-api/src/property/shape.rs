@@ -22,6 +22,11 @@ pub trait PropertyField: Sized {
         None
     }
 
+    /// The same from the text of a choice; `None` where that is none, and where the type has no choices.
+    fn from_choice(_: &str) -> Option<Self> {
+        None
+    }
+
     /// The value of a property that the composite does not give; `None` where it has to.
     fn absent() -> Option<Self> {
         None

@@ -78,6 +78,10 @@ impl<T: PropertyField> PropertyField for Option<T> {
         T::from_scalar(scalar).map(|read| read.map(Some))
     }
 
+    fn from_choice(text: &str) -> Option<Self> {
+        T::from_choice(text).map(Some)
+    }
+
     fn absent() -> Option<Self> {
         Some(None)
     }

@@ -80,7 +80,8 @@ use hooks::{Hooks, Reply};
     also("robot.Robot010", number = 10)
 )]
 pub struct Robot {
-    knowledge: RobotKnowledge,
+    // It is large, and a robot is moved on its way to where it stays.
+    knowledge: Box<RobotKnowledge>,
     loops: Loops,
 }
 
@@ -92,7 +93,7 @@ impl Component for Robot {
         let charge_block = properties.charge_block(number)?;
         let battery = Battery::new(properties.battery, properties.discharge);
         let name = properties.id.trim().to_owned();
-        let mut knowledge = RobotKnowledge::new(name, number, charge_block, battery);
+        let mut knowledge = Box::new(RobotKnowledge::new(name, number, charge_block, battery));
         knowledge.variables.asleep = properties.asleep;
         knowledge.variables.in_charge = properties.asleep;
         Ok(Robot { knowledge, loops: Loops::default() })
@@ -106,7 +107,7 @@ impl Component for Robot {
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
         self.enter(context)?;
-        self.loops.initialize(&mut self.knowledge, context)
+        self.loops.initialize(&mut *self.knowledge, context)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -123,11 +124,11 @@ impl Component for Robot {
             ));
         }
         self.knowledge.polled = None;
-        self.loops.monitor(&mut self.knowledge, context)?;
+        self.loops.monitor(&mut *self.knowledge, context)?;
         if entered {
             self.knowledge.show_lists(context);
             let in_charge = self.knowledge.variables.in_charge;
-            self.loops.adapt(&mut self.knowledge, context)?;
+            self.loops.adapt(&mut *self.knowledge, context)?;
             // As in figures 8.6 and 8.15, a robot that arrives at its charger says that alone.
             if in_charge || !self.knowledge.variables.in_charge {
                 self.knowledge.show_battery(context);
@@ -138,7 +139,7 @@ impl Component for Robot {
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.knowledge.retire(context)?;
-        self.loops.shutdown(&mut self.knowledge, context)
+        self.loops.shutdown(&mut *self.knowledge, context)
     }
 
     fn save(&mut self) -> Result<Saved, Failure> {

@@ -10,7 +10,8 @@ pub struct Routes {
     area: Option<Area>,
     /// Robots that do not move any more, and where they are.
     obstacles: Vec<(u32, Block)>,
-    ways: [Way; WAYS],
+    /// As many as [`WAYS`], once one was asked for.
+    ways: Vec<Way>,
     /// Counts the questions.
     clock: u32,
     /// The place in `ways` of the one to the present goal.
@@ -171,7 +172,9 @@ impl Routes {
     #[inline]
     fn cost(&self, place: usize, from: Block, to: Block) -> u32 {
         match &self.area {
-            Some(area) if area.searched => self.ways[place].distances.of(&area.map, from),
+            Some(area) if area.searched => {
+                self.ways.get(place).map_or(UNREACHABLE, |way| way.distances.of(&area.map, from))
+            }
             _ if self.is_free(from) && (self.is_free(to) || self.is_obstacle(to)) => {
                 from.distance(to).saturating_mul(MOVE)
             }
@@ -183,6 +186,7 @@ impl Routes {
     /// longest time.
     fn way_to(&mut self, to: Block) -> usize {
         let Some(area) = self.area.as_ref().filter(|area| area.searched) else { return 0 };
+        self.ways.resize_with(WAYS, Way::default);
         self.clock = self.clock.wrapping_add(1);
         let known = self.ways.iter().position(|way| way.distances.to() == Some(to));
         let oldest = || {

@@ -1,10 +1,8 @@
 //! Two robots of one number.
 
-use std::collections::HashMap;
-
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
-use super::robots::{Known, robots};
+use super::robots::{Known, robots, sharing};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -21,13 +19,8 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
-    let mut first: HashMap<u32, &Known> = HashMap::with_capacity(robots.len());
     let mut findings = Vec::new();
-    for robot in robots.iter() {
-        let Some(other) = first.get(&robot.number) else {
-            first.insert(robot.number, robot);
-            continue;
-        };
+    for (robot, other) in sharing(&robots, |robot| robot.number) {
         let name = |robot: &Known| fleet.components()[robot.index].path;
         let message =
             format!("robots `{}` and `{}` both have the number {}", name(other), name(robot), robot.number);

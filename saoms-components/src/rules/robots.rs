@@ -68,6 +68,20 @@ pub(super) fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> boo
         .any(|(index, component)| robots.next_if_eq(&index).is_none() && component.publishes.contains(&topic))
 }
 
+/// The robots, in their order, that share a key with one before them, each with the first that has it.
+pub(super) fn sharing<K: Ord>(robots: &[Known], key: impl Fn(&Known) -> K) -> Vec<(&Known, &Known)> {
+    // In most fleets the keys rise with the places, and are nearly sorted as they are.
+    let mut keys: Vec<(K, usize)> = robots.iter().map(key).zip(0..).collect();
+    keys.sort_unstable();
+    let of_one_key = keys.chunk_by(|(one, _), (other, _)| one == other);
+    let mut sharing: Vec<(usize, usize)> = Vec::new();
+    for places in of_one_key {
+        sharing.extend(places[1..].iter().map(|(_, later)| (*later, places[0].1)));
+    }
+    sharing.sort_unstable();
+    sharing.into_iter().map(|(later, first)| (&robots[later], &robots[first])).collect()
+}
+
 impl Known {
     /// Where the composite says where its charger is, as far as it does.
     pub(super) fn charger_place(&self, fleet: &FleetView<'_>) -> Place {

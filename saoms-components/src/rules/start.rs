@@ -1,11 +1,8 @@
 //! Two robots on one block at the start.
 
-use std::collections::HashMap;
-
 use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
 
-use super::robots::{Known, robots};
-use crate::grid::Block;
+use super::robots::{robots, sharing};
 use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -27,14 +24,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let robots = robots(fleet);
-    let mut first: HashMap<(Option<usize>, Block), &Known> = HashMap::with_capacity(robots.len());
     let mut findings = Vec::new();
-    for robot in robots.iter() {
-        let key = (robot.world, robot.charger);
-        let Some(other) = first.get(&key) else {
-            first.insert(key, robot);
-            continue;
-        };
+    for (robot, other) in sharing(&robots, |robot| (robot.world, robot.charger.y, robot.charger.x)) {
         // Two of one number are told that.
         if other.number != robot.number {
             let message = format!(

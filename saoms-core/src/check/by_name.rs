@@ -64,19 +64,22 @@ impl ByName {
 
     /// Adds the component at a place, in place of another one of its name.
     pub(super) fn insert(&mut self, place: usize, members: &[Member<'_>]) {
-        let count = self.taken + 1;
-        if count + count.div_ceil(2) > self.slots.len() {
-            let larger = Self { hashing: self.hashing, ..Self::with_capacity(2 * count) };
-            let before = std::mem::replace(self, larger);
-            before.places().for_each(|place| self.insert(place, members));
-        }
-        let (scope, name) = key(&members[place]);
-        let tag = self.hash(scope, name) as u32;
-        if let Some(slot) = self.slot(scope, name, members) {
-            self.taken += usize::from(self.slots[slot].member == FREE.member);
+        if let Some((slot, tag)) = self.own_slot(place, members) {
             // Fleets are limited to fewer.
-            self.slots[slot] = Slot { tag, member: place as u32 };
+            let before = std::mem::replace(slot, Slot { tag, member: place as u32 });
+            self.taken += usize::from(before.member == FREE.member);
         }
+    }
+
+    /// Adds the component at a place where there is none of its name; else gives that one.
+    pub(super) fn admit(&mut self, place: usize, members: &[Member<'_>]) -> Option<usize> {
+        let (slot, tag) = self.own_slot(place, members)?;
+        if slot.member != FREE.member {
+            return Some(slot.member as usize);
+        }
+        *slot = Slot { tag, member: place as u32 };
+        self.taken += 1;
+        None
     }
 
     /// The components that are in it.
@@ -85,18 +88,36 @@ impl ByName {
         taken.map(|slot| slot.member as usize).collect::<Vec<_>>().into_iter()
     }
 
+    /// The slot for the name of the component at a place, with its part of the hash.
+    fn own_slot(&mut self, place: usize, members: &[Member<'_>]) -> Option<(&mut Slot, u32)> {
+        let count = self.taken + 1;
+        if count + count.div_ceil(2) > self.slots.len() {
+            let larger = Self { hashing: self.hashing, ..Self::with_capacity(2 * count) };
+            let before = std::mem::replace(self, larger);
+            before.places().for_each(|place| self.insert(place, members));
+        }
+        let (scope, name) = key(&members[place]);
+        let hash = self.hash(scope, name);
+        let slot = self.slot_of(hash, (scope, name), members)?;
+        Some((&mut self.slots[slot], hash as u32))
+    }
+
     fn hash(&self, scope: usize, name: &str) -> u64 {
         self.hashing.hash_one((scope, name))
     }
 
     /// The slot of this name: its own, or the free one where it would be. `None` when there are no slots.
     fn slot(&self, scope: usize, name: &str, members: &[Member<'_>]) -> Option<usize> {
+        self.slot_of(self.hash(scope, name), (scope, name), members)
+    }
+
+    /// The same where the hash of the name is known.
+    fn slot_of(&self, hash: u64, of: (usize, &str), members: &[Member<'_>]) -> Option<usize> {
         let last = self.slots.len().checked_sub(1)?;
-        let hash = self.hash(scope, name);
         let mut at = (hash >> 32) as usize & last;
         loop {
             let slot = self.slots[at];
-            let is_it = || slot.tag == hash as u32 && key(&members[slot.member as usize]) == (scope, name);
+            let is_it = || slot.tag == hash as u32 && key(&members[slot.member as usize]) == of;
             if slot.member == FREE.member || is_it() {
                 return Some(at);
             }

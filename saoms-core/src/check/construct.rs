@@ -78,7 +78,9 @@ pub(super) fn partly(
     }
     let is_given = |finding: &Finding| {
         let name = finding.place().property_name();
-        name.is_some_and(|name| !is_unsure(name) && subject.written.iter().any(|one| one.property == name))
+        name.is_some_and(|name| {
+            !is_unsure(name) && subject.written.iter().any(|one| one.name() == Some(name))
+        })
     };
     let found: Vec<Finding> = found.unwrap_or_default().into_iter().filter(is_given).collect();
     tell(&found, subject, class.class.name(), report);

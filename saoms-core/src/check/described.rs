@@ -153,7 +153,7 @@ fn used(member: &Member<'_>, described: &ComponentType, class: &ClassIndex<'_>, 
 }
 
 /// Checks what a component gives for a property of its class against the type that the file says.
-pub(super) fn value(described: &ComponentType, name: &str, given: &Given, report: &mut Report<'_>) {
+pub(super) fn value(described: &ComponentType, name: &str, given: &Given<'_>, report: &mut Report<'_>) {
     let Some(property) = described.properties.iter().find(|one| one.name == *name) else { return };
     let declared = Typed { property, document: &described.document };
     let values = match &given.value {

@@ -3,7 +3,7 @@
 use saoms_api::{Finding, Place, PropertyValue};
 
 use super::fleet::Member;
-use super::properties::Written;
+use super::properties::Given;
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::source::Location;
@@ -18,7 +18,7 @@ pub(super) struct Subject<'a> {
     pub(super) at: Location,
     pub(super) values: &'a [(String, PropertyValue)],
     /// Where the composite gives them.
-    pub(super) written: &'a [Written<'a>],
+    pub(super) written: &'a [Given<'a>],
 }
 
 impl<'a> Subject<'a> {
@@ -26,7 +26,7 @@ impl<'a> Subject<'a> {
     pub(super) fn of(
         member: &Member<'a>,
         values: &'a [(String, PropertyValue)],
-        written: &'a [Written<'a>],
+        written: &'a [Given<'a>],
     ) -> Self {
         let name = &member.component.name;
         Self { what: "component", name: name.as_str(), at: name.location, values, written }
@@ -86,16 +86,18 @@ fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Loca
     let nowhere = Located { at: subject.at, source: None, text: None, is_xml: false };
     let given = place.property_name().and_then(|name| {
         let values = &subject.values.iter().find(|(given, _)| given == name)?.1;
-        Some((values, subject.written.iter().find(|written| written.property == name)?))
+        Some((values, subject.written.iter().find(|written| written.name() == Some(name))?))
     });
     let Some((values, written)) = given else { return nowhere };
-    let whole = Located { at: written.first, source: written.source, ..nowhere };
+    let whole = Located { at: written.place, source: written.source, ..nowhere };
     let Some((index, part)) = place.value_part() else { return whole };
     let value = match values {
         PropertyValue::Many(values) => values.get(index),
         one => (index == 0).then_some(one),
     };
-    let (Some(PropertyValue::Text(value)), Some(at)) = (value, written.value(index)) else { return whole };
+    let (Some(PropertyValue::Text(value)), Some(at)) = (value, written.value_place(index)) else {
+        return whole;
+    };
     Located {
         text: value.get(part.clone()),
         at: report.parts_of(value, at).part(part),

@@ -77,6 +77,8 @@ pub(super) struct Member<'a> {
     /// Whether it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is said of what others
     /// would share with it.
     pub(super) is_partial: bool,
+    /// Whether it has the name of an earlier one, which is reported.
+    pub(super) is_repeated: bool,
     /// Its path, where that is more than its name: a pointer of one word, as few have one.
     #[expect(clippy::box_collection, reason = "of a large fleet, a word of each component matters")]
     path: Option<Box<String>>,
@@ -108,6 +110,7 @@ impl<'a> Member<'a> {
             is_copy: false,
             is_absent: false,
             is_partial: false,
+            is_repeated: false,
             path: None,
         }
     }
@@ -153,13 +156,6 @@ impl<'a> Fleet<'a> {
     /// The component of this name in a scope.
     pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
         self.by_name.get(scope, name, &self.members)
-    }
-
-    /// Whether a component has the name of an earlier one, which is reported.
-    pub(super) fn is_repeated(&self, place: usize) -> bool {
-        let Member { scope, component, is_partial, is_absent, .. } = &self.members[place];
-        let is_taken = |first: usize| first != place && !self.members[first].is_partial;
-        !is_partial && !is_absent && self.find(*scope, &component.name).is_some_and(is_taken)
     }
 
     /// Whether this may be the name of a component that a fault, which is reported, kept from being made.

@@ -75,7 +75,7 @@ use std::sync::Arc;
 
 use saoms_api::PropertyValue;
 
-use crate::assembly::{Assembly, ComponentSpec, Expansion, LoopSpec, Target, TaskSettings, Wire};
+use crate::assembly::{Assembly, ComponentSpec, Expansion, LoopSpec, Target, Wire};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::model::{Component, Contribution};
 use crate::registry::{Class, Registry};
@@ -88,11 +88,12 @@ use findings::Subject;
 use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
-use properties::{Checked, Giver, Written};
+use properties::{Checked, Given, Giver};
 use report::Report;
 pub use setting::Setting;
 use severities::Severities;
 pub use severities::SeveritySetting;
+use task::Settled;
 use values::Values;
 pub use variable::Variable;
 use wires::Wiring;
@@ -257,8 +258,8 @@ struct Resolved<'r> {
     /// The values of the class's own properties.
     values: Vec<(String, PropertyValue)>,
     /// Where the composite gives them.
-    written: Vec<Written<'r>>,
-    task: Option<TaskSettings>,
+    written: Vec<Given<'r>>,
+    task: Option<Settled>,
     /// Where its topics got other names.
     renamed: Vec<(String, Location)>,
     /// Where its `queue` is written.
@@ -271,7 +272,7 @@ struct Half<'r> {
     /// The place of the component.
     member: usize,
     values: Vec<(String, PropertyValue)>,
-    written: Vec<Written<'r>>,
+    written: Vec<Given<'r>>,
     /// The places of the properties whose values are not known.
     unsure: Vec<usize>,
 }
@@ -288,7 +289,7 @@ fn properties<'a>(
     classes: &[ClassIndex<'a>],
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<Option<Box<Checked>>> {
+) -> Vec<Option<Box<Checked<'a>>>> {
     let mut values = Values::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
@@ -316,12 +317,13 @@ fn properties<'a>(
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
-    checked: Vec<Option<Box<Checked>>>,
+    checked: Vec<Option<Box<Checked<'a>>>>,
     loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
 ) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half<'a>>) {
     let mut halves = Vec::new();
-    let mut unique = unique::Unique::default();
+    let uniques = |place: usize| fleet.class_of(place, classes).map_or(0, |class| class.slots.unique.len());
+    let mut unique = unique::Unique::with_capacity((0..fleet.members.len()).map(uniques).sum());
     let mut topics = topics::Topics::default();
     let mut before = task::Before::default();
     let mut listed = renames::Renames::default();
@@ -349,14 +351,14 @@ fn components<'f, 'a>(
         let absent = presets.filter(|(name, _)| checked.get(&class.slots, name).is_none());
         let absent: Vec<(String, PropertyValue)> = absent.cloned().collect();
         let queue = checked.get(&class.slots, "queue").map(|given| given.place);
-        let written = checked.places(&class.slots);
-        let mut values = checked.take_values(&class.slots);
+        let unsure = std::mem::take(&mut checked.unsure);
+        let (mut values, written) = checked.into_values();
         values.extend(absent);
         let resolved = match loops.filter(|_| sound) {
             Some(loops) => Some(Box::new(Resolved { values, written, task, renamed, queue, loops })),
             None if member.has_open_values() => None,
             None => {
-                halves.push(Half { member: place, values, written, unsure: checked.unsure });
+                halves.push(Half { member: place, values, written, unsure });
                 None
             }
         };
@@ -380,10 +382,11 @@ fn spec(
     path: &str,
     class: Arc<Class>,
     library: Option<String>,
-    (values, task): (Vec<(String, PropertyValue)>, Option<TaskSettings>),
+    (values, task): (Vec<(String, PropertyValue)>, Option<Settled>),
     references: Vec<Wire>,
     loops: Arc<[LoopSpec]>,
 ) -> ComponentSpec {
+    let task = task.map(Settled::into_settings);
     ComponentSpec { path: path.to_owned(), class, library, values, task, references, loops }
 }
 

@@ -21,9 +21,12 @@ use crate::source::{Location, Text};
 use crate::xml::Document;
 
 /// What a component gives for one property of its class.
-pub(super) struct Given {
+pub(super) struct Given<'r> {
     /// The place of the property in its class.
     slot: usize,
+    /// The declaration of the class; `None` for a property of tasks alone.
+    own: Option<&'r PropertyDeclaration>,
+    /// Empty once it was taken.
     pub(super) value: PropertyValue,
     /// Where the value is, to point at.
     pub(super) place: Location,
@@ -33,7 +36,17 @@ pub(super) struct Given {
     pub(super) source: Option<Location>,
 }
 
-impl Given {
+impl Given<'_> {
+    /// The name of the property, where it is one of the class.
+    pub(super) fn name(&self) -> Option<&str> {
+        self.own.map(|own| own.name.as_str())
+    }
+
+    /// Where one of its values is.
+    pub(super) fn value_place(&self, index: usize) -> Option<Location> {
+        index.checked_sub(1).map_or(Some(self.place), |further| self.more.get(further).copied())
+    }
+
     /// The value as a text with its place; `None` when it is not one text.
     pub(super) fn text(&self) -> Option<Text> {
         match &self.value {
@@ -43,41 +56,24 @@ impl Given {
     }
 }
 
-/// Where the values of a property are written.
-pub(super) struct Written<'r> {
-    pub(super) property: &'r str,
-    pub(super) first: Location,
-    /// Those of further values, where it has several.
-    pub(super) more: Vec<Location>,
-    /// The `source` that leads to values elsewhere.
-    pub(super) source: Option<Location>,
-}
-
-impl Written<'_> {
-    /// Where this value is.
-    pub(super) fn value(&self, index: usize) -> Option<Location> {
-        index.checked_sub(1).map_or(Some(self.first), |further| self.more.get(further).copied())
-    }
-}
-
 /// What all properties of a component come to.
-pub(super) struct Checked {
+pub(super) struct Checked<'r> {
     /// In the order of the class's properties, of which most components give few.
-    given: Vec<Given>,
+    given: Vec<Given<'r>>,
     /// Whether there was no fault, so that the component can be constructed.
     pub(super) is_sound: bool,
     /// The places of the properties whose values cannot be known for such faults.
     pub(super) unsure: Vec<usize>,
 }
 
-impl Checked {
+impl<'r> Checked<'r> {
     /// What is given for the property of this name.
-    pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<&Given> {
+    pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<&Given<'r>> {
         self.at(slots.place(name)?)
     }
 
     /// What is given for the property of this place.
-    pub(super) fn at(&self, slot: usize) -> Option<&Given> {
+    pub(super) fn at(&self, slot: usize) -> Option<&Given<'r>> {
         self.given.iter().find(|given| given.slot == slot)
     }
 
@@ -87,35 +83,23 @@ impl Checked {
         given.map(|given| (given.slot, &given.value))
     }
 
-    /// Where the class's own properties are given.
-    pub(super) fn places<'r>(&self, slots: &Slots<'r>) -> Vec<Written<'r>> {
-        let places = self.given.iter().filter_map(|given| {
-            let property = &slots.all[given.slot].own?.name;
-            Some(Written { property, first: given.place, more: given.more.clone(), source: given.source })
-        });
-        places.collect()
-    }
-
-    /// Takes the values of the class's own properties.
-    pub(super) fn take_values(&mut self, slots: &Slots<'_>) -> Vec<(String, PropertyValue)> {
+    /// The values of the class's own properties, and where all are given.
+    pub(super) fn into_values(mut self) -> (Vec<(String, PropertyValue)>, Vec<Given<'r>>) {
         let mut values = Vec::with_capacity(self.given.len());
-        values.extend(
-            self.given
-                .drain(..)
-                .filter_map(|given| Some((slots.all[given.slot].own?.name.clone(), given.value))),
-        );
-        values
+        for given in &mut self.given {
+            if let Some(own) = given.own {
+                let value = std::mem::replace(&mut given.value, PropertyValue::Text(String::new()));
+                values.push((own.name.clone(), value));
+            }
+        }
+        (values, self.given)
     }
 
-    /// The values of those properties that `of` finds a declaration for.
-    pub(super) fn values<'r>(
-        &self,
-        slots: &Slots<'r>,
-        of: impl Fn(&Slot<'r>) -> Option<&'r PropertyDeclaration>,
-    ) -> Vec<(String, PropertyValue)> {
+    /// The values of the properties of tasks.
+    pub(super) fn task_values(&self, slots: &Slots<'_>) -> Vec<(String, PropertyValue)> {
         let given = self.given.iter();
         let values =
-            given.filter_map(|given| Some((of(&slots.all[given.slot])?.name.clone(), given.value.clone())));
+            given.filter_map(|given| Some((slots.all[given.slot].task?.name.clone(), given.value.clone())));
         values.collect()
     }
 }
@@ -159,20 +143,20 @@ impl<'a> Giver<'_, 'a> {
 /// Checks the properties that somebody gives to a component of a class, or to a loop.
 pub(super) fn check<'a>(
     giver: &Giver<'_, 'a>,
-    slots: &Slots<'_>,
+    slots: &Slots<'a>,
     parameters: &mut Parameters<'a>,
     values: &mut Values<'a>,
     report: &mut Report<'_>,
-) -> Checked {
+) -> Checked<'a> {
     let member = giver.member;
-    let mut given: Vec<Given> = Vec::with_capacity(giver.properties.len());
+    let mut given: Vec<Given<'a>> = Vec::with_capacity(giver.properties.len());
     let mut first = values.first(slots.all.len());
     // Those whose `source` is right, and has no value.
     let mut unset: Vec<&Text> = Vec::new();
     let mut unsure: Vec<usize> = Vec::new();
     let mut unknown: Vec<&str> = Vec::new();
     let mut is_sound = true;
-    for property in giver.properties {
+    for (at, property) in giver.properties.iter().enumerate() {
         let is_hidden =
             member.instance.is_some_and(|one| one.partial.is_some() && has_expression(&property.name));
         if property.name.is_empty() || is_hidden {
@@ -180,7 +164,8 @@ pub(super) fn check<'a>(
             unknown.push("");
             continue;
         }
-        let Some(place) = slots.place(&property.name) else {
+        let Some(place) = values.expected(at, slots, &property.name).or_else(|| slots.place(&property.name))
+        else {
             lacking::unknown(property, giver, slots, report);
             if let Some(source) = property.source() {
                 let _ = parameters.resolve(member.unit, source, report);
@@ -207,7 +192,7 @@ pub(super) fn check<'a>(
             let one = Diagnostic::new(&codes::MANY_VALUES, many.location, message);
             report.push(one.help("remove `many`"));
         }
-        match value(member, property, (place, slot), parameters, values, report) {
+        match value(member, (at, property), (place, slot), parameters, values, report) {
             Ok(None) => unset.push(&property.name),
             Ok(Some(value)) => {
                 if let Some(described) = giver.described {
@@ -285,7 +270,7 @@ pub(super) fn check<'a>(
 }
 
 /// The places of the properties that an unknown name may stand for: the one that is spelt alike, or else any number that is not given.
-fn meant(name: &str, slots: &Slots<'_>, given: &[Given]) -> Vec<usize> {
+fn meant(name: &str, slots: &Slots<'_>, given: &[Given<'_>]) -> Vec<usize> {
     if let Some(place) = nearest(name, slots.names()).and_then(|near| slots.place(near)) {
         return vec![place];
     }
@@ -294,21 +279,32 @@ fn meant(name: &str, slots: &Slots<'_>, given: &[Given]) -> Vec<usize> {
     numbers.map(|(place, _)| place).collect()
 }
 
-/// The value of a property; `None` when its `source` has none.
+/// The value of a property, which stands `at` this place of the component's own; `None` when its `source` has none.
 fn value<'a>(
     member: &Member<'a>,
-    property: &'a Property,
-    slot: (usize, &Slot<'_>),
+    (at, property): (usize, &'a Property),
+    slot: (usize, &Slot<'a>),
     parameters: &mut Parameters<'a>,
     values: &mut Values<'a>,
     report: &mut Report<'_>,
-) -> Result<Option<Given>, ()> {
+) -> Result<Option<Given<'a>>, ()> {
     if let Some(text) = property.only_text().filter(|_| slot.1.takes_text() && !member.is_partial) {
         let used = Use { property: property.tag(), source: None };
         let path = Path { outer: None, name: &property.name };
-        let value = values.text(text, path, slot.1.declarations(), used, report).ok_or(())?;
+        if !values.is_as_before(at, slot.1, text) {
+            values.text(text, path, slot.1.declarations(), used, report).ok_or(())?;
+            values.accept(at, slot, text);
+        }
+        let value = PropertyValue::Text(text.as_str().to_owned());
         let place = text.location;
-        return Ok(Some(Given { slot: slot.0, value, place, more: Vec::new(), source: None }));
+        return Ok(Some(Given {
+            slot: slot.0,
+            own: slot.1.own,
+            value,
+            place,
+            more: Vec::new(),
+            source: None,
+        }));
     }
     let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
     let Found { raw: found, source } = parameters.taken(place, property, report)?;
@@ -320,14 +316,14 @@ fn value<'a>(
 }
 
 /// What was found for a property, as the class takes it.
-fn converted(
+fn converted<'r>(
     property: &Property,
     found: Raw<'_>,
     used: Use,
-    (slot, declared): (usize, &Slot<'_>),
+    (slot, declared): (usize, &Slot<'r>),
     values: &mut Values<'_>,
     report: &mut Report<'_>,
-) -> Result<Given, ()> {
+) -> Result<Given<'r>, ()> {
     let path = Path { outer: None, name: &property.name };
     let place = found.0.first().map_or(used.property, Piece::location);
     let more = found.0.iter().skip(1).map(Piece::location).collect();
@@ -337,7 +333,7 @@ fn converted(
         [Some(one), None] | [None, Some(one)] => values.convert(found, path, &[one], used, report),
         [None, None] => None,
     };
-    Ok(Given { slot, value: value.ok_or(())?, place, more, source: used.source })
+    Ok(Given { slot, own: declared.own, value: value.ok_or(())?, place, more, source: used.source })
 }
 
 /// Checks that what a component gives the composite that implements it are properties of that, of types that fit.

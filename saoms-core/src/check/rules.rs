@@ -10,6 +10,7 @@ use super::classes::ClassIndex;
 use super::findings::{Subject, diagnostic};
 use super::fleet::Fleet;
 use super::report::Report;
+use super::task::Settled;
 use super::wires::Wiring;
 use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, Severity, codes};
@@ -47,7 +48,7 @@ pub(super) fn check<'s>(
     for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
         let class = fleet.class_of(place, classes);
         // Of two components of one name nobody can say which is meant.
-        let resolved = resolved.as_ref().filter(|_| !fleet.is_repeated(place));
+        let resolved = resolved.as_ref().filter(|_| !member.is_repeated);
         let (true, Some(resolved), Some(class)) = (member.runs(), resolved, class) else {
             places.push(None);
             if member.runs() {
@@ -83,8 +84,8 @@ pub(super) fn check<'s>(
                 declaration: class.class.declaration_json(),
                 extends,
                 values: &resolved.values,
-                period: resolved.task.as_ref().map(|task| task.period),
-                has_broker: resolved.task.as_ref().is_some_and(|task| task.url.is_some()),
+                period: resolved.task.as_ref().map(Settled::period),
+                has_broker: resolved.task.as_ref().is_some_and(Settled::has_broker),
                 publishes,
                 loops,
                 wires: wires.collect(),

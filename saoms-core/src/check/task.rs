@@ -1,8 +1,11 @@
 //! The task properties of a component: what goes beyond each value alone.
 
 use std::collections::HashSet;
+use std::rc::Rc;
+use std::time::Duration;
 
 use saoms_api::{PropertyField, PropertyValue};
+use smol_str::SmolStr;
 
 use super::classes::ClassIndex;
 use super::properties::Checked;
@@ -18,13 +21,40 @@ use crate::source::{Location, Text};
 /// How a component runs, and where its topics got their names.
 pub(super) struct Task<'a> {
     /// `None` where the properties are not sound.
-    pub(super) settings: Option<TaskSettings>,
+    pub(super) settings: Option<Settled>,
     /// The old and the new name of each topic that is renamed.
     pub(super) renames: Vec<(String, String)>,
     /// Where each of `renames` has its new name.
     pub(super) renamed_at: Vec<Location>,
     /// The old names, with those that the class does not have.
     pub(super) listed: Vec<Listed<'a>>,
+}
+
+/// How a component runs: mostly as others of its class do but for its ID, so that these share the rest.
+pub(super) struct Settled {
+    id: SmolStr,
+    /// Whatever ID stands here counts for nothing.
+    shared: Rc<TaskSettings>,
+}
+
+impl Settled {
+    fn of(settings: TaskSettings) -> Self {
+        Self { id: SmolStr::new(&settings.id), shared: Rc::new(settings) }
+    }
+
+    /// From one due execution to the next.
+    pub(super) fn period(&self) -> Duration {
+        self.shared.period
+    }
+
+    /// Whether its messages go to a broker.
+    pub(super) fn has_broker(&self) -> bool {
+        self.shared.url.is_some()
+    }
+
+    pub(super) fn into_settings(self) -> TaskSettings {
+        TaskSettings { id: self.id.into(), ..Rc::unwrap_or_clone(self.shared) }
+    }
 }
 
 /// The properties of which nothing is to be said that goes beyond their own values.
@@ -40,13 +70,12 @@ struct Known {
     index: usize,
     /// What is given but the ID, with the places of the properties.
     others: Vec<(usize, PropertyValue)>,
-    /// With an empty ID.
-    settings: TaskSettings,
+    settings: Rc<TaskSettings>,
 }
 
 impl Before {
     /// The settings of the task before with the ID of this component, where all else is the same.
-    fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: &Checked) -> Option<TaskSettings> {
+    fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: &Checked<'_>) -> Option<Settled> {
         let Known { others, settings, .. } = self.0.as_ref().filter(|known| known.index == index)?;
         let mut id = None;
         let mut others = others.iter();
@@ -59,13 +88,13 @@ impl Before {
         }
         match (id, others.next()) {
             (Some(PropertyValue::Text(id)), None) => {
-                Some(TaskSettings { id: id.clone(), ..settings.clone() })
+                Some(Settled { id: id.into(), shared: Rc::clone(settings) })
             }
             _ => None,
         }
     }
 
-    fn keep(&mut self, index: usize, class: &ClassIndex<'_>, checked: &Checked, settings: &TaskSettings) {
+    fn keep(&mut self, index: usize, class: &ClassIndex<'_>, checked: &Checked<'_>, settings: &Settled) {
         let name = |place: usize| class.slots.all[place].task.map_or("", |task| &task.name);
         let values = || checked.of_task(&class.slots);
         if !values().all(|(place, _)| ALONE.contains(&name(place))) {
@@ -73,8 +102,7 @@ impl Before {
         }
         let others = values().filter(|(place, _)| !class.slots.all[*place].is_task_id());
         let others = others.map(|(place, value)| (place, value.clone())).collect();
-        let settings = TaskSettings { id: String::new(), ..settings.clone() };
-        self.0 = Some(Known { index, others, settings });
+        self.0 = Some(Known { index, others, settings: Rc::clone(&settings.shared) });
     }
 }
 
@@ -82,7 +110,7 @@ impl Before {
 pub(super) fn check<'a>(
     component: &Component,
     (index, class): (usize, &ClassIndex<'a>),
-    checked: &Checked,
+    checked: &Checked<'_>,
     before: &mut Before,
     report: &mut Report<'_>,
 ) -> Task<'a> {
@@ -104,6 +132,7 @@ pub(super) fn check<'a>(
     };
     use_jms(component, class, checked, report);
     let settings = checked.is_sound.then(|| settings(component, class, checked, &renames, report)).flatten();
+    let settings = settings.map(Settled::of);
     if let Some(settings) = &settings {
         before.keep(index, class, checked, settings);
     }
@@ -114,11 +143,11 @@ pub(super) fn check<'a>(
 fn settings(
     component: &Component,
     class: &ClassIndex<'_>,
-    checked: &Checked,
+    checked: &Checked<'_>,
     renames: &[(String, String)],
     report: &mut Report<'_>,
 ) -> Option<TaskSettings> {
-    let mut values = checked.values(&class.slots, |slot| slot.task);
+    let mut values = checked.task_values(&class.slots);
     for (name, value) in class.slots.presets {
         if class
             .slots
@@ -215,7 +244,7 @@ fn renames<'a>(
 }
 
 /// Reports a component that has topics and must not use them.
-fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, report: &mut Report<'_>) {
+fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked<'_>, report: &mut Report<'_>) {
     let Some(given) = checked.get(&class.slots, "useJMS") else { return };
     if !class.has_topics() || bool::from_value(&given.value) != Ok(false) {
         return;
@@ -245,7 +274,7 @@ fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, rep
 fn combinations(
     component: &Component,
     class: &ClassIndex<'_>,
-    checked: &Checked,
+    checked: &Checked<'_>,
     settings: &TaskSettings,
     report: &mut Report<'_>,
 ) {
@@ -278,7 +307,12 @@ fn combinations(
     credentials(checked, class, settings, report);
 }
 
-fn credentials(checked: &Checked, class: &ClassIndex<'_>, settings: &TaskSettings, report: &mut Report<'_>) {
+fn credentials(
+    checked: &Checked<'_>,
+    class: &ClassIndex<'_>,
+    settings: &TaskSettings,
+    report: &mut Report<'_>,
+) {
     let is_empty =
         |value: &PropertyValue| matches!(value, PropertyValue::Text(text) if text.trim().is_empty());
     let given = |name: &str| checked.get(&class.slots, name).filter(|given| !is_empty(&given.value));

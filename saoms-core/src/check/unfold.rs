@@ -346,14 +346,21 @@ impl<'a> Unfolding<'a> {
             // Fleets are limited to fewer.
             self.fleet.scopes[scope].members.push(index as u32);
         }
-        match self.fleet.find(scope, name) {
+        let Fleet { by_name, members, .. } = &mut self.fleet;
+        let first = match is_seen {
+            _ if name.is_empty() => None,
+            true => by_name.admit(index, members),
+            false => by_name.get(scope, name, members),
+        };
+        match first {
             _ if name.is_empty() => {}
-            None if is_seen => self.fleet.by_name.insert(index, &self.fleet.members),
+            None if is_seen => {}
             Some(_) if is_seen && is_partial => {}
             Some(first) if is_seen && self.fleet.members[first].is_partial => {
                 self.fleet.by_name.insert(index, &self.fleet.members);
             }
             Some(first) if is_seen => {
+                self.fleet.members[index].is_repeated = true;
                 report.about(&self.fleet.members[index]);
                 self.repeated(component, first, report);
                 report.about_all();

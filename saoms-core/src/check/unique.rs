@@ -13,7 +13,7 @@ use super::properties::Checked;
 use super::replicas::with_index;
 use super::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::hash::Map;
+use crate::hash::{Map, Seeded};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
@@ -23,11 +23,26 @@ use crate::source::Location;
 pub(super) struct Unique<'a> {
     /// The words that properties share.
     words: Vec<&'a str>,
-    /// The first user of a value, by the place of the word.
-    seen: Map<(u32, Canonical), Seen>,
-    /// The first task of an ID, with the place of the word by which that is unique.
-    tasks: Map<Canonical, (Seen, Option<u32>)>,
+    /// The first user of each value.
+    seen: Map<Canonical, User>,
+    /// Further users of values, which share neither the word nor that they are IDs of tasks with those before them.
+    more: Vec<User>,
 }
+
+/// Who has a value.
+#[derive(Clone, Copy)]
+struct User {
+    seen: Seen,
+    /// The place of the word of the property; [`NONE`] for one without.
+    word: u32,
+    /// Whether it is the ID of a task.
+    is_task: bool,
+    /// The next user of the value among those in `more`, or [`NONE`].
+    next: u32,
+}
+
+/// No word, no user: fleets are limited to fewer.
+const NONE: u32 = u32::MAX;
 
 #[derive(Clone, Copy)]
 struct Seen {
@@ -37,12 +52,17 @@ struct Seen {
 }
 
 impl<'a> Unique<'a> {
+    /// With room for so many values.
+    pub(super) fn with_capacity(values: usize) -> Self {
+        Self { seen: Map::with_capacity_and_hasher(values, Seeded::default()), ..Self::default() }
+    }
+
     /// Adds what a component gives, or what its class presets.
     pub(super) fn add(
         &mut self,
         (place, fleet): (usize, &Fleet<'_>),
         class: &ClassIndex<'a>,
-        checked: &Checked,
+        checked: &Checked<'_>,
         report: &mut Report<'_>,
     ) {
         let own = &fleet.members[place];
@@ -59,14 +79,9 @@ impl<'a> Unique<'a> {
                 None => (class.slots.preset(&declaration.name), own.component.name.location),
             };
             let Some(value) = value.and_then(|value| Canonical::of(value, declaration)) else { continue };
-            let seen = Seen { member, place };
-            let word = declaration.unique.as_deref().map(|word| self.word(word));
-            if let Some(word) = word {
-                self.declared((word, value.clone()), seen, declaration, fleet, report);
-            }
-            if slot.is_task_id() {
-                self.task(value, (seen, word), fleet, report);
-            }
+            let word = declaration.unique.as_deref().map_or(NONE, |word| self.word(word));
+            let user = User { seen: Seen { member, place }, word, is_task: slot.is_task_id(), next: NONE };
+            self.use_value(value, user, declaration, fleet, report);
         }
     }
 
@@ -79,23 +94,64 @@ impl<'a> Unique<'a> {
         }) as u32
     }
 
-    fn declared(
+    fn use_value(
         &mut self,
-        key: (u32, Canonical),
-        seen: Seen,
+        value: Canonical,
+        user: User,
         declaration: &PropertyDeclaration,
         fleet: &Fleet<'_>,
         report: &mut Report<'_>,
     ) {
-        let entry = match self.seen.entry(key) {
-            Entry::Occupied(entry) => entry,
+        let mut entry = match self.seen.entry(value) {
             Entry::Vacant(entry) => {
-                entry.insert(seen);
+                entry.insert(user);
                 return;
             }
+            Entry::Occupied(entry) => entry,
         };
-        let ((word, value), first) = (entry.key(), entry.get());
-        let [earlier, later] = [first, &seen].map(|one| &fleet.members[one.member as usize]);
+        let mut last = *entry.get();
+        let (mut of_word, mut of_task, mut at) = (None, None, NONE);
+        loop {
+            let is_of_word = last.word == user.word && user.word != NONE;
+            of_word = of_word.or(is_of_word.then_some(last));
+            of_task = of_task.or((last.is_task && user.is_task).then_some(last));
+            if last.next == NONE {
+                break;
+            }
+            at = last.next;
+            last = self.more[at as usize];
+        }
+        let value = entry.key().clone();
+        let is_new_word = of_word.is_none() && user.word != NONE;
+        let is_first_task = of_task.is_none() && user.is_task;
+        if is_new_word || is_first_task {
+            let next = self.more.len() as u32;
+            match self.more.get_mut(at as usize) {
+                Some(before) => before.next = next,
+                None => entry.get_mut().next = next,
+            }
+            self.more.push(user);
+        }
+        if let Some(first) = of_word {
+            self.shared(&value, &first, &user.seen, declaration, fleet, report);
+        }
+        if let Some(first) = of_task {
+            task(&value, first, user, fleet, report);
+        }
+    }
+
+    /// Tells of a value that a word forbids to share.
+    fn shared(
+        &self,
+        value: &Canonical,
+        first: &User,
+        seen: &Seen,
+        declaration: &PropertyDeclaration,
+        fleet: &Fleet<'_>,
+        report: &mut Report<'_>,
+    ) {
+        let (word, first) = (first.word, &first.seen);
+        let [earlier, later] = [first, seen].map(|one| &fleet.members[one.member as usize]);
         // That there are two components of one name is told.
         if earlier.path() == later.path() {
             return;
@@ -108,7 +164,7 @@ impl<'a> Unique<'a> {
             quoted(&value.to_string())
         );
         let one = Diagnostic::new(&codes::NOT_UNIQUE, seen.place, message);
-        let one = one.help(format!("every {} needs its own", self.words[*word as usize]));
+        let one = one.help(format!("every {} needs its own", self.words[word as usize]));
         let own = later.component.properties.iter().filter_map(Property::only_text);
         let is_own = own.clone().any(|text| text.location == seen.place);
         report.push(match first.place == seen.place {
@@ -126,40 +182,27 @@ impl<'a> Unique<'a> {
             false => one.label(first.place, "the first"),
         });
     }
+}
 
-    /// Tasks that share an ID run all the same, but people cannot tell them apart.
-    fn task(
-        &mut self,
-        value: Canonical,
-        (seen, word): (Seen, Option<u32>),
-        fleet: &Fleet<'_>,
-        report: &mut Report<'_>,
-    ) {
-        let entry = match self.tasks.entry(value) {
-            Entry::Occupied(entry) => entry,
-            Entry::Vacant(entry) => {
-                entry.insert((seen, word));
-                return;
-            }
-        };
-        let (value, (first, first_word)) = (entry.key(), entry.get());
-        let is_told = word.is_some() && word == *first_word;
-        let [earlier, later] = [first, &seen].map(|one| fleet.members[one.member as usize].path());
-        if is_told || earlier == later {
-            return;
-        }
-        let message = format!(
-            "components {} and {} share the ID {}",
-            quoted(earlier),
-            quoted(later),
-            quoted(&value.to_string())
-        );
-        report.push(
-            Diagnostic::new(&codes::TASK_ID_SHARED, seen.place, message)
-                .label(first.place, "the first")
-                .help("messages and reports name tasks by their ID"),
-        );
+/// Tasks that share an ID run all the same, but people cannot tell them apart.
+fn task(value: &Canonical, first: User, user: User, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let is_told = user.word != NONE && user.word == first.word;
+    let (first, seen) = (first.seen, user.seen);
+    let [earlier, later] = [first, seen].map(|one| fleet.members[one.member as usize].path());
+    if is_told || earlier == later {
+        return;
     }
+    let message = format!(
+        "components {} and {} share the ID {}",
+        quoted(earlier),
+        quoted(later),
+        quoted(&value.to_string())
+    );
+    report.push(
+        Diagnostic::new(&codes::TASK_ID_SHARED, seen.place, message)
+            .label(first.place, "the first")
+            .help("messages and reports name tasks by their ID"),
+    );
 }
 
 /// What is equal for equal values: `07` and `7` are one number.

@@ -5,11 +5,13 @@ use std::fmt;
 
 use saoms_api::PropertyValue;
 use saoms_api::declaration::{PropertyKind, parse_scalar};
+use smol_str::SmolStr;
 
 use super::instance::{COUNTERS, Instance};
 use super::raw::{Piece, Raw};
 use super::replicas::as_index;
 use super::report::{Report, escaped, replacing};
+use super::slots::{Slot, Slots};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::expression::{INDEX, has_expression, is_name};
 use crate::model::Property;
@@ -47,11 +49,52 @@ pub(super) struct Use {
 pub(super) struct Values<'a> {
     /// The first property at each place of a class, empty between two components: its memory is used again for each of them.
     first: Vec<Option<&'a Property>>,
+    /// What components gave last, in the order in which they write it: the next one mostly has the same properties, and many of the same values.
+    before: Vec<Before<'a>>,
     /// The faults in values that many components may use, so that each is reported once.
     shared: HashSet<(Location, &'static str, String)>,
 }
 
+/// A property that was given, with a text that all of its declarations accept.
+struct Before<'a> {
+    /// Its place in the class.
+    place: usize,
+    declarations: [Option<&'a PropertyDeclaration>; 2],
+    text: SmolStr,
+}
+
 impl<'a> Values<'a> {
+    /// The place in the class of the property that is written `at` this place, where that is the one of this name that was there before.
+    pub(super) fn expected(&self, at: usize, slots: &Slots<'_>, name: &str) -> Option<usize> {
+        let place = self.before.get(at)?.place;
+        let main = slots.all.get(place)?.main()?;
+        (main.name == name).then_some(place)
+    }
+
+    /// Whether the property that is written `at` this place had this very text before.
+    pub(super) fn is_as_before(&self, at: usize, slot: &Slot<'a>, text: &Text) -> bool {
+        let is_same = |one: Option<&PropertyDeclaration>, other: Option<&PropertyDeclaration>| {
+            one.map(std::ptr::from_ref) == other.map(std::ptr::from_ref)
+        };
+        self.before.get(at).is_some_and(|before| {
+            before.text == text.value
+                && is_same(before.declarations[0], slot.own)
+                && is_same(before.declarations[1], slot.task)
+        })
+    }
+
+    /// Remembers a text that was accepted.
+    pub(super) fn accept(&mut self, at: usize, (place, slot): (usize, &Slot<'a>), text: &Text) {
+        let before = Before { place, declarations: [slot.own, slot.task], text: text.value.clone() };
+        // Behind a property that is not right, places are left out.
+        let count = self.before.len();
+        match self.before.get_mut(at) {
+            Some(known) => *known = before,
+            None if count == at => self.before.push(before),
+            None => {}
+        }
+    }
+
     /// No property yet at each of so many places.
     pub(super) fn first(&mut self, places: usize) -> Vec<Option<&'a Property>> {
         let mut first = std::mem::take(&mut self.first);
@@ -97,7 +140,7 @@ impl<'a> Values<'a> {
             }
             None => {
                 let nothing = Text::new("".into(), used.property);
-                self.text(&nothing, path, declarations.iter().copied(), used, report)
+                self.one(&nothing, path, declarations, used, report)
             }
         }
     }
@@ -121,7 +164,7 @@ impl<'a> Values<'a> {
                 let elements = if is_part { vec![root] } else { root.children().collect() };
                 self.complex((&elements, instance), path, main, used, report)
             }
-            (Piece::Whole(text, ..), _) => self.text(text, path, declarations.iter().copied(), used, report),
+            (Piece::Whole(text, ..), _) => self.one(text, path, declarations, used, report),
             (Piece::Elements(elements, _), _) => {
                 let at = elements.first().map_or(used.property, |first| first.name_location());
                 let message = format!(
@@ -141,11 +184,24 @@ impl<'a> Values<'a> {
                 self.report(one.help("write each as an element inside"), path, main, used, report);
                 None
             }
-            (Piece::Text(text), _) => self.text(&text, path, declarations.iter().copied(), used, report),
+            (Piece::Text(text), _) => self.one(&text, path, declarations, used, report),
         }
     }
 
     /// The value of a property that takes one text.
+    fn one(
+        &mut self,
+        text: &Text,
+        path: Path<'_>,
+        declarations: &[&PropertyDeclaration],
+        used: Use,
+        report: &mut Report<'_>,
+    ) -> Option<PropertyValue> {
+        self.text(text, path, declarations.iter().copied(), used, report)?;
+        Some(PropertyValue::Text(text.as_str().to_owned()))
+    }
+
+    /// Holds a text to the declarations of a property that takes one; `None` when there is a fault, which is reported.
     pub(super) fn text<'d>(
         &mut self,
         text: &Text,
@@ -153,7 +209,7 @@ impl<'a> Values<'a> {
         declarations: impl Iterator<Item = &'d PropertyDeclaration>,
         used: Use,
         report: &mut Report<'_>,
-    ) -> Option<PropertyValue> {
+    ) -> Option<()> {
         for declaration in declarations {
             if let Err(message) = declaration.allows(text) {
                 let one = wrong(text, path, declaration, &message, report.has_index());
@@ -161,7 +217,7 @@ impl<'a> Values<'a> {
                 return None;
             }
         }
-        Some(PropertyValue::Text(text.as_str().to_owned()))
+        Some(())
     }
 
     fn complex(

@@ -5,7 +5,10 @@
 
 mod unwired;
 
+use std::cell::Cell;
 use std::collections::HashSet;
+
+use smol_str::SmolStr;
 
 use super::astray::Astray;
 use super::autowire::Autowire;
@@ -71,7 +74,8 @@ pub(super) fn check(
     let (mut wires, astray) = wires(fleet, classes, &room, report);
     // They are looked up by the names of their references.
     wires.values_mut().for_each(|wires| wires.sort_by_key(|wire| wire.name));
-    let mut all = Wires { fleet, classes, promoted, wires, astray, autowire: Autowire::default(), room };
+    let (autowire, before) = (Autowire::default(), Cell::default());
+    let mut all = Wires { fleet, classes, promoted, wires, astray, autowire, room, before };
     let sources = given::promoted(fleet);
     let mut circles = Circles::default();
     let mut wiring = Wiring { members: Vec::with_capacity(fleet.members.len()), ..Wiring::default() };
@@ -108,6 +112,16 @@ struct Wires<'f, 'a> {
     astray: Astray<'f>,
     autowire: Autowire<'f>,
     room: Room,
+    /// The target that was looked at last: components that stand together mostly call the same one.
+    before: Cell<Option<Before<'f>>>,
+}
+
+/// A target that leads to one service.
+struct Before<'f> {
+    text: SmolStr,
+    scope: usize,
+    interface: Option<&'f InterfaceDeclaration>,
+    provider: Provider,
 }
 
 impl<'f, 'a> Wires<'f, 'a> {
@@ -253,7 +267,7 @@ impl<'f, 'a> Wires<'f, 'a> {
     fn level(
         &self,
         (member, name): Place<'_>,
-        interface: Option<&InterfaceDeclaration>,
+        interface: Option<&'f InterfaceDeclaration>,
         report: &mut Report<'_>,
     ) -> Level {
         let fleet = self.fleet;
@@ -300,10 +314,17 @@ impl<'f, 'a> Wires<'f, 'a> {
         text: &Text,
         (scope, own): (usize, Option<usize>),
         counts: bool,
-        interface: Option<&InterfaceDeclaration>,
+        interface: Option<&'f InterfaceDeclaration>,
         level: &mut Level,
         report: &mut Report<'_>,
     ) {
+        if let Some(provider) = self.again(text, scope, interface) {
+            if counts {
+                level.ends.all.push(End { provider, place: text.location });
+                level.written.add(text.location);
+            }
+            return;
+        }
         if interface.is_none() && self.is_component(text, scope) {
             // What it leads to there cannot be looked at.
             level.ends.is_unknown |= counts;
@@ -322,16 +343,32 @@ impl<'f, 'a> Wires<'f, 'a> {
                 continue;
             }
             match target(&one, (scope, own), interface, self.fleet, self.classes, report) {
-                Target::Service(provider) if counts => {
-                    level.ends.all.push(End { provider, place: text.location });
+                Target::Service(provider) => {
+                    if counts {
+                        level.ends.all.push(End { provider, place: text.location });
+                    }
+                    if replica.is_none() {
+                        let text = text.value.clone();
+                        self.before.set(Some(Before { text, scope, interface, provider }));
+                    }
                 }
-                Target::Service(_) => {}
                 Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
             }
             if counts {
                 level.written.add(text.location);
             }
         }
+    }
+
+    /// Where a text leads, when it is the one that was looked at last.
+    fn again(&self, text: &Text, scope: usize, interface: Option<&InterfaceDeclaration>) -> Option<Provider> {
+        let before = self.before.take()?;
+        let is_again = before.text == text.value
+            && before.scope == scope
+            && before.interface.map(std::ptr::from_ref) == interface.map(std::ptr::from_ref);
+        let provider = before.provider;
+        self.before.set(Some(before));
+        is_again.then_some(provider)
     }
 
     /// Whether a text is nothing but the name of a component that has one service as far as anybody knows: what most targets are.

@@ -237,9 +237,10 @@ impl Loader<'_> {
     /// The name of a part; empty, at the tag, when there is none.
     pub(super) fn name(&mut self, element: Element<'_>) -> Text {
         if let Some(attribute) = self.attribute(element, "name")
-            && let Some(name) = attribute.plain_name()
+            && let Some(plain) = attribute.plain_name()
         {
-            if matches!(attribute.raw_value().as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..]) {
+            let name = attribute.as_it_is(plain);
+            if matches!(plain.as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..]) {
                 self.no_name(&name);
             }
             return name;

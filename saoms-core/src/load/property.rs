@@ -15,6 +15,11 @@ impl Loader<'_> {
         let usual: &[&str] = if knows_value { &["name", "value"] } else { &["name"] };
         let is_plain = self.is_plain(element, kind, usual);
         let name = self.name(element);
+        if is_plain && element.is_empty() {
+            let simple = self.attribute(element, "value").map(Attribute::trimmed);
+            let is_attribute = simple.is_some();
+            return Property { origin: Origin::of(element), name, simple, is_attribute, details: None };
+        }
         let mut values = Vec::new();
         let mut content = Vec::new();
         for child in element.children() {

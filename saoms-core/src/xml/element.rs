@@ -167,33 +167,31 @@ impl<'a> Element<'a> {
     /// When there are not as many.
     #[inline]
     pub(crate) fn nth_attribute(self, at: usize) -> Attribute<'a> {
-        let document = self.document;
-        let part = &document.shapes.parts(self.node().shape)[at];
-        Attribute { document, part, value: document.values[self.node().values as usize + at] }
+        let node = self.node();
+        // As many as its shape has attributes stand there.
+        let value = self.document.values[node.values as usize + at];
+        Attribute { document: self.document, shape: node.shape, at: at as u32, value }
     }
 
     /// Its attributes and its declarations of namespaces, in the order in which they are written.
     pub fn written_attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
-        let document = self.document;
-        let values = document.values[self.node().values as usize..].iter();
-        let parts = document.shapes.parts(self.node().shape).iter();
-        parts.zip(values).map(move |(part, value)| Attribute { document, part, value: *value })
+        (0..self.count_of_attributes()).map(move |at| self.nth_attribute(at))
     }
 
     /// Its attributes in order, without declarations of namespaces.
     pub fn attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
-        self.written_attributes().filter(|one| one.part.namespace != XMLNS)
+        self.written_attributes().filter(|one| one.part().namespace != XMLNS)
     }
 
     /// Its declarations of namespaces (`xmlns`, `xmlns:a`) in order.
     pub fn namespace_declarations(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
-        self.written_attributes().filter(|one| one.part.namespace == XMLNS)
+        self.written_attributes().filter(|one| one.part().namespace == XMLNS)
     }
 
     /// The attribute of this name in no namespace.
     #[inline]
     pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
-        self.attributes().find(|one| one.part.namespace == NO_NAMESPACE && one.name() == name)
+        self.attributes().find(|one| one.part().namespace == NO_NAMESPACE && one.name() == name)
     }
 
     /// The attribute of this name in this namespace.
@@ -222,7 +220,7 @@ impl<'a> Element<'a> {
 
     /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the attributes.
     pub(super) fn declared_prefixes(self) -> impl Iterator<Item = (&'a str, usize)> {
-        let all = self.written_attributes().enumerate().filter(|(_, one)| one.part.namespace == XMLNS);
+        let all = self.written_attributes().enumerate().filter(|(_, one)| one.part().namespace == XMLNS);
         all.map(move |(at, one)| {
             let (before, local) = split(one.name());
             (before.map_or("", |_| local), at)
@@ -234,6 +232,13 @@ impl<'a> Element<'a> {
         let Node { tag_end, end, is_closed, .. } = *self.node();
         let start = self.content_span().end + 2;
         (is_closed && tag_end < end).then(|| Span::new(start, start + self.tag().name_len))
+    }
+
+    /// Whether there is nothing between its tags, or no end tag as in `<a/>`.
+    #[inline]
+    pub(crate) fn is_empty(self) -> bool {
+        let Node { tag_end, end, is_closed, .. } = *self.node();
+        tag_end == end && is_closed
     }
 
     /// Whether text other than white space is directly inside.
@@ -309,12 +314,20 @@ impl<'a> Element<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Attribute<'a> {
     document: &'a Document,
-    part: &'a Part,
+    /// The shape of the tag that it is in, and its place among the attributes there.
+    shape: u32,
+    at: u32,
     /// Without the quotes.
     value: Span,
 }
 
 impl<'a> Attribute<'a> {
+    /// What its shape says of it.
+    #[inline]
+    fn part(self) -> &'a Part {
+        &self.document.shapes.parts(self.shape)[self.at as usize]
+    }
+
     /// The name as written, with its prefix.
     #[inline]
     pub fn name(self) -> &'a str {
@@ -333,7 +346,7 @@ impl<'a> Attribute<'a> {
 
     /// The namespace; empty for none, as for every attribute without a prefix.
     pub fn namespace(self) -> &'a str {
-        &self.document.namespaces[self.part.namespace as usize]
+        &self.document.namespaces[self.part().namespace as usize]
     }
 
     /// The value: references resolved, each white space character a blank.
@@ -354,8 +367,9 @@ impl<'a> Attribute<'a> {
 
     /// The name.
     pub fn name_span(self) -> Span {
-        let start = self.value.start - self.part.name_back;
-        Span::new(start, start + self.part.name_len)
+        let part = self.part();
+        let start = self.value.start - part.name_back;
+        Span::new(start, start + part.name_len)
     }
 
     /// The value, without its quotes.
@@ -368,12 +382,17 @@ impl<'a> Attribute<'a> {
         self.span().in_file(self.document.file)
     }
 
-    /// The value and where it is, when it is a name as most are: not empty, and of ASCII without white space and `/`.
+    /// The value, when it is a name as most are: not empty, and of ASCII without white space and `/`.
     #[inline]
-    pub(crate) fn plain_name(self) -> Option<Text> {
+    pub(crate) fn plain_name(self) -> Option<&'a str> {
         let name = self.raw_value();
-        let is_plain = !name.is_empty() && value::is_plain_name(name.as_bytes());
-        is_plain.then(|| Located::new(name.into(), self.value.in_file(self.document.file)))
+        (!name.is_empty() && value::is_plain_name(name.as_bytes())).then_some(name)
+    }
+
+    /// A value that means itself, and where it is.
+    #[inline]
+    pub(crate) fn as_it_is(self, value: &str) -> Text {
+        Located::new(value.into(), self.value.in_file(self.document.file))
     }
 
     /// The value and where it is, when it is one word as most are, without white space or references.
@@ -381,7 +400,7 @@ impl<'a> Attribute<'a> {
     pub(crate) fn only_word(self) -> Option<Text> {
         let word = self.raw_value();
         let is_word = !word.is_empty() && value::is_plain(word.as_bytes());
-        is_word.then(|| Located::new(word.into(), self.value.in_file(self.document.file)))
+        is_word.then(|| self.as_it_is(word))
     }
 
     /// The value and where it is, white space at its ends left out.

@@ -44,6 +44,7 @@ impl<'a> Namespaces<'a> {
     }
 
     /// How many declarations are in scope, for [`Namespaces::leave`].
+    #[inline]
     pub(super) fn depth(&self) -> u32 {
         self.replaced.len() as u32
     }
@@ -61,15 +62,20 @@ impl<'a> Namespaces<'a> {
     }
 
     /// A number for what is bound here: where it is the same, all prefixes mean the same.
+    #[inline]
     pub(super) fn scope(&self) -> u32 {
         self.replaced.last().map_or(0, |last| last.number)
     }
 
     /// Undoes the declarations beyond the first `depth`.
+    #[inline]
     pub(super) fn leave(&mut self, depth: u32) {
-        if self.depth() == depth {
-            return;
+        if self.depth() > depth {
+            self.undo(depth);
         }
+    }
+
+    fn undo(&mut self, depth: u32) {
         for Replaced { prefix, before, .. } in self.replaced.drain(depth as usize..).rev() {
             match before {
                 Some(number) if prefix.is_empty() => self.default = number,

@@ -64,12 +64,11 @@ pub fn parse(file: FileId, text: &Arc<String>) -> Parsed {
     Parsed { document: parser.into_document(text), fault, tangle }
 }
 
-/// How many elements there are, or somewhat more: a list that grows has room for twice as many. The shortest start tag is `<a>`.
+/// How many elements there are, or somewhat more, as comments count as well: a list that grows has room for twice as many. The shortest start
+/// tag is `<a>`.
 fn elements(text: &str) -> usize {
     let bytes = text.as_bytes();
-    let is_start = |(first, second): (&u8, &u8)| {
-        (*first == b'<') & (*second != b'/') & (*second != b'!') & (*second != b'?')
-    };
+    let is_start = |(first, second): (&u8, &u8)| (*first == b'<') & (*second != b'/');
     // Counted in bytes, without a branch, so that the compiler makes vector instructions of it.
     let pieces = bytes.chunks(128).zip(bytes.get(1..).unwrap_or_default().chunks(128));
     let starts = pieces.map(|(bytes, behind)| {

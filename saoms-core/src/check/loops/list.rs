@@ -18,7 +18,7 @@ use crate::source::Text;
 pub(super) fn plan<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: &Checked,
+    checked: &Checked<'_>,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {
@@ -95,7 +95,7 @@ pub(super) fn plan<'a>(
 }
 
 /// The value that says which loops of its class a component has.
-pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked) -> Option<&'c str> {
+pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked<'_>) -> Option<&'c str> {
     let declaration = class.class.declaration();
     let property = declaration.loops.property.as_ref()?;
     let given = checked.get(&class.slots, property).map(|given| &given.value);
@@ -109,7 +109,7 @@ pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked) -> Opt
 fn by_default<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: &Checked,
+    checked: &Checked<'_>,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {

@@ -13,7 +13,7 @@ use super::classes::ClassIndex;
 use super::findings::Subject;
 use super::fleet::{Fleet, Kind, Member};
 use super::parameters::Parameters;
-use super::properties::{self, Checked, Giver, Written};
+use super::properties::{self, Checked, Given, Giver};
 use super::report::Report;
 use super::slots::Slots;
 use super::values::Values;
@@ -36,7 +36,7 @@ struct Changed<'a> {
     place: usize,
     element: &'a Loop,
     /// Where the composite gives its values.
-    written: Vec<Written<'a>>,
+    written: Vec<Given<'a>>,
 }
 
 impl Resolved<'_> {
@@ -69,7 +69,7 @@ type Usual = (usize, Arc<[LoopSpec]>);
 pub(super) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
     classes: &mut Vec<ClassIndex<'a>>,
-    checked: &[Option<Box<Checked>>],
+    checked: &[Option<Box<Checked<'a>>>],
     registry: &'a Registry,
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
@@ -149,8 +149,9 @@ fn resolved<'a>(
             if !checked.is_sound {
                 continue;
             }
-            spec.values = checked.values(&slots, |slot| slot.own);
-            changed.push(Changed { place: specs.len(), element, written: checked.places(&slots) });
+            let written;
+            (spec.values, written) = checked.into_values();
+            changed.push(Changed { place: specs.len(), element, written });
         }
         specs.push(spec);
     }

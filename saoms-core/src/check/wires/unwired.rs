@@ -47,7 +47,7 @@ impl Wires<'_, '_> {
             let element = reference.origin.element(&fleet.members[member].composite.document);
             reference.targets.is_empty() && element.has_text()
         });
-        if is_text || fleet.is_repeated(member) {
+        if is_text || fleet.members[member].is_repeated {
             return;
         }
         let is_meant =
