@@ -237,7 +237,7 @@ pub struct ComponentView<'a> {
     /// The classes of its loops, in their order.
     pub loops: Rc<[&'a str]>,
     /// Its references that are wired, and the index of the component that each leads to.
-    pub wires: Vec<(&'a str, usize)>,
+    pub wires: &'a [(&'a str, usize)],
 }
 
 impl ComponentView<'_> {

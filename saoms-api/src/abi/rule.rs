@@ -116,10 +116,11 @@ unsafe extern "C" fn check(
                 .iter()
                 .map(|view| PropertyView::read(view.values, view.value_count))
                 .collect::<Result<Vec<_>, _>>()?;
+            let wires = views.iter().map(|view| view.read_wires()).collect::<Result<Vec<_>, _>>()?;
             let components = views
                 .iter()
-                .zip(&values)
-                .map(|(view, values)| view.read(values))
+                .zip(values.iter().zip(&wires))
+                .map(|(view, (values, wires))| view.read(values, wires))
                 .collect::<Result<Vec<_>, _>>()?;
             let missing = list(fleet.missing, fleet.missing_count)?
                 .iter()
@@ -156,9 +157,20 @@ impl TextList {
 impl MemberView {
     /// # Safety
     /// The view and what it leads to are readable for as long as the result is used.
+    unsafe fn read_wires<'a>(&self) -> Result<Vec<(&'a str, usize)>, Failure> {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let wires = list(self.wires, self.wire_count)?.iter();
+            wires.map(|wire| Ok((wire.reference.get_text()?, wire.target))).collect()
+        }
+    }
+
+    /// # Safety
+    /// The view and what it leads to are readable for as long as the result is used.
     unsafe fn read<'a>(
         &self,
         values: &'a [(String, crate::PropertyValue)],
+        wires: &'a [(&'a str, usize)],
     ) -> Result<ComponentView<'a>, Failure> {
         // SAFETY: as the caller promises.
         unsafe {
@@ -172,10 +184,7 @@ impl MemberView {
                 extends: self.extends.read()?.into(),
                 publishes: self.publishes.read()?.into(),
                 loops: self.loops.read()?.into(),
-                wires: list(self.wires, self.wire_count)?
-                    .iter()
-                    .map(|wire| Ok((wire.reference.get_text()?, wire.target)))
-                    .collect::<Result<_, Failure>>()?,
+                wires,
             })
         }
     }

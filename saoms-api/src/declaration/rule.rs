@@ -259,15 +259,18 @@ fn integer(text: &str) -> Option<i128> {
 fn few_digits(text: &str) -> Option<u32> {
     /// So many digits fit into 32 bits.
     const FEW: usize = 9;
-    let mut number: u32 = 0;
+    if !(1..=FEW).contains(&text.len()) {
+        return None;
+    }
+    let mut number = 0;
     for byte in text.bytes() {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
             return None;
         }
-        number = number.wrapping_mul(10).wrapping_add(u32::from(digit));
+        number = number * 10 + u32::from(digit);
     }
-    (1..=FEW).contains(&text.len()).then_some(number)
+    Some(number)
 }
 
 /// Whether a whole number is certainly above this least, or below this greatest value: most of these are the ends of a type, far away, and

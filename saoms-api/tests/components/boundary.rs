@@ -426,7 +426,7 @@ fn a_rule_finds_the_same_behind_the_boundary() {
         has_broker: true,
         publishes: ["A", "B"].into(),
         loops: ["test.Dimmer"].into(),
-        wires: vec![("adder", 1)],
+        wires: &[("adder", 1)],
     };
     let other =
         ComponentView { period: None, has_broker: false, values: &[], publishes: [].into(), ..one.clone() };

@@ -78,9 +78,7 @@ pub(super) fn partly(
     }
     let is_given = |finding: &Finding| {
         let name = finding.place().property_name();
-        name.is_some_and(|name| {
-            !is_unsure(name) && subject.written.iter().any(|one| one.name() == Some(name))
-        })
+        name.is_some_and(|name| !is_unsure(name) && subject.gives(name))
     };
     let found: Vec<Finding> = found.unwrap_or_default().into_iter().filter(is_given).collect();
     tell(&found, subject, class.class.name(), report);

@@ -160,10 +160,9 @@ pub(super) fn value(described: &ComponentType, name: &str, given: &Given<'_>, re
         PropertyValue::Many(values) => &values[..],
         one => std::slice::from_ref(one),
     };
-    let places = std::iter::once(&given.place).chain(&given.more);
-    for (value, place) in values.iter().zip(places) {
+    for (value, place) in values.iter().zip(given.places()) {
         if let PropertyValue::Text(text) = value {
-            value_type::holds(declared, &Text::new(text.as_str().into(), *place), &codes::VALUE_TYPE, report);
+            value_type::holds(declared, &Text::new(text.as_str().into(), place), &codes::VALUE_TYPE, report);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::fleet::Member;
 use super::properties::Given;
 use super::report::{Report, escaped, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
+use crate::model::{Component, Property};
 use crate::source::Location;
 
 /// A component, or a loop of one, for findings about it.
@@ -17,8 +18,17 @@ pub(super) struct Subject<'a> {
     /// Where its name is.
     pub(super) at: Location,
     pub(super) values: &'a [(String, PropertyValue)],
-    /// Where the composite gives them.
-    pub(super) written: &'a [Given<'a>],
+    /// What the composite says of its properties.
+    pub(super) properties: &'a [Property],
+    /// The values that are not one text there, with their places.
+    pub(super) elsewhere: &'a [Given<'a>],
+}
+
+/// Where the composite gives a property.
+struct Written {
+    places: Vec<Location>,
+    /// The `source` that leads there.
+    source: Option<Location>,
 }
 
 impl<'a> Subject<'a> {
@@ -26,10 +36,23 @@ impl<'a> Subject<'a> {
     pub(super) fn of(
         member: &Member<'a>,
         values: &'a [(String, PropertyValue)],
-        written: &'a [Given<'a>],
+        elsewhere: &'a [Given<'a>],
     ) -> Self {
-        let name = &member.component.name;
-        Self { what: "component", name: name.as_str(), at: name.location, values, written }
+        let Component { name, properties, .. } = member.component;
+        Self { what: "component", name: name.as_str(), at: name.location, values, properties, elsewhere }
+    }
+
+    /// Whether the composite gives a property of this name.
+    pub(super) fn gives(&self, name: &str) -> bool {
+        self.written(name).is_some()
+    }
+
+    fn written(&self, name: &str) -> Option<Written> {
+        if let Some(given) = self.elsewhere.iter().find(|given| given.name() == Some(name)) {
+            return Some(Written { places: given.places().collect(), source: given.source() });
+        }
+        let text = self.properties.iter().find(|one| one.name == *name)?.only_text()?;
+        Some(Written { places: vec![text.location], source: None })
     }
 }
 
@@ -86,16 +109,17 @@ fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Loca
     let nowhere = Located { at: subject.at, source: None, text: None, is_xml: false };
     let given = place.property_name().and_then(|name| {
         let values = &subject.values.iter().find(|(given, _)| given == name)?.1;
-        Some((values, subject.written.iter().find(|written| written.name() == Some(name))?))
+        Some((values, subject.written(name)?))
     });
     let Some((values, written)) = given else { return nowhere };
-    let whole = Located { at: written.place, source: written.source, ..nowhere };
+    let Some(&first) = written.places.first() else { return nowhere };
+    let whole = Located { at: first, source: written.source, ..nowhere };
     let Some((index, part)) = place.value_part() else { return whole };
     let value = match values {
         PropertyValue::Many(values) => values.get(index),
         one => (index == 0).then_some(one),
     };
-    let (Some(PropertyValue::Text(value)), Some(at)) = (value, written.value_place(index)) else {
+    let (Some(PropertyValue::Text(value)), Some(&at)) = (value, written.places.get(index)) else {
         return whole;
     };
     Located {

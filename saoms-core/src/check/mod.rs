@@ -213,11 +213,11 @@ fn examine<T>(
             }
         }
     }
-    for Half { member, values, written, unsure } in &halves {
+    for Half { member, values, elsewhere, unsure } in &halves {
         let member = &fleet.members[*member];
         if let Kind::Class(class) = member.kind {
             report.about(member);
-            let subject = Subject::of(member, values, written);
+            let subject = Subject::of(member, values, elsewhere);
             construct::partly(subject, &classes[class], unsure, options.without_plugin_code, report);
         }
     }
@@ -257,8 +257,8 @@ fn elsewhere(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 struct Resolved<'r> {
     /// The values of the class's own properties.
     values: Vec<(String, PropertyValue)>,
-    /// Where the composite gives them.
-    written: Vec<Given<'r>>,
+    /// Those that are not one text in the composite, for their places.
+    elsewhere: Vec<Given<'r>>,
     task: Option<Settled>,
     /// Where its topics got other names.
     renamed: Vec<(String, Location)>,
@@ -272,14 +272,14 @@ struct Half<'r> {
     /// The place of the component.
     member: usize,
     values: Vec<(String, PropertyValue)>,
-    written: Vec<Given<'r>>,
+    elsewhere: Vec<Given<'r>>,
     /// The places of the properties whose values are not known.
     unsure: Vec<usize>,
 }
 
 impl Resolved<'_> {
     fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
-        Subject::of(member, &self.values, &self.written)
+        Subject::of(member, &self.values, &self.elsewhere)
     }
 }
 
@@ -352,13 +352,13 @@ fn components<'f, 'a>(
         let absent: Vec<(String, PropertyValue)> = absent.cloned().collect();
         let queue = checked.get(&class.slots, "queue").map(|given| given.place);
         let unsure = std::mem::take(&mut checked.unsure);
-        let (mut values, written) = checked.into_values();
+        let (mut values, elsewhere) = checked.into_values();
         values.extend(absent);
         let resolved = match loops.filter(|_| sound) {
-            Some(loops) => Some(Box::new(Resolved { values, written, task, renamed, queue, loops })),
+            Some(loops) => Some(Box::new(Resolved { values, elsewhere, task, renamed, queue, loops })),
             None if member.has_open_values() => None,
             None => {
-                halves.push(Half { member: place, values, written, unsure });
+                halves.push(Half { member: place, values, elsewhere, unsure });
                 None
             }
         };

@@ -26,14 +26,19 @@ pub(super) struct Given<'r> {
     slot: usize,
     /// The declaration of the class; `None` for a property of tasks alone.
     own: Option<&'r PropertyDeclaration>,
-    /// Empty once it was taken.
     pub(super) value: PropertyValue,
     /// Where the value is, to point at.
     pub(super) place: Location,
-    /// Where its further values are, where it has several.
-    pub(super) more: Vec<Location>,
-    /// The `source` that leads to a value elsewhere.
-    pub(super) source: Option<Location>,
+    /// `None` for one text that stands in the property itself, as most do.
+    elsewhere: Option<Box<Elsewhere>>,
+}
+
+/// What is to be said of a value that is not one text in the property itself.
+struct Elsewhere {
+    /// Where further values are.
+    more: Vec<Location>,
+    /// The `source` that leads to it.
+    source: Option<Location>,
 }
 
 impl Given<'_> {
@@ -42,9 +47,15 @@ impl Given<'_> {
         self.own.map(|own| own.name.as_str())
     }
 
-    /// Where one of its values is.
-    pub(super) fn value_place(&self, index: usize) -> Option<Location> {
-        index.checked_sub(1).map_or(Some(self.place), |further| self.more.get(further).copied())
+    /// Where its values are.
+    pub(super) fn places(&self) -> impl Iterator<Item = Location> {
+        let more = self.elsewhere.iter().flat_map(|elsewhere| &elsewhere.more);
+        std::iter::once(self.place).chain(more.copied())
+    }
+
+    /// The `source` that leads to the value.
+    pub(super) fn source(&self) -> Option<Location> {
+        self.elsewhere.as_ref()?.source
     }
 
     /// The value as a text with its place; `None` when it is not one text.
@@ -83,16 +94,19 @@ impl<'r> Checked<'r> {
         given.map(|given| (given.slot, &given.value))
     }
 
-    /// The values of the class's own properties, and where all are given.
-    pub(super) fn into_values(mut self) -> (Vec<(String, PropertyValue)>, Vec<Given<'r>>) {
+    /// The values of the class's own properties, and again those of them that are not one text in the property itself: for their places.
+    pub(super) fn into_values(self) -> (Vec<(String, PropertyValue)>, Vec<Given<'r>>) {
         let mut values = Vec::with_capacity(self.given.len());
-        for given in &mut self.given {
-            if let Some(own) = given.own {
-                let value = std::mem::replace(&mut given.value, PropertyValue::Text(String::new()));
-                values.push((own.name.clone(), value));
+        let mut elsewhere = Vec::new();
+        for mut given in self.given {
+            let Some(own) = given.own else { continue };
+            let value = std::mem::replace(&mut given.value, PropertyValue::Text(String::new()));
+            values.push((own.name.clone(), value));
+            if given.elsewhere.is_some() {
+                elsewhere.push(given);
             }
         }
-        (values, self.given)
+        (values, elsewhere)
     }
 
     /// The values of the properties of tasks.
@@ -192,11 +206,11 @@ pub(super) fn check<'a>(
             let one = Diagnostic::new(&codes::MANY_VALUES, many.location, message);
             report.push(one.help("remove `many`"));
         }
-        match value(member, (at, property), (place, slot), parameters, values, report) {
-            Ok(None) => unset.push(&property.name),
-            Ok(Some(value)) => {
-                if let Some(described) = giver.described {
-                    described::value(described, &property.name, &value, report);
+        match add(&mut given, member, (at, property), (place, slot), parameters, values, report) {
+            Ok(false) => unset.push(&property.name),
+            Ok(true) => {
+                if let (Some(described), Some(value)) = (giver.described, given.last()) {
+                    described::value(described, &property.name, value, report);
                 }
                 // What lacks the index as the name does, which is reported, can be anything.
                 if member.is_partial
@@ -204,7 +218,6 @@ pub(super) fn check<'a>(
                 {
                     unsure.push(place);
                 }
-                given.push(value);
             }
             Err(()) => {
                 if property.only_text().is_some_and(|text| has_expression(text)) {
@@ -279,15 +292,16 @@ fn meant(name: &str, slots: &Slots<'_>, given: &[Given<'_>]) -> Vec<usize> {
     numbers.map(|(place, _)| place).collect()
 }
 
-/// The value of a property, which stands `at` this place of the component's own; `None` when its `source` has none.
-fn value<'a>(
+/// Adds the value of a property, which stands `at` this place of the component's own; `false` when its `source` has none.
+fn add<'a>(
+    given: &mut Vec<Given<'a>>,
     member: &Member<'a>,
     (at, property): (usize, &'a Property),
     slot: (usize, &Slot<'a>),
     parameters: &mut Parameters<'a>,
     values: &mut Values<'a>,
     report: &mut Report<'_>,
-) -> Result<Option<Given<'a>>, ()> {
+) -> Result<bool, ()> {
     if let Some(text) = property.only_text().filter(|_| slot.1.takes_text() && !member.is_partial) {
         let used = Use { property: property.tag(), source: None };
         let path = Path { outer: None, name: &property.name };
@@ -297,22 +311,17 @@ fn value<'a>(
         }
         let value = PropertyValue::Text(text.as_str().to_owned());
         let place = text.location;
-        return Ok(Some(Given {
-            slot: slot.0,
-            own: slot.1.own,
-            value,
-            place,
-            more: Vec::new(),
-            source: None,
-        }));
+        given.push(Given { slot: slot.0, own: slot.1.own, value, place, elsewhere: None });
+        return Ok(true);
     }
     let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
     let Found { raw: found, source } = parameters.taken(place, property, report)?;
     if source.is_none() && property.source().is_some() && found.0.is_empty() {
-        return Ok(None);
+        return Ok(false);
     }
     let used = Use { property: source.unwrap_or(property.tag()), source };
-    converted(property, found, used, slot, values, report).map(Some)
+    given.push(converted(property, found, used, slot, values, report)?);
+    Ok(true)
 }
 
 /// What was found for a property, as the class takes it.
@@ -333,7 +342,8 @@ fn converted<'r>(
         [Some(one), None] | [None, Some(one)] => values.convert(found, path, &[one], used, report),
         [None, None] => None,
     };
-    Ok(Given { slot, own: declared.own, value: value.ok_or(())?, place, more, source: used.source })
+    let elsewhere = Some(Box::new(Elsewhere { more, source: used.source }));
+    Ok(Given { slot, own: declared.own, value: value.ok_or(())?, place, elsewhere })
 }
 
 /// Checks that what a component gives the composite that implements it are properties of that, of types that fit.

@@ -43,8 +43,8 @@ pub(super) fn check<'s>(
     if fleet.scopes.iter().any(|scope| scope.is_faulty) {
         miss(&mut missing, None);
     }
-    let mut subjects: Vec<Subject<'s>> = Vec::new();
-    let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> = Vec::new();
+    let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> =
+        Vec::with_capacity(fleet.members.len());
     for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
         let class = fleet.class_of(place, classes);
         // Of two components of one name nobody can say which is meant.
@@ -57,41 +57,47 @@ pub(super) fn check<'s>(
             continue;
         };
         places.push(Some(parts.len()));
-        subjects.push(Subject { name: member.path(), ..resolved.subject(member) });
         parts.push((place, resolved, class));
     }
-    let Some(first) = subjects.first().copied() else { return };
+    let subject = |index: usize| {
+        let (place, resolved, _) = parts.get(index)?;
+        let member = &fleet.members[*place];
+        Some(Subject { name: member.path(), ..resolved.subject(member) })
+    };
+    let Some(first) = subject(0) else { return };
     let is_whole = missing.is_empty();
     if has_open_wires {
         let open = parts.iter().filter(|(place, ..)| wiring.of(*place).any(<[_]>::is_empty));
         open.for_each(|(.., class)| miss(&mut missing, Some(class)));
     }
     let mut lists = Lists::default();
-    let views: Vec<ComponentView<'_>> = parts
-        .iter()
-        .zip(&subjects)
-        .map(|((place, resolved, class), subject)| {
-            let declaration = class.class.declaration();
-            let references = class.references.iter().zip(wiring.of(*place));
-            let wires = references.flat_map(|(reference, providers)| {
-                let known = providers.iter().filter_map(|provider| places[provider.member]);
-                known.map(|place| (reference.name.as_str(), place))
-            });
-            let Lists { extends, publishes, loops, .. } = lists.of(class, resolved).clone();
-            ComponentView {
-                path: subject.name,
-                class: &declaration.name,
-                declaration: class.class.declaration_json(),
-                extends,
-                values: &resolved.values,
-                period: resolved.task.as_ref().map(Settled::period),
-                has_broker: resolved.task.as_ref().is_some_and(Settled::has_broker),
-                publishes,
-                loops,
-                wires: wires.collect(),
-            }
-        })
-        .collect();
+    let mut wires: Vec<(&str, usize)> = Vec::new();
+    let mut ends = Vec::with_capacity(parts.len());
+    for (place, _, class) in &parts {
+        for (reference, providers) in class.references.iter().zip(wiring.of(*place)) {
+            let known = providers.iter().filter_map(|provider| places[provider.member]);
+            wires.extend(known.map(|place| (reference.name.as_str(), place)));
+        }
+        ends.push(wires.len());
+    }
+    let mut start = 0;
+    let views = parts.iter().zip(ends).map(|((place, resolved, class), end)| {
+        let declaration = class.class.declaration();
+        let Lists { extends, publishes, loops, .. } = lists.of(class, resolved).clone();
+        ComponentView {
+            path: fleet.members[*place].path(),
+            class: &declaration.name,
+            declaration: class.class.declaration_json(),
+            extends,
+            values: &resolved.values,
+            period: resolved.task.as_ref().map(Settled::period),
+            has_broker: resolved.task.as_ref().is_some_and(Settled::has_broker),
+            publishes,
+            loops,
+            wires: &wires[std::mem::replace(&mut start, end)..end],
+        }
+    });
+    let views: Vec<ComponentView<'_>> = views.collect();
     let view = FleetView::new(&views).without(&missing);
     for rule in rules.filter(|rule| rule.judges_parts() || is_whole) {
         let findings = match rule.check(&view) {
@@ -105,13 +111,14 @@ pub(super) fn check<'s>(
         };
         for finding in &findings {
             let severity = finding.own_severity().unwrap_or(rule.code().severity);
-            let named = |index: usize| subjects.get(index).copied();
-            let own = finding.place().component_index().and_then(named).unwrap_or(first);
+            let own = finding.place().component_index().and_then(subject).unwrap_or(first);
             match finding.place().component_index().and_then(|index| parts.get(index)) {
                 Some((place, ..)) => report.about(&fleet.members[*place]),
                 None => report.about_all(),
             }
-            let Some(one) = diagnostic(rule.code(), severity, finding, own, &named, report) else { continue };
+            let Some(one) = diagnostic(rule.code(), severity, finding, own, &subject, report) else {
+                continue;
+            };
             // What comes of a value that two components share is not told beside that, unless somebody lets that pass.
             let is_echo = report.has_told(&codes::NOT_UNIQUE, one.location);
             if !is_echo || report.tells_echoes {

@@ -35,17 +35,17 @@ pub(super) struct Resolved<'a> {
 struct Changed<'a> {
     place: usize,
     element: &'a Loop,
-    /// Where the composite gives its values.
-    written: Vec<Given<'a>>,
+    /// Its values that are not one text in the composite, for their places.
+    elsewhere: Vec<Given<'a>>,
 }
 
 impl Resolved<'_> {
     /// Those that the composite says something about, for the judgement of their constructors: the others are as their class has them.
     pub(super) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
         self.changed.iter().map(|one| {
-            let (spec, name, written) = (&self.specs[one.place], &one.element.name, &one.written);
-            let subject = Subject { what: "loop", name, at: name.location, values: &spec.values, written };
-            (&*spec.class, subject)
+            let (spec, Loop { name, properties, .. }) = (&self.specs[one.place], one.element);
+            let (values, elsewhere) = (&spec.values, &one.elsewhere);
+            (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, elsewhere })
         })
     }
 }
@@ -149,9 +149,9 @@ fn resolved<'a>(
             if !checked.is_sound {
                 continue;
             }
-            let written;
-            (spec.values, written) = checked.into_values();
-            changed.push(Changed { place: specs.len(), element, written });
+            let elsewhere;
+            (spec.values, elsewhere) = checked.into_values();
+            changed.push(Changed { place: specs.len(), element, elsewhere });
         }
         specs.push(spec);
     }
