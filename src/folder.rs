@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use saoms_core::check::Options;
 use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
-use saoms_core::load::{Finder, FolderFleet};
+use saoms_core::load::{Finder, FolderFleet, SideFile};
 use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
 use saoms_core::source::{Sources, Span};
@@ -92,6 +92,7 @@ pub(crate) fn checked_each<T>(
         arguments.files.iter().cloned().partition(|path| path.is_dir());
     let mut finder = Finder::new(sources.open().clone());
     let mut fleets = Vec::new();
+    let (files, beside) = side_files(files, arguments.max_size, &mut finder, &mut sources, &mut diagnostics);
     if !files.is_empty() {
         fleets.push(FolderFleet { files, is_deployable: true, is_exported: false });
     }
@@ -100,6 +101,10 @@ pub(crate) fn checked_each<T>(
     }
     let options = options(arguments, asked, &mut sources, &mut diagnostics);
     let options = Options { shared_settings: fleets.len() > 1, ..options };
+    if !beside.component_types().is_empty() {
+        let registry = registry(&arguments.plugins, &arguments.files)?;
+        _ = check(&beside, &registry, &options, &sources, &mut diagnostics);
+    }
     let mut merged = Merged::default();
     let count = fleets.len();
     merged.add(diagnostics.into_all(), true, &sources);
@@ -134,6 +139,26 @@ pub(crate) fn checked_each<T>(
     let diagnostics = merged.finish(count);
     let checked = Checked { made: None, contribution, sources, diagnostics };
     Ok(Several { checked, made, fleets: count })
+}
+
+/// Checks those among files that are no composites but stand beside them; gives the others, and a contribution of the component types.
+fn side_files(
+    mut files: Vec<PathBuf>,
+    max_size: u64,
+    finder: &mut Finder,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> (Vec<PathBuf>, Contribution) {
+    let mut beside = Contribution::default();
+    files.retain(|path| {
+        let found = finder.load_side_file(path, max_size, sources, diagnostics);
+        if let Some(SideFile::ComponentType(Some(made))) = found {
+            beside.add_component_type(*made);
+            return false;
+        }
+        found.is_none()
+    });
+    (files, beside)
 }
 
 /// Whether it is for those who use a composite to mend: it is no fault where these may be elsewhere.

@@ -194,3 +194,44 @@ fn the_only_composite_of_a_library_may_lack_what_others_give_it() {
     assert_eq!(described("<export namespace=\"urn:a\"/>"), 0);
     assert_eq!(described("<export namespace=\"urn:a\"/><deployable composite=\"a:hall\"/>"), 2);
 }
+
+#[test]
+fn files_beside_composites_are_checked_by_themselves() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    let sca = "xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"";
+    write(
+        "definitions.xml",
+        &format!("<definitions {sca} targetNamespace=\"urn:a\"><intent name=\"safe\"/></definitions>"),
+    );
+    write("sca-contribution.xml", &format!("<contribution {sca}/>"));
+    write("Radar.componentType", &format!("<componentType {sca}><service name=\"eye\"/></componentType>"));
+    let files = ["check", "definitions.xml", "sca-contribution.xml", "Radar.componentType"];
+    let (code, out, err) = saoms(folder.path(), &files, "");
+    assert_eq!((code, out.as_str(), err.as_str()), (0, "0 errors, 0 warnings\n", ""));
+    write(
+        "definitions.xml",
+        &format!("<definitions {sca} targetNamespace=\"urn:a\"><intent/></definitions>"),
+    );
+    write(
+        "sca-contribution.xml",
+        &format!("<contribution {sca} xmlns:a=\"urn:a\"><deployable/></contribution>"),
+    );
+    let two = "<service name=\"eye\"/><service name=\"eye\"/><reference/>";
+    write("Radar.componentType", &format!("<componentType {sca}>{two}</componentType>"));
+    write("a.composite", &composite("a", ""));
+    let (code, out, err) = saoms(folder.path(), &[&files[..], &["a.composite"]].concat(), "");
+    assert_eq!((code, out.as_str()), (2, "0 components: 4 errors, 0 warnings\n"));
+    for told in [
+        "definitions.xml:1:",
+        "sca-contribution.xml:1:",
+        "Radar.componentType:1:",
+        "S2043",
+        "S1008, ASM10003",
+    ] {
+        assert!(err.contains(told), "{told}: {err}");
+    }
+    // Nothing of it can run.
+    let (code, _, err) = saoms(folder.path(), &["run", "definitions.xml"], "");
+    assert!(code == 2 && err.contains("this holds policies; name a composite"), "{err}");
+}

@@ -13,7 +13,8 @@ use crate::xml::Element;
 /// Elements that SCA 1.0 has, and 1.1 has no longer.
 const ONLY_1_0: &[&str] = &["operation"];
 /// Elements that SCA 1.1 added.
-const ONLY_1_1: &[&str] = &["requires", "policySetAttachment", "documentation", "extensions"];
+const ONLY_1_1: &[&str] =
+    &["requires", "policySetAttachment", "documentation", "extensions", "externalAttachment"];
 
 /// Whose vocabulary an element belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +93,8 @@ impl Loader<'_> {
             _ => vocabulary::children(parent).collect(),
         };
         let is_own = family == Family::Own && OWN_ELEMENTS.contains(&name);
-        let is_misplaced = is_own || (family == Family::Sca && vocabulary::is_known(name));
+        let is_of_sca = vocabulary::is_known(name) || vocabulary::IN_DEFINITIONS.contains(&name);
+        let is_misplaced = is_own || (family == Family::Sca && is_of_sca);
         let code = if is_misplaced { &codes::MISPLACED_ELEMENT } else { &codes::UNKNOWN_ELEMENT };
         let location = element.name_location();
         if self.is_swallowed(element) || self.diagnostics.skip(code, Severity::Error, location) {

@@ -10,11 +10,12 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::shelf::Shelf;
+use super::definitions;
+use super::shelf::{Shelf, is_of_definitions};
 use super::vocabulary::XML_SCHEMA;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::model::{Composite, OutsideKind, OutsideName, Version};
-use crate::source::{FileId, OpenTexts};
+use crate::source::{FileId, OpenTexts, Sources, identity};
 use crate::xml::{self, Element};
 
 /// Files that are looked at, and the bytes of the largest: where there is more, nothing is held against them.
@@ -32,6 +33,8 @@ pub(super) struct Declared {
     known: HashMap<PathBuf, Rc<Names>>,
     /// By the files that declare them: those of a contribution are the same for all its folders.
     of_files: HashMap<Rc<[PathBuf]>, Rc<Names>>,
+    /// The files of definitions that were checked.
+    checked: HashSet<PathBuf>,
 }
 
 /// Names by what they are of and their namespace.
@@ -43,22 +46,41 @@ struct Names {
 }
 
 impl Declared {
-    /// Reports names of a composite in `folder` that are not among those of their namespace.
+    /// Checks files of definitions that belong together, those that were not checked before. Whether there was one.
+    pub(super) fn definitions(
+        &mut self,
+        files: &[PathBuf],
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> bool {
+        let new = files.iter().filter(|path| is_of_definitions(path) && self.checked.insert(identity(path)));
+        let new: Vec<PathBuf> = new.cloned().collect();
+        definitions::check(&new, max_size, sources, diagnostics)
+    }
+
+    /// Reports names of a composite in `folder` that are not among those of their namespace, and what is wrong with the definitions that are there.
     pub(super) fn check(
         &mut self,
         composite: &Composite,
-        folder: &Path,
-        (shelf, open): (&mut Shelf, &OpenTexts),
+        (folder, max_size): (&Path, u64),
+        shelf: &mut Shelf,
+        sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) {
         if composite.outside.is_empty() {
             return;
         }
-        let names = self.known.entry(folder.to_owned()).or_insert_with(|| {
-            let names = self.of_files.entry(shelf.declaring(folder));
-            let made = names.or_insert_with_key(|files| Rc::new(Names::of(files, open).unwrap_or_default()));
-            Rc::clone(made)
-        });
+        if !self.known.contains_key(folder) {
+            let files = shelf.declaring(folder);
+            self.definitions(&files, max_size, sources, diagnostics);
+            let open = sources.open();
+            let made = self.of_files.entry(files);
+            let made = made.or_insert_with_key(|files| Rc::new(Names::of(files, open).unwrap_or_default()));
+            let made = Rc::clone(made);
+            self.known.insert(folder.to_owned(), made);
+        }
+        let names = &self.known[folder];
         for one in composite.outside.iter().filter(|_| !names.all.is_empty()) {
             let Some((namespace, kind, local)) = meant(one, composite) else { continue };
             let key = (kind, namespace);
@@ -166,7 +188,7 @@ impl Names {
             self.schema(root, &target);
         } else if WSDL.contains(&namespace) {
             self.wsdl(root, &target);
-        } else if Version::from_namespace(namespace).is_some() && name == "definitions" {
+        } else if definitions::is_of_policies(root) {
             self.definitions(root, &target);
         }
     }

@@ -103,7 +103,12 @@ impl Description {
     }
 
     /// Reads a description.
-    fn read(path: PathBuf, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
+    pub(super) fn read(
+        path: PathBuf,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Self {
         let mut made = Self { path, ..Self::default() };
         // What is wrong with it is told once, however often it is read.
         let shown = made.path.display().to_string();

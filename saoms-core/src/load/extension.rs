@@ -11,7 +11,7 @@ use crate::model::{OutsideKind, Version};
 use crate::xml::{Attribute, Element};
 
 /// The namespaces of what Tuscany adds to SCA.
-const TUSCANY: [&str; 2] =
+pub(super) const TUSCANY: [&str; 2] =
     ["http://tuscany.apache.org/xmlns/sca/1.0", "http://tuscany.apache.org/xmlns/sca/1.1"];
 
 /// The attributes that an element has to have.
@@ -327,7 +327,7 @@ impl Loader<'_> {
     }
 
     /// An attribute that can have one of these values.
-    fn one_of(&mut self, element: Element<'_>, name: &str, known: &[&str], is_exact: bool) {
+    pub(super) fn one_of(&mut self, element: Element<'_>, name: &str, known: &[&str], is_exact: bool) {
         let Some(attribute) = element.attribute(name) else { return };
         let text = attribute.trimmed();
         let is =

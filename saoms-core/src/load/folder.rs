@@ -47,7 +47,7 @@ impl Finder {
     ) -> Vec<FolderFleet> {
         let shelf = &mut self.shelf;
         shelf.turn_to_folder();
-        let mut fleets = Vec::new();
+        let (mut fleets, mut has_definitions) = (Vec::new(), false);
         let mut waiting = vec![folder.to_owned()];
         while let Some(root) = waiting.pop() {
             let (files, mut inner) = shelf.contribution(&root);
@@ -56,6 +56,12 @@ impl Finder {
             let description = Description::of(&root, max_size, sources, diagnostics);
             let contribution = Files::read(files, max_size, sources);
             contribution.repeated(describes(&root), max_size, sources, diagnostics);
+            let definitions = shelf.definitions(&root);
+            // Without a description nobody says that they belong together.
+            let together = if describes(&root) { definitions.len().max(1) } else { 1 };
+            for files in definitions.chunks(together) {
+                has_definitions |= self.declared.definitions(files, max_size, sources, diagnostics);
+            }
             let deployables = description.iter().flat_map(|description| &description.deployables);
             let mut deployed: Vec<Option<PathBuf>> =
                 deployables.map(|one| contribution.find(one, shelf, &root, diagnostics)).collect();
@@ -65,9 +71,27 @@ impl Finder {
             );
             contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
         }
-        let is_empty = fleets.is_empty() && !diagnostics.has_errors();
+        let is_empty = fleets.is_empty() && !has_definitions && !diagnostics.has_errors();
         unlisted(folder, is_empty, shelf, sources, diagnostics);
         fleets
+    }
+
+    /// Checks one description of the contribution in a folder: what is written in it, and whether what it calls deployable is there.
+    pub(super) fn describe(
+        &mut self,
+        path: &Path,
+        root: &Path,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) {
+        self.shelf.turn_to_folder();
+        let description = Description::read(path.to_owned(), max_size, sources, diagnostics);
+        let (files, _) = self.shelf.contribution(root);
+        let contribution = Files::read(files, max_size, sources);
+        for deployable in &description.deployables {
+            _ = contribution.find(deployable, &mut self.shelf, root, diagnostics);
+        }
     }
 }
 
@@ -184,7 +208,9 @@ impl Files {
             deployable.namespace.as_ref().is_none_or(|namespace| namespace == one.namespace())
         };
         let message = format!("the contribution has no composite {name}");
-        let one = Diagnostic::new(&codes::DEPLOYABLE_NOT_FOUND, at, message);
+        // Where there are none at all, they are put beside it by those who make the contribution of this folder and others.
+        let severity = if self.paths.is_empty() { Severity::Warning } else { Severity::Error };
+        let one = Diagnostic::new(&codes::DEPLOYABLE_NOT_FOUND, at, message).severity(severity);
         // What else is wrong with the name is mended with it.
         diagnostics.withdraw(&codes::ATTRIBUTE_VALUE, at);
         let one = match deployable.namespace {
@@ -200,6 +226,8 @@ impl Files {
                 "" => format!("it has {} in no namespace", quoted(local)),
                 namespace => format!("it has {} in the namespace {}", quoted(local), quoted(namespace)),
             })
+        } else if all.is_empty() {
+            one.help("it has none at all: is it put together from several folders?")
         } else if names.clone().next().is_none() {
             one.help("it has none of this namespace")
         } else {

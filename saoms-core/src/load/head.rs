@@ -1,4 +1,4 @@
-//! The first tags of composites.
+//! The first tags of files.
 
 use std::borrow::Cow;
 use std::fs::{self, File};
@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use quick_xml::Reader;
-use quick_xml::events::Event;
+use quick_xml::events::{BytesStart, Event};
 
 use crate::source::OpenTexts;
 
@@ -31,6 +31,31 @@ thread_local! {
 pub(super) fn head(path: &Path, open: &OpenTexts) -> Option<Head> {
     #[cfg(test)]
     LOOKED_AT.with(|count| count.set(count.get() + 1));
+    first_tag(path, open, |tag| {
+        if tag.local_name().as_ref() != "composite" {
+            return None;
+        }
+        let namespace = value(tag, "targetNamespace").unwrap_or_default();
+        Some(Head { path: path.to_owned(), namespace, local: value(tag, "name")? })
+    })
+}
+
+/// The local name of the first tag of a file and its namespace, as far as the tag says it.
+pub(super) fn root(path: &Path, open: &OpenTexts) -> Option<(String, Option<String>)> {
+    first_tag(path, open, |tag| {
+        let prefix = tag.name().prefix().map(|prefix| format!("xmlns:{}", prefix.as_ref()));
+        let namespace = value(tag, prefix.as_deref().unwrap_or("xmlns"));
+        Some((tag.local_name().as_ref().to_owned(), namespace))
+    })
+}
+
+fn value(tag: &BytesStart<'_>, name: &str) -> Option<String> {
+    let found = tag.try_get_attribute(name).ok().flatten()?;
+    quick_xml::escape::unescape(&found.value).ok().map(|text| text.trim().to_owned())
+}
+
+/// What is made of the first tag of a file.
+fn first_tag<T>(path: &Path, open: &OpenTexts, make: impl FnOnce(&BytesStart<'_>) -> Option<T>) -> Option<T> {
     let mut bytes = Vec::new();
     let text = if let Some(open) = open.get(path) {
         Cow::Borrowed(&**open)
@@ -45,17 +70,7 @@ pub(super) fn head(path: &Path, open: &OpenTexts) -> Option<Head> {
     let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
     loop {
         match reader.read_event().ok()? {
-            Event::Start(tag) | Event::Empty(tag) => {
-                if tag.local_name().as_ref() != "composite" {
-                    return None;
-                }
-                let value = |name: &str| {
-                    let found = tag.try_get_attribute(name).ok().flatten()?;
-                    quick_xml::escape::unescape(&found.value).ok().map(|text| text.trim().to_owned())
-                };
-                let namespace = value("targetNamespace").unwrap_or_default();
-                return Some(Head { path: path.to_owned(), namespace, local: value("name")? });
-            }
+            Event::Start(tag) | Event::Empty(tag) => return make(&tag),
             Event::Eof => return None,
             _ => {}
         }

@@ -87,7 +87,7 @@ impl Finder {
                 continue;
             }
             let folder = path.parent().unwrap_or(Path::new(""));
-            self.declared.check(composite, folder, (&mut self.shelf, sources.open()), diagnostics);
+            self.declared.check(composite, (folder, max_size), &mut self.shelf, sources, diagnostics);
             let root = self.shelf.root(folder);
             let mut files = HashMap::new();
             for Described { written, paths, package, is_needed } in described {

@@ -24,6 +24,8 @@ pub(super) const DESCRIPTIONS: [&str; 3] =
 pub(super) const GENERATED: &str = "META-INF/sca-contribution-generated.xml";
 /// The folder in a contribution whose composites are deployable, as Apache Tuscany has it.
 pub(super) const DEPLOYABLES: &str = "META-INF/sca-deployables";
+/// The name of files of intents and policy sets.
+const DEFINITIONS: &str = "definitions.xml";
 /// Folders that hold what tools made.
 const SKIPPED: &[&str] = &["target", "node_modules"];
 
@@ -327,6 +329,20 @@ impl Shelf {
         all
     }
 
+    /// The files of definitions in a contribution, sorted.
+    pub(super) fn definitions(&mut self, root: &Path) -> Vec<PathBuf> {
+        let (mut all, mut waiting) = (Vec::new(), vec![root.to_owned()]);
+        while let Some(next) = waiting.pop() {
+            if next == root || !describes(&next) {
+                let listing = self.listing(&next);
+                all.extend(listing.declaring.iter().filter(|path| is_of_definitions(path)).cloned());
+                waiting.extend_from_slice(&listing.folders);
+            }
+        }
+        all.sort_unstable();
+        all
+    }
+
     /// Whether every file was looked at.
     pub(super) fn is_complete(&self) -> bool {
         !self.is_cut
@@ -459,5 +475,10 @@ pub(super) fn root(folder: &Path) -> PathBuf {
 
 /// Whether a file of this name may declare what composites name.
 fn is_declaring(name: &str) -> bool {
-    name.ends_with(".wsdl") || name.ends_with(".xsd") || name == "definitions.xml"
+    name.ends_with(".wsdl") || name.ends_with(".xsd") || name == DEFINITIONS
+}
+
+/// Whether a file is called as those of definitions are.
+pub(super) fn is_of_definitions(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name == DEFINITIONS)
 }

@@ -190,7 +190,7 @@ impl Contribution {
     }
 
     /// Adds a component type; its place.
-    pub(crate) fn add_component_type(&mut self, component_type: ComponentType) -> usize {
+    pub fn add_component_type(&mut self, component_type: ComponentType) -> usize {
         self.component_types.push(component_type);
         self.component_types.len() - 1
     }

@@ -110,7 +110,7 @@ fn example(code: &Code) -> Result<String, String> {
         id @ ("S2043" | "S2044" | "S2047" | "S2052" | "S2053" | "S2054" | "S2055" | "S2056") => {
             from_folder(id)
         }
-        "S2051" => contribution(),
+        id @ ("S2051" | "S2057" | "S2058") => contribution(id),
         id => from_files(id),
     };
     let found: Vec<Diagnostic> = diagnostics.iter().filter(|one| one.code == code).cloned().collect();
@@ -150,9 +150,9 @@ fn from_folder(id: &str) -> (Vec<Diagnostic>, Sources) {
 }
 
 /// Looks at the folder of a contribution.
-fn contribution() -> (Vec<Diagnostic>, Sources) {
+fn contribution(id: &str) -> (Vec<Diagnostic>, Sources) {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    load_folder(&folder().join("S2051"), MAX_SIZE, &mut sources, &mut diagnostics);
+    load_folder(&folder().join(id), MAX_SIZE, &mut sources, &mut diagnostics);
     (diagnostics.into_sorted(), by_file_name(&sources))
 }
 

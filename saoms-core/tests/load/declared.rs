@@ -61,7 +61,7 @@ fn schema(inside: &str) -> String {
 fn files() -> Vec<(&'static str, String)> {
     let wsdl = "<definitions xmlns='http://schemas.xmlsoap.org/wsdl/' targetNamespace='urn:t'><portType name='Desk'/><binding name='B'/><service name='Shop'><port name='Port'/></service></definitions>";
     let definitions = format!(
-        "<definitions xmlns='{OASIS}' targetNamespace='urn:t'><intent name='safe'/><policySet name='ps' provides='t:safe'/></definitions>"
+        "<definitions xmlns='{OASIS}' xmlns:t='urn:t' targetNamespace='urn:t'><intent name='safe'/><policySet name='ps' provides='t:safe'/></definitions>"
     );
     vec![
         ("in/order.xsd", schema("<xsd:complexType name='Order'/><xsd:element name='order'/>")),

@@ -4,6 +4,7 @@
 
 mod corpus;
 mod declared;
+mod definitions;
 mod files;
 mod folders;
 mod format;

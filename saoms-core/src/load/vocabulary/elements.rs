@@ -14,7 +14,7 @@ pub(super) const fn old(name: &'static str, holds: Holds, doc: &'static str) -> 
     Known { only_1_0: true, ..known(name, holds, doc) }
 }
 
-const fn new(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+pub(super) const fn new(name: &'static str, holds: Holds, doc: &'static str) -> Known {
     Known { only_1_1: true, ..known(name, holds, doc) }
 }
 

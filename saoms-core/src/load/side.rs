@@ -1,0 +1,57 @@
+//! The files of a contribution that are no composites, each by itself.
+
+use std::path::Path;
+
+use super::definitions;
+use super::finder::Finder;
+use super::head;
+use super::shelf::{describes, is_of_definitions};
+use super::vocabulary::{CONTRIBUTION, DEFINITIONS};
+use super::{load_component_type, read};
+use crate::diagnostic::Diagnostics;
+use crate::model::{ComponentType, Version};
+use crate::source::{Sources, identity};
+
+/// A file beside composites.
+#[derive(Debug)]
+pub enum SideFile {
+    /// What composites need of it is known when they are checked: what was wrong is reported.
+    Checked,
+    /// The description of an implementation, which the checker holds to itself; `None` where it could not be read.
+    ComponentType(Option<Box<ComponentType>>),
+}
+
+impl Finder {
+    /// Checks a file that is no composite but one beside them: definitions of policies, the description of a contribution, or a component type. `None`
+    /// where its first tag is none of these, and where its name ends with `.composite`.
+    pub fn load_side_file(
+        &mut self,
+        path: &Path,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<SideFile> {
+        if path.extension().is_some_and(|ending| ending == "composite") {
+            return None;
+        }
+        let (name, namespace) = head::root(path, sources.open())?;
+        let is_of_sca = namespace.is_some_and(|namespace| Version::from_namespace(&namespace).is_some());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        if name == DEFINITIONS.name && (is_of_sca || is_of_definitions(path)) {
+            let root = self.shelf.root(folder);
+            let mut others = if describes(&root) { self.shelf.definitions(&root) } else { Vec::new() };
+            others.retain(|other| identity(other) != identity(path));
+            definitions::check_one(path, &others, max_size, sources, diagnostics);
+        } else if name == CONTRIBUTION.name {
+            let above = folder.parent().filter(|_| folder.ends_with("META-INF"));
+            self.describe(path, above.unwrap_or(folder), max_size, sources, diagnostics);
+        } else if name == "componentType" {
+            let file = read(path, max_size, sources, diagnostics);
+            let made = file.and_then(|file| load_component_type(file, sources, diagnostics));
+            return Some(SideFile::ComponentType(made.map(Box::new)));
+        } else {
+            return None;
+        }
+        Some(SideFile::Checked)
+    }
+}
