@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use saoms_core::xml::escaped;
+
 /// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from outside goes through
 /// [`escaped`].
 #[derive(Default)]
@@ -66,23 +68,6 @@ impl Svg {
             self.text.push(' ');
         }
     }
-}
-
-/// A text as it may stand in an attribute or an element. What XML cannot hold becomes U+FFFD.
-pub(crate) fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for sign in text.chars() {
-        match sign {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\t' | '\n' | '\r' => escaped.push(' '),
-            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => escaped.push('\u{fffd}'),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }
 
 /// A length or a coordinate, to a tenth.

@@ -1,7 +1,9 @@
 //! The signs of a picture, each in a square of a given size around a point.
 
+use saoms_core::xml::escaped;
+
 use super::palette::Look;
-use crate::svg::{Svg, escaped, number};
+use crate::svg::{Svg, number};
 
 /// What happened to a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

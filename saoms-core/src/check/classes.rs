@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::fleet::{Fleet, Kind};
-use super::report::{Report, escaped, list, replacing};
+use super::report::{Report, list, replacing};
 use super::slots::Slots;
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
@@ -17,6 +17,7 @@ use crate::registry::{
     TopicDeclaration,
 };
 use crate::source::{Sources, Text};
+use crate::xml::escaped;
 
 /// How many names are offered in place of one that a library does not have.
 const OFFERED: usize = 3;

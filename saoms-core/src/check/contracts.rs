@@ -6,12 +6,12 @@ use std::fmt;
 use super::classes::ClassIndex;
 use super::fleet::Fleet;
 use super::offer::Offer;
-use super::report::{Report, escaped, replacing};
+use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, codes, quoted};
 use crate::model::{Binding, Component, Interface, InterfaceKind, Multiplicity, Part, Reference, Service};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
-use crate::xml::Document;
+use crate::xml::{Document, escaped};
 
 /// Checks the services and references of every component.
 pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
@@ -103,7 +103,8 @@ fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], repo
             if let Some(inner) = inner {
                 let message = format!("{whose} has no reference {}", quoted(name));
                 let one = Diagnostic::new(&codes::UNKNOWN_REFERENCE, name.location, message);
-                let promoting = format!("`<reference name=\"{name}\" promote=\"COMPONENT/reference\"/>`");
+                let promoting =
+                    format!("`<reference name=\"{}\" promote=\"COMPONENT/reference\"/>`", escaped(name));
                 let help =
                     format!("it has those of its components that it promotes: write {promoting} in it");
                 report.push(one.label(inner.main().name.location, "this one").help(help));

@@ -17,6 +17,7 @@ use super::written::type_and_element;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Component, ComponentType, Multiplicity, Part, Property, Reference, Version};
 use crate::source::{Location, Text};
+use crate::xml::escaped;
 
 impl<'a> Fleet<'a> {
     /// What a file beside the implementation of a component says about it.
@@ -186,7 +187,7 @@ pub(super) fn supplied(component: &Component, described: &ComponentType, report:
             report.push(
                 Diagnostic::new(&codes::PROPERTY_MISSING, component.name.location, message)
                     .label(property.name.location, "declared here, without a value")
-                    .help(format!("add `<property name=\"{}\">...</property>`", property.name)),
+                    .help(format!("add `<property name=\"{}\">...</property>`", escaped(&property.name))),
             );
         }
     }

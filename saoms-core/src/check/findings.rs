@@ -4,10 +4,11 @@ use saoms_api::{Finding, Place, PropertyValue};
 
 use super::fleet::Member;
 use super::properties::Given;
-use super::report::{Report, escaped, replacing};
+use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::model::{Component, Property};
 use crate::source::Location;
+use crate::xml::escaped;
 
 /// A component, or a loop of one, for findings about it.
 #[derive(Clone, Copy)]

@@ -8,13 +8,14 @@ use super::global;
 use super::offer::Side;
 use super::parameters::{Found, Parameters, Place};
 use super::raw::Piece;
-use super::report::{Report, escaped, list, replacing};
+use super::report::{Report, list, replacing};
 use super::target::parts;
 use super::value_type::{self, Match, Typed};
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::hash::Set;
 use crate::model::{Component, ComponentType, ImplementationKind, Multiplicity, Part, Property, Reference};
 use crate::source::{Location, Text};
+use crate::xml::escaped;
 
 /// What a file says of a component that is taken as given.
 #[derive(Clone, Copy)]
@@ -227,7 +228,7 @@ pub(super) fn unwired<'f>(
         };
         report.push(match own {
             Some(_) => one.help("give it a `target`"),
-            None => one.help(format!("add `<reference name=\"{name}\" target=\"...\"/>`")),
+            None => one.help(format!("add `<reference name=\"{}\" target=\"...\"/>`", escaped(name))),
         });
     }
 }

@@ -1,11 +1,12 @@
 //! What is meant by URIs that are written in another way than SCA's.
 
 use super::fleet::Fleet;
-use super::report::{escaped, list, replacing};
+use super::report::{list, replacing};
 use super::target::parts;
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::expression::pattern;
 use crate::source::Text;
+use crate::xml::escaped;
 
 /// What a URI means, as far as that is known, and why it does not say so.
 pub(super) struct Misread {

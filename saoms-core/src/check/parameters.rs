@@ -18,6 +18,7 @@ use super::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
+use crate::xml::escaped;
 
 /// The properties of all composites of a fleet, with their values.
 pub(super) struct Parameters<'a> {
@@ -264,7 +265,8 @@ impl<'a> Parameters<'a> {
         let one = one.label(parameter.property.name.location, "declared here, without a value");
         let Some(owner) = declared.owner else { return one.help(from_outside(parameter.property)) };
         let help = format!(
-            "add `<property name=\"{name}\">...</property>` to the component {}, which the composite implements",
+            "add `<property name=\"{}\">...</property>` to the component {}, which the composite implements",
+            escaped(name),
             quoted(&owner.name)
         );
         one.label(owner.name.location, "gives it none").help(help)
@@ -375,7 +377,9 @@ impl<'a> Parameters<'a> {
                     let message =
                         format!("the property {} of the composite is used by no component", quoted(name));
                     let one = Diagnostic::new(&codes::UNUSED_PROPERTY, name.location, message);
-                    report.push(one.help(format!("a component takes its value with `source=\"${name}\"`")));
+                    report.push(
+                        one.help(format!("a component takes its value with `source=\"${}\"`", escaped(name))),
+                    );
                 }
             }
         }
@@ -455,7 +459,7 @@ fn missing(property: &Property, owner: Option<&Component>, assumes: bool) -> Dia
     );
     Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, owner.name.location, message)
         .label(name.location, "declared here, without a value")
-        .help(format!("add `<property name=\"{name}\">...</property>`"))
+        .help(format!("add `<property name=\"{}\">...</property>`", escaped(name)))
 }
 
 /// How a property of a composite that runs by itself gets a value.

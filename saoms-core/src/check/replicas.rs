@@ -14,7 +14,7 @@ use crate::expression::{
 };
 use crate::model::{Component, Property, Replicas, Table};
 use crate::source::Text;
-use crate::xml::Document;
+use crate::xml::{Document, escaped};
 
 /// Replicas of a fleet in all: a slip of the finger must not take all memory.
 pub(super) const MOST_REPLICAS: u64 = 100_000;
@@ -292,7 +292,7 @@ fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) 
     // What is written in the same way elsewhere, as in an ID, is meant in the same way.
     let texts = component.properties.iter().flat_map(Property::simple_values);
     let places = std::iter::once(name).chain(texts.filter(|text| text.value == name.value));
-    let edits = places.map(|text| Edit { location: text.location, replacement: meant.clone() });
+    let edits = places.map(|text| Edit { location: text.location, replacement: escaped(&meant) });
     report.push(one.suggest_edits(replacing(name, &meant), edits.collect()));
     false
 }
@@ -360,11 +360,7 @@ fn wrong(text: &Text, parts: &Parts, fault: &Fault, names: &Names) -> Diagnostic
     }
     match instead {
         Some(instead) if instead.is_empty() => one.suggest(format!("remove {}", quoted(written)), at, ""),
-        Some(instead) => one.suggest(
-            super::report::replacing(written, instead.trim()),
-            at,
-            super::report::escaped(instead),
-        ),
+        Some(instead) => one.suggest(replacing(written, instead.trim()), at, escaped(instead)),
         None if help.is_none() => one.help("`docs/fleets.md` says what expressions are"),
         None => one,
     }

@@ -10,7 +10,7 @@ use crate::diagnostic::{
 };
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
-use crate::xml::Writing;
+use crate::xml::{Writing, escaped};
 
 /// How many diagnostics are taken back.
 const WITHDRAWALS: usize = 1000;
@@ -314,21 +314,6 @@ impl Parts {
 /// What a suggestion says.
 pub(super) fn replacing(name: &str, meant: &str) -> String {
     format!("replace {} with {}", quoted(name), quoted(meant))
-}
-
-/// A text as it can stand in an attribute or an element.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&apos;"),
-            _ => out.push(character),
-        }
-    }
-    out
 }
 
 /// Names for a line of help: `a`, `b` and `c`, at most thirty of them.

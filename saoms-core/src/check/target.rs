@@ -7,13 +7,14 @@ use super::classes::{ClassIndex, Fitting};
 use super::fleet::{Fleet, Kind};
 use super::misread::{inside, misread};
 use super::offer::{Offer, Side};
-use super::report::{Report, escaped, list, replacing};
+use super::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
 use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
 
+use crate::xml::escaped;
 /// A service of a component of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Provider {

@@ -17,6 +17,7 @@ use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, Part};
 use crate::registry::TopicDeclaration;
 use crate::source::{Location, Text};
+use crate::xml::escaped;
 
 /// How a component runs, and where its topics got their names.
 pub(super) struct Task<'a> {
@@ -188,7 +189,7 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
         .help("an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535");
     report.push(match fault.instead {
         Some(instead) if instead.is_empty() => one.suggest("remove it", at, instead),
-        Some(instead) => one.suggest(format!("replace it with {}", quoted(&instead)), at, instead),
+        Some(instead) => one.suggest(format!("replace it with {}", quoted(&instead)), at, escaped(&instead)),
         None => one,
     });
 }
@@ -219,7 +220,7 @@ fn renames<'a>(
                 one = one.help("write `OLD,new` for each topic, and `::` between two of them");
                 let pair = text.get(fault.at.clone()).unwrap_or_default();
                 if let Some(meant) = rename::pairs_of(pair) {
-                    one = one.suggest(replacing(pair, &meant), at, meant);
+                    one = one.suggest(replacing(pair, &meant), at, escaped(&meant));
                 }
             }
         }

@@ -10,6 +10,7 @@ use super::similar::{Name, Similar};
 use crate::assembly::{Assembly, End, Loss, Topic, Traffic};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
+use crate::xml::escaped;
 
 /// Where a component stands, and where its topics got their names.
 pub(super) struct Place {
@@ -146,7 +147,7 @@ impl All<'_> {
         one = one.label(there, format!("{do_not} {}", quoted(&meant.name)));
         let is_renamed = at != self.places[end.component].name;
         report.push(match is_renamed {
-            true => one.suggest(super::report::replacing(&lone.name, &meant.name), at, meant.name.clone()),
+            true => one.suggest(super::report::replacing(&lone.name, &meant.name), at, escaped(&meant.name)),
             false => one.help("`topicRename` gives topics other names"),
         });
     }

@@ -10,14 +10,14 @@ use smol_str::SmolStr;
 use super::instance::{COUNTERS, Instance};
 use super::raw::{Piece, Raw};
 use super::replicas::as_index;
-use super::report::{Report, escaped, replacing};
+use super::report::{Report, replacing};
 use super::slots::{Slot, Slots};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::expression::{INDEX, has_expression, is_name};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::Element;
+use crate::xml::{Element, escaped};
 
 /// A property, or a part of a complex one: as in `charger.x`.
 #[derive(Clone, Copy)]

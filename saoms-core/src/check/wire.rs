@@ -4,12 +4,13 @@ use super::astray::Astray;
 use super::classes::ClassIndex;
 use super::fleet::{Fleet, Kind};
 use super::offer::{Offer, Side};
-use super::report::{Report, escaped, list};
+use super::report::{Report, list};
 use super::room::Room;
 use super::target::{Uri, parts, spread, target};
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::hash::Map;
 use crate::source::Text;
+use crate::xml::escaped;
 
 /// A `<wire>` that starts from a reference.
 #[derive(Clone, Copy)]

@@ -1,6 +1,7 @@
 //! How wide texts are, and what of them is shown.
 
 use super::diagram::Diagram;
+use crate::xml::escaped;
 
 /// Widths of the printable characters of ASCII in thousandths of the size, as the metrics of DejaVu Sans have them: of the
 /// fonts that viewers usually take for sans-serif it is the widest, so that labels fit in all of them.
@@ -69,15 +70,5 @@ fn plain(text: &str) -> String {
 
 /// A text inside an XML element or attribute.
 pub(super) fn xml(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for one in plain(text).chars() {
-        match one {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            _ => out.push(one),
-        }
-    }
-    out
+    escaped(&plain(text))
 }

@@ -7,7 +7,7 @@ use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, OutsideKind, OutsideName, Policy, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Span, Text};
-use crate::xml::{Attribute, Element};
+use crate::xml::{Attribute, Element, escaped};
 
 /// How long a list can be: a fleet has no more components.
 const MOST_WORDS: usize = 1_000_000;
@@ -373,7 +373,7 @@ impl Loader<'_> {
         let location = if attribute.trimmed().is_empty() { whole } else { value };
         let mut one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, location, message);
         if let Some(meant) = meant {
-            one = one.suggest(format!("replace it with {}", quoted(meant)), value, meant);
+            one = one.suggest(format!("replace it with {}", quoted(meant)), value, escaped(meant));
         }
         self.report(one);
     }

@@ -16,7 +16,7 @@ use super::vocabulary::XML_SCHEMA;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::model::{Composite, OutsideKind, OutsideName, Version};
 use crate::source::{FileId, OpenTexts, Sources, identity};
-use crate::xml::{self, Element};
+use crate::xml::{self, Element, escaped};
 
 /// Files that are looked at, and the bytes of the largest: where there is more, nothing is held against them.
 const MOST_FILES: usize = 300;
@@ -146,7 +146,7 @@ fn unknown(
                 _ => one.name.replace(&format!("({local})"), &format!("({near})")),
             };
             let what = format!("replace {} with {}", quoted(local), quoted(near));
-            diagnostic.suggest(what, one.name.location, whole)
+            diagnostic.suggest(what, one.name.location, escaped(&whole))
         }
         None => {
             let shown: Vec<String> = all.iter().take(SHOWN).map(|name| quoted(name)).collect();

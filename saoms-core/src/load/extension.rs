@@ -8,7 +8,7 @@ use super::Loader;
 use super::children::{Family, meant_name};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{OutsideKind, Version};
-use crate::xml::{Attribute, Element};
+use crate::xml::{Attribute, Element, escaped};
 
 /// The namespaces of what Tuscany adds to SCA.
 pub(super) const TUSCANY: [&str; 2] =
@@ -341,7 +341,9 @@ impl Loader<'_> {
         let location = if text.is_empty() { attribute.location() } else { location };
         let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, location, message);
         self.report(match nearest(&text, known.iter().copied()) {
-            Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), location, meant),
+            Some(meant) => {
+                one.suggest(format!("replace it with {}", quoted(meant)), location, escaped(meant))
+            }
             None => one,
         });
     }

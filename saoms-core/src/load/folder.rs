@@ -11,6 +11,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quote
 use crate::model::{Composite, Contribution, Link};
 use crate::source::{Sources, Span};
 
+use crate::xml::escaped;
 /// Composites in a folder that form one fleet: no other composite there names them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FolderFleet {
@@ -220,7 +221,7 @@ impl Files {
         let names = all.iter().filter(of_namespace).map(|one| one.name.as_str());
         diagnostics.push(if let Some(meant) = nearest(local, names.clone()) {
             let meant = format!("{}{meant}", prefix.unwrap_or_default());
-            one.suggest(format!("replace {name} with {}", quoted(&meant)), at, meant)
+            one.suggest(format!("replace {name} with {}", quoted(&meant)), at, escaped(&meant))
         } else if let Some(other) = all.iter().find(|one| one.name == *local) {
             one.help(match other.namespace() {
                 "" => format!("it has {} in no namespace", quoted(local)),

@@ -10,6 +10,7 @@ use super::description::{self, Description, Kind};
 use super::shelf::{self, Shelf};
 use crate::diagnostic::{Candidates, Diagnostics, quoted};
 use crate::source::{OpenTexts, Sources, identity};
+use crate::xml::escaped;
 
 /// Folders beside a contribution in which those that it imports from are looked for.
 const MOST_BESIDE: usize = 1_000;
@@ -161,12 +162,13 @@ impl Imports {
             });
             let mut lacking = Vec::new();
             if !is_imported {
-                lacking.push(format!("write `<import namespace=\"{namespace}\"/>` in {own}"));
+                lacking.push(format!("write `<import namespace=\"{}\"/>` in {own}", escaped(namespace)));
             }
             if !is_exported {
                 let description =
                     quoted(&description::path_in(&holder).unwrap_or(holder).display().to_string());
-                lacking.push(format!("write `<export namespace=\"{namespace}\"/>` in {description}"));
+                lacking
+                    .push(format!("write `<export namespace=\"{}\"/>` in {description}", escaped(namespace)));
             }
             hints.push(format!("the contribution in {other} has it: {}", lacking.join(", and ")));
         }

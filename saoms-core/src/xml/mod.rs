@@ -7,6 +7,7 @@ mod characters;
 mod curly;
 mod eight;
 mod element;
+mod escape;
 mod fault;
 mod names;
 mod namespaces;
@@ -25,6 +26,7 @@ mod unbound;
 mod value;
 
 pub use element::{Attribute, Element};
+pub use escape::escaped;
 pub(crate) use node::Node;
 pub use parse::{Parsed, Tangle, parse};
 pub use tree::{Document, ElementId};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-use super::{Element, XML_NAMESPACE};
+use super::{Element, XML_NAMESPACE, escaped};
 
 /// An element to be written.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +67,10 @@ impl Node {
 
     /// With a text inside.
     pub(crate) fn text(mut self, text: &str) -> Self {
-        self.content.push(Content::Written(escaped(text).replace("&#10;", "\n").replace("&#9;", "\t")));
+        // Between tags these can stand as they are, and are read best so.
+        const PLAIN: [(&str, &str); 4] = [("&#10;", "\n"), ("&#9;", "\t"), ("&quot;", "\""), ("&apos;", "'")];
+        let plain = PLAIN.iter().fold(escaped(text), |text, (escape, plain)| text.replace(escape, plain));
+        self.content.push(Content::Written(plain));
         self
     }
 
@@ -333,22 +336,4 @@ fn prefixes_in(text: &str) -> impl Iterator<Item = &str> {
     let before =
         text.match_indices(':').map(move |(at, _)| text[..at].rsplit(|letter| !is_name(letter)).next());
     before.flatten().filter(|prefix| !prefix.is_empty())
-}
-
-/// A text as it can stand in an attribute: also what reading would make a blank of. What XML has no way to write is left out.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\t' | '\n' | '\r' => _ = write!(out, "&#{};", character as u32),
-            '\u{fffe}' | '\u{ffff}' => {}
-            character if character < ' ' => {}
-            character => out.push(character),
-        }
-    }
-    out
 }

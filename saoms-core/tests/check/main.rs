@@ -7,6 +7,7 @@ mod classes;
 mod component_types;
 mod corpus;
 mod environment;
+mod escapes;
 mod expanded;
 mod expanded_given;
 mod files;

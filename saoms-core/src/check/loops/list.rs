@@ -8,11 +8,12 @@ use super::{Planned, order};
 use crate::check::classes::ClassIndex;
 use crate::check::fleet::Member;
 use crate::check::properties::Checked;
-use crate::check::report::{Report, escaped, list, replacing};
+use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Loop, Part};
 use crate::registry::Registry;
 use crate::source::Text;
+use crate::xml::escaped;
 
 /// The loops of a component in their order, and whether nothing about them is wrong.
 pub(super) fn plan<'a>(

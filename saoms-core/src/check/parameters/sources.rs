@@ -6,14 +6,14 @@ use super::{Given, Parameters};
 use crate::check::levels::Levels;
 use crate::check::path::{Fault, expression, one_of};
 use crate::check::raw::{Piece, Raw, raw};
-use crate::check::report::{Report, escaped, replacing};
+use crate::check::report::{Report, replacing};
 use crate::check::value_type::{self, Typed};
 use crate::check::xpath::XPath;
 use crate::check::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::Property;
 use crate::source::Text;
-use crate::xml::Element;
+use crate::xml::{Element, escaped};
 
 impl<'a> Parameters<'a> {
     /// What a `source` stands for. Faults are reported.
@@ -188,7 +188,7 @@ impl<'a> Parameters<'a> {
             let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
                 .help("write `$name`, or `$name/part` for a part of a complex property");
             if unit.by_name.contains_key(source.as_str()) {
-                one = one.suggest("insert `$`", source.location, format!("${source}"));
+                one = one.suggest("insert `$`", source.location, escaped(&format!("${source}")));
             }
             report.push(one);
             return Err(());
