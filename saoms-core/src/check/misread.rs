@@ -1,6 +1,7 @@
 //! What is meant by URIs that are written in another way than SCA's.
 
 use super::fleet::Fleet;
+use super::offer::Side;
 use super::report::{list, replacing};
 use super::target::parts;
 use crate::diagnostic::{Diagnostic, quoted};
@@ -31,7 +32,7 @@ impl Misread {
 
 /// What a URI means that is written in another way: with the index of a replica where there is none, or as other languages write it, with commas between
 /// several, or something else than `/` before the name of a service.
-pub(super) fn misread(text: &str, scope: usize, fleet: &Fleet<'_>) -> Option<Misread> {
+pub(super) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -> Option<Misread> {
     const LISTED: [char; 3] = [',', ';', '|'];
     const BEHIND: [char; 6] = ['#', '.', ':', '\\', '>', '-'];
     if text.contains("${") {
@@ -53,32 +54,41 @@ pub(super) fn misread(text: &str, scope: usize, fleet: &Fleet<'_>) -> Option<Mis
     let (component, behind) =
         split.find(|(component, behind)| !behind.is_empty() && fleet.find(scope, component).is_some())?;
     let parts: Vec<&str> = behind.split(['/', '.']).collect();
-    let promoted = fleet.find(scope, component).and_then(|member| inside(member, &parts, fleet));
-    let plain = || Misread::new(format!("{component}/{behind}"), "the name of a service stands behind `/`");
+    let promoted = fleet.find(scope, component).and_then(|member| inside(member, &parts, side, fleet));
+    let plain = || {
+        let help = format!("the name of a {} stands behind `/`", side.name());
+        Misread { meant: Some(format!("{component}/{behind}")), help }
+    };
     Some(promoted.unwrap_or_else(plain))
 }
 
-/// What is meant by a URI that leads into the composite of a component, by the name of a component there and perhaps of its service or reference.
-pub(super) fn inside(member: usize, behind: &[&str], fleet: &Fleet<'_>) -> Option<Misread> {
+/// What is meant by a URI that leads into the composite of a component, by the name of a component there and perhaps of its service or reference: what of
+/// it the composite promotes.
+pub(super) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'_>) -> Option<Misread> {
     let inner = fleet.inner(member)?;
     let (first, rest) = behind.split_first()?;
     fleet.find(inner.scope, first)?;
     let name = &fleet.members[member].component.name;
-    let leads_there = |promote: &str| {
+    let leads_there = |promote: &Text| {
         let (component, part) = parts(promote);
         component == *first && rest.first().is_none_or(|named| part.is_none_or(|part| part == *named))
     };
-    let services = inner.services().filter(|one| one.promote.iter().any(|promote| leads_there(promote)));
-    let references =
-        inner.references().filter(|one| one.promote().iter().any(|promote| leads_there(promote)));
-    let promoted: Vec<&str> =
-        services.map(|one| one.name.as_str()).chain(references.map(|one| one.name.as_str())).collect();
+    let promoted: Vec<&str> = match side {
+        Side::Service => {
+            let all = inner.services().filter(|one| one.promote.as_deref().is_some_and(leads_there));
+            all.map(|one| one.name.as_str()).collect()
+        }
+        Side::Reference => {
+            let all = inner.references().filter(|one| one.promote().iter().any(leads_there));
+            all.map(|one| one.name.as_str()).collect()
+        }
+    };
     let (inner_name, outer) = (quoted(first), quoted(name));
     let why =
         format!("{inner_name} is inside of {outer}, and reached by what the composite of {outer} promotes");
     Some(match promoted[..] {
         [only] => Misread { meant: Some(format!("{name}/{only}")), help: why },
-        [] => Misread { meant: None, help: format!("{why}: of {inner_name} it promotes nothing") },
+        [] => Misread { meant: None, help: format!("{why}: of {inner_name} it promotes no {}", side.name()) },
         _ => Misread { meant: None, help: format!("{why}: {}", list(promoted)) },
     })
 }

@@ -263,7 +263,7 @@ fn find<'f>(
     classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Option<Place<'f>> {
-    let uri = Uri::of(text, 2, (unit.scope, fleet), report)?;
+    let uri = Uri::of(text, (2, side), (unit.scope, fleet), report)?;
     let member = uri.member(text, (unit.scope, None), fleet, Some(side.rule()), report)?;
     let names = match side {
         Side::Service => fleet.service_names(member, classes),

@@ -44,15 +44,17 @@ pub(super) fn parts(uri: &str) -> (&str, Option<&str>) {
 /// The parts of `component/part/binding`, each with its bytes.
 pub(super) struct Uri<'t> {
     pub(super) component: &'t str,
+    /// Whether the part is a service or a reference.
+    side: Side,
     pub(super) part: Option<(&'t str, Range<usize>)>,
     pub(super) binding: Option<(&'t str, Range<usize>)>,
 }
 
 impl<'t> Uri<'t> {
-    /// Splits a URI of at most `most` parts, whose component is to be in this scope; another one is reported.
+    /// Splits a URI of at most `most` parts that names a service or a reference of a component in this scope; another one is reported.
     pub(super) fn of(
         text: &'t Text,
-        most: usize,
+        (most, side): (usize, Side),
         (scope, fleet): (usize, &Fleet<'_>),
         report: &mut Report<'_>,
     ) -> Option<Self> {
@@ -63,7 +65,7 @@ impl<'t> Uri<'t> {
             (part, at)
         });
         let (component, _) = parts.next()?;
-        let uri = Self { component, part: parts.next(), binding: parts.next() };
+        let uri = Self { side, component, part: parts.next(), binding: parts.next() };
         let has_more = parts.next().is_some() || (most < 3 && uri.binding.is_some());
         let inner = [uri.part.as_ref(), uri.binding.as_ref()];
         if component.is_empty() || inner.into_iter().flatten().any(|(part, _)| part.is_empty()) || has_more {
@@ -78,7 +80,7 @@ impl<'t> Uri<'t> {
             let meant = named.join("/");
             let is_known = named.first().is_some_and(|name| fleet.find(scope, name).is_some());
             let promoted = named.split_first().and_then(|(component, behind)| {
-                inside(fleet.find(scope, component)?, behind, fleet).filter(|_| most < 3)
+                inside(fleet.find(scope, component)?, behind, side, fleet).filter(|_| most < 3)
             });
             report.push(match promoted {
                 Some(promoted) => promoted.told(one, text),
@@ -131,7 +133,7 @@ impl<'t> Uri<'t> {
                 return None;
             }
             let message = format!("there is no component {}", quoted(self.component));
-            if let Some(misread) = misread(text, scope, fleet) {
+            if let Some(misread) = misread(text, scope, self.side, fleet) {
                 let one = misread.told(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text);
                 report.push(match rule {
                     Some(rule) => one.rule(rule),
@@ -188,7 +190,7 @@ pub(super) fn target(
     if report.assumes && is_address(text) || fleet.scopes[scope].is_faulty && has_expression(text) {
         return Target::Open;
     }
-    let Some(uri) = Uri::of(text, 3, (scope, fleet), report) else { return Target::Wrong };
+    let Some(uri) = Uri::of(text, (3, Side::Service), (scope, fleet), report) else { return Target::Wrong };
     let is_elsewhere =
         || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
     if scope == 0 && report.assumes && is_elsewhere() {
@@ -224,7 +226,7 @@ pub(super) fn target(
             let at = report.part(text, at);
             let message = format!("component {} has no service {}", quoted(&component.name), quoted(name));
             let behind: Vec<&str> = text.split('/').skip(1).collect();
-            if let Some(promoted) = inside(member, &behind, fleet) {
+            if let Some(promoted) = inside(member, &behind, Side::Service, fleet) {
                 let one = Diagnostic::new(&codes::UNKNOWN_TARGET_SERVICE, at, message);
                 report.push(promoted.told(one, text));
                 return Target::Wrong;

@@ -39,7 +39,8 @@ pub(super) fn wires<'f>(
                 continue;
             };
             if fleet.is_absent_wire(place, wire) {
-                let _ = (Uri::of(source, 2, (scope, fleet), report), Uri::of(to, 3, (scope, fleet), report));
+                let _ = Uri::of(source, (2, Side::Reference), (scope, fleet), report);
+                let _ = Uri::of(to, (3, Side::Service), (scope, fleet), report);
                 continue;
             }
             let is_replacing = wire.replace().is_some_and(|replace| replace.value);
@@ -110,7 +111,7 @@ fn source_of<'f>(
     classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Option<(usize, &'f str)> {
-    let uri = Uri::of(source, 2, (scope, fleet), report)?;
+    let uri = Uri::of(source, (2, Side::Reference), (scope, fleet), report)?;
     let member = uri.member(source, (scope, None), fleet, None, report)?;
     let named = parts(written).1.unwrap_or_default();
     let Some(names) = fleet.reference_names(member, classes) else {

@@ -180,8 +180,7 @@ fn what_is_inside_is_named_by_what_is_promoted() {
     .assert_eq(&with_unit(&format!("{GPS}\n{own}")));
     expect![[r#"
         3:15-27 error S2010: `U/G/position` has the wrong form
-          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
-          fix: replace `U/G/position` with `U/where` [3:15-27 "U/where"]
+          help: `G` is inside of `U`, and reached by what the composite of `U` promotes: of `G` it promotes no reference
     "#]]
     .assert_eq(&with_unit("<wire source=\"U/G/position\" target=\"U\"/>"));
 }
