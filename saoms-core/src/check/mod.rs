@@ -9,6 +9,7 @@ mod agree;
 mod arena;
 mod astray;
 mod autowire;
+mod beyond;
 mod binding;
 mod bindings;
 mod by_name;

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use super::beyond::beyond;
 use super::classes::{ClassIndex, Fitting};
 use super::fleet::{Fleet, Kind};
 use super::misread::{inside, misread};
@@ -13,8 +14,8 @@ use crate::expression::has_expression;
 use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
-
 use crate::xml::escaped;
+
 /// A service of a component of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Provider {
@@ -43,9 +44,9 @@ pub(super) fn parts(uri: &str) -> (&str, Option<&str>) {
 
 /// The parts of `component/part/binding`, each with its bytes.
 pub(super) struct Uri<'t> {
-    pub(super) component: &'t str,
     /// Whether the part is a service or a reference.
     side: Side,
+    pub(super) component: &'t str,
     pub(super) part: Option<(&'t str, Range<usize>)>,
     pub(super) binding: Option<(&'t str, Range<usize>)>,
 }
@@ -148,7 +149,10 @@ impl<'t> Uri<'t> {
             let names = fleet.names(scope).filter(|name| Some(*name) != own);
             let known =
                 ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
-            let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known);
+            let one = match beyond(self.component, scope, fleet) {
+                Some(beyond) => beyond.told(self.component, own, at, message),
+                None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known),
+            };
             report.push(match rule {
                 Some(rule) => one.rule(rule),
                 None => one,
@@ -371,7 +375,10 @@ fn elsewhere(
     let at = report.part(text, 0..component.len());
     let own = own.map(|own| fleet.members[own].component.name.as_str());
     let known = ("the components are", fleet.names(0).filter(|name| Some(*name) != own));
-    let one = report.unknown(&codes::UNKNOWN_COMPONENT, at, message, component, known);
+    let one = match beyond(component, 0, fleet) {
+        Some(beyond) => beyond.told(component, own, at, message),
+        None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, component, known),
+    };
     report.push(
         one.severity(Severity::Warning)
             .help("it is taken as given: another composite of the domain may have it"),

@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::files::checked;
-use crate::support::{faults_of, outcome, part};
+use crate::support::{faults_of, nested, outcome, part, shown};
 
 /// A composite with the prefix of SAOMS.
 fn fleet(inside: &str) -> String {
@@ -494,4 +494,50 @@ fn groups_that_call_groups_have_a_limit() {
     let found = of(group, &[]);
     let limit = "error S2035: groups of replicas come to more than 1000000 ends of wires";
     assert_eq!(found.matches(limit).count(), 1, "{found}");
+}
+
+#[test]
+fn a_number_that_no_replica_has_means_the_nearest_that_one_has() {
+    let gps = "<implementation.java class=\"example.Gps\"/></component>";
+    let inside = format!(
+        "<component name=\"R${{index:02}}\" saoms:count=\"2\">{gps}\n<component name=\"H7G${{index}}\" saoms:count=\"3\" saoms:from=\"5\">{gps}\n<component name=\"S${{index}}\" saoms:count=\"1\">{gps}\n<component name=\"C\"><implementation.java class=\"example.Conductor\"/><reference name=\"gps\" target=\"R03 R2 R99999999999999999999 R0\nH7G1 H7G9 S2 R0x\"/></component>"
+    );
+    expect![[r#"
+        5:99-102 error S2011: there is no component `R03`
+          help: the replicas are `R01` to `R02`
+          fix: replace `R03` with `R02` [5:99-102 "R02"]
+        5:103-105 error S2011: there is no component `R2`
+          help: the replicas are `R01` to `R02`
+          fix: replace `R2` with `R02` [5:103-105 "R02"]
+        5:106-127 error S2011: there is no component `R99999999999999999999`
+          help: the replicas are `R01` to `R02`
+          fix: replace `R99999999999999999999` with `R02` [5:106-127 "R02"]
+        5:128-130 error S2011: there is no component `R0`
+          help: the replicas are `R01` to `R02`
+          fix: replace `R0` with `R01` [5:128-130 "R01"]
+        6:1-5 error S2011: there is no component `H7G1`
+          help: the replicas are `H7G5` to `H7G7`
+          fix: replace `H7G1` with `H7G5` [6:1-5 "H7G5"]
+        6:6-10 error S2011: there is no component `H7G9`
+          help: the replicas are `H7G5` to `H7G7`
+          fix: replace `H7G9` with `H7G7` [6:6-10 "H7G7"]
+        6:11-13 error S2011: there is no component `S2`
+          help: the only replica is `S1`
+          fix: replace `S2` with `S1` [6:11-13 "S1"]
+        6:14-17 error S2011: there is no component `R0x`
+          fix: replace `R0x` with `R01` [6:14-17 "R01"]
+    "#]]
+    .assert_eq(&of(&inside, &[]));
+    // What follows the last one is nobody.
+    let ring = "<component name=\"R${index:02}\" saoms:count=\"2\"><implementation.java class=\"example.Conductor\"/><reference name=\"gps\" target=\"R${index + 1:02}\"/></component>";
+    let (_, found, sources) = nested(&[&fleet(ring)], &[], true);
+    let found: String = found.iter().map(|one| shown(one, &sources)).collect();
+    expect![[r#"
+        2:126-142 error S2015: component `R02` offers no service with the interface `example.Positions` (in `R01`, index 1)
+          help: it offers no services
+        2:126-142 warning S2011: there is no component `R03` in these composites (in `R02`, index 2)
+          help: the replicas are `R01` to `R02`
+          help: it is taken as given: another composite of the domain may have it
+    "#]]
+    .assert_eq(&found);
 }
