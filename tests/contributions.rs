@@ -235,3 +235,20 @@ fn files_beside_composites_are_checked_by_themselves() {
     let (code, _, err) = saoms(folder.path(), &["run", "definitions.xml"], "");
     assert!(code == 2 && err.contains("this holds policies; name a composite"), "{err}");
 }
+
+#[cfg(unix)]
+#[test]
+fn a_file_that_cannot_be_read_is_told_once_and_no_fleet_where_there_is_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = "<include name=\"a:dead\"/><component name=\"C\"><implementation.composite name=\"a:late\"/></component>";
+    fs::write(folder.path().join("fleet.composite"), composite("fleet", names)).unwrap();
+    fs::write(folder.path().join("late.composite"), b"<\0c\0").unwrap();
+    for (to, name) in [("nowhere", "dead.composite"), ("loop.composite", "loop.composite")] {
+        std::os::unix::fs::symlink(to, folder.path().join(name)).unwrap();
+    }
+    let (_, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
+    assert_eq!(stdout, "2 fleets, 0 components: 3 errors, 0 warnings\n", "{stderr}");
+    let (_, stdout, stderr) = saoms(folder.path(), &["check", "fleet.composite"], "");
+    assert_eq!(stdout, "2 errors, 0 warnings\n", "{stderr}");
+    assert!(stderr.contains("error[S0001]") && stderr.contains("error[S0007]"), "{stderr}");
+}

@@ -1,6 +1,7 @@
 //! Folders as contributions.
 
 use std::collections::{HashMap, HashSet};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::description::{Deployable, Description};
@@ -10,8 +11,8 @@ use super::{load_file, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::{Composite, Contribution, Link};
 use crate::source::{Sources, Span};
-
 use crate::xml::escaped;
+
 /// Composites in a folder that form one fleet: no other composite there names them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FolderFleet {
@@ -27,7 +28,8 @@ pub struct FolderFleet {
 /// and every other composite that no composite there names is one of its own.
 ///
 /// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share a name; and that there are no
-/// composites, or more files than are looked at. What is wrong with the composites themselves is found when they are loaded as fleets.
+/// composites, more files than are looked at, or links that lead to no file. What is wrong with the composites themselves is found when they are loaded
+/// as fleets.
 pub fn load_folder(
     folder: &Path,
     max_size: u64,
@@ -55,7 +57,7 @@ impl Finder {
             inner.reverse();
             waiting.extend(inner);
             let description = Description::of(&root, max_size, sources, diagnostics);
-            let contribution = Files::read(files, max_size, sources);
+            let contribution = Files::read(files, max_size, sources, diagnostics);
             contribution.repeated(describes(&root), max_size, sources, diagnostics);
             let definitions = shelf.definitions(&root);
             // Without a description nobody says that they belong together.
@@ -89,7 +91,7 @@ impl Finder {
         self.shelf.turn_to_folder();
         let description = Description::read(path.to_owned(), max_size, sources, diagnostics);
         let (files, _) = self.shelf.contribution(root);
-        let contribution = Files::read(files, max_size, sources);
+        let contribution = Files::read(files, max_size, sources, &mut Diagnostics::new());
         for deployable in &description.deployables {
             _ = contribution.find(deployable, &mut self.shelf, root, diagnostics);
         }
@@ -142,16 +144,22 @@ struct Files {
 }
 
 impl Files {
-    /// Reads composites for the names in them. What is wrong with them is told by those who check them.
-    fn read(paths: Vec<PathBuf>, max_size: u64, sources: &Sources) -> Self {
+    /// Reads composites for the names in them. What is wrong with them is told by those who check them; a link that leads to no file is no composite,
+    /// and reported.
+    fn read(all: Vec<PathBuf>, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
         let (mut scratch, mut untold) = (Sources::with_open(sources.open().clone()), Diagnostics::new());
-        let (mut composites, mut places) = (Vec::new(), Vec::new());
-        for (place, path) in paths.iter().enumerate() {
-            let file = read(path, max_size, &mut scratch, &mut untold);
+        let (mut paths, mut composites, mut places) = (Vec::with_capacity(all.len()), Vec::new(), Vec::new());
+        for path in all {
+            let file = read(&path, max_size, &mut scratch, &mut untold);
+            if file.is_none() && path.is_symlink() && fs::metadata(&path).is_err() {
+                read(&path, max_size, sources, diagnostics);
+                continue;
+            }
             if let Some(composite) = file.and_then(|file| load_file(file, &scratch, &mut untold)) {
                 composites.push(composite);
-                places.push(place);
+                places.push(paths.len());
             }
+            paths.push(path);
         }
         Self { paths, read: Contribution::with(Vec::new(), composites), places }
     }

@@ -25,7 +25,7 @@ const OFFERED: usize = 3;
 /// the import has as its `location`. No file is opened that is not needed, and a large folder is given up after some ten thousand entries.
 /// Texts that were not read from files are not looked at, but for [`STANDARD_INPUT`].
 ///
-/// What is wrong with a file that is found is reported; that one is not found is for the checker to say. A [`Finder`] does it for several
+/// What is wrong with a file that is found, or that is called as one that is not, is reported; that one is not found is for the checker to say. A [`Finder`] does it for several
 /// contributions that are in the same folders.
 pub fn load_named(
     contribution: &mut Contribution,
@@ -132,6 +132,8 @@ impl Finder {
                 let found = own.or_else(|| {
                     self.imports.find(&mut self.shelf, &root, namespaces, local, sources, diagnostics)
                 });
+                // What is wrong with a file that is called so is told there, and nowhere else.
+                let found = found.or_else(|| self.shelf.unread_named(folder, local));
                 let link = match found {
                     None if self.imports.is_faulty(&root, sources, diagnostics) => Link::Faulty,
                     None => Link::Missing(self.missing(folder, &root, &wanted, sources, diagnostics)),

@@ -183,6 +183,11 @@ impl Failure {
                 let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, message);
                 one.help(format!("it leads to {}", quoted(&target.display().to_string())))
             }
+            Self::Io(error) if error.raw_os_error() == Some(libc::ELOOP) => {
+                let message = "this link leads back to itself";
+                Diagnostic::new(&codes::FILE_NOT_FOUND, location, message)
+                    .help("let it lead to a file, or remove it")
+            }
             Self::Io(error) if error.kind() == io::ErrorKind::NotFound => {
                 let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
                 with_help(one, missing::help(path, expected.ending))

@@ -1,7 +1,7 @@
 //! Finding composites in folders by their names, without reading more than is needed.
 
 use std::collections::{HashMap, HashSet, VecDeque};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, FileType};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -46,6 +46,8 @@ pub(super) struct Shelf {
     declaring: HashMap<PathBuf, Rc<[PathBuf]>>,
     /// What was looked for, from which folder: names are used again and again.
     found: HashMap<Wanted, Option<PathBuf>>,
+    /// Of contributions that were looked through, the files called as composites that are none as far as could be read: the first of each name.
+    unread: HashMap<PathBuf, HashMap<OsString, PathBuf>>,
     left: usize,
     /// Whether there were more entries than are looked at.
     is_cut: bool,
@@ -105,6 +107,7 @@ impl Shelf {
             roots: HashMap::new(),
             declaring: HashMap::new(),
             found: HashMap::new(),
+            unread: HashMap::new(),
             left: MOST_ENTRIES,
             is_cut: false,
             open,
@@ -252,6 +255,23 @@ impl Shelf {
         all.into_iter().filter(|path| self.head(path).is_none()).collect()
     }
 
+    /// The file in the contribution of `folder`, which was looked through for a name that it does not have, that is called as a composite of this name
+    /// is, and is none as far as could be read: that is probably meant.
+    pub(super) fn unread_named(&mut self, folder: &Path, local: &str) -> Option<PathBuf> {
+        let root = self.root(folder);
+        if !self.unread.contains_key(&root) {
+            let folders = self.walks.get(&root).map_or_else(Vec::new, |walk| walk.behind.clone());
+            let mut all: HashMap<OsString, PathBuf> = HashMap::new();
+            for path in folders.iter().flat_map(|folder| self.unread(folder)) {
+                if let Some(stem) = path.file_stem() {
+                    all.entry(stem.to_owned()).or_insert(path);
+                }
+            }
+            self.unread.insert(root.clone(), all);
+        }
+        self.unread[&root].get(OsStr::new(local)).cloned()
+    }
+
     /// Where composites were looked for, as a sentence.
     pub(super) fn searched(&mut self, folder: &Path) -> String {
         let root = self.root(folder);
@@ -369,9 +389,13 @@ impl Shelf {
             self.left = left;
             let (name, path) = (entry.file_name(), folder.join(entry.file_name()));
             let name = name.to_string_lossy();
+            // As for a pattern of a shell, what is hidden is not there: editors leave locks and copies beside files.
+            if name.starts_with('.') {
+                continue;
+            }
             // Links to folders may lead around in circles, and are not followed.
             match entry.file_type() {
-                Ok(kind) if kind.is_dir() && (name.starts_with('.') || SKIPPED.contains(&&*name)) => {}
+                Ok(kind) if kind.is_dir() && SKIPPED.contains(&&*name) => {}
                 Ok(kind) if kind.is_dir() => listing.folders.push(path),
                 Ok(kind) if name.ends_with(".composite") && may_be_read(kind, &path) => {
                     listing.composites.push(path);

@@ -107,7 +107,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         sca-contribution.xml:4:24 [x:hall] error S2051 the contribution has no composite `x:hall`
           it has `hall` in the namespace `urn:b`
         sca-contribution.xml:5:2 [deployable] error S1008 `deployable` needs the attribute `composite`
-          write `<deployable composite="..."`
+          write `<deployable composite="..."/>`
         sca-contribution.xml:6:13 [composit] error S1007 `deployable` has no attribute `composit`
           replace `composit` with `composite`
         sca-contribution.xml:7:9 [namespace=''] error S1011 the attribute `namespace` is empty
@@ -118,7 +118,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         sca-contribution.xml:10:1 [text] error S1012 text in `contribution`, which holds no text
           remove it; comments stand between `<!--` and `-->`
         sca-contribution.xml:10:6 [import.resource] error S1008 `import.resource` needs the attribute `uri`
-          write `<import.resource uri="..."`
+          write `<import.resource uri="..."/>`
         sca-contribution.xml:11:43 [component] error S1005 `component` cannot stand in `contribution`
           `contribution` can hold `deployable`, `import`, `import.java`, `import.resource`, `export`, `export.java`, `export.resource`, `documentation`, `extensions`
     "#]].assert_eq(&one(
@@ -270,15 +270,27 @@ fn what_is_no_file_is_passed_over() {
     fs::write(path("fleet.composite"), composite("urn:a", "fleet", "")).unwrap();
     let made = std::process::Command::new("mkfifo").arg(path("pipe.composite")).status().unwrap();
     assert!(made.success());
-    let links =
-        [("fleet.composite", "link"), ("pipe.composite", "to_pipe"), ("/", "to_root"), ("nowhere", "dead")];
+    let links = [
+        ("fleet.composite", "link"),
+        ("pipe.composite", "to_pipe"),
+        ("/", "to_root"),
+        ("nowhere", "dead"),
+        ("around.composite", "around"),
+        ("me@host.1:2", ".#fleet"),
+    ];
     for (to, name) in links {
         std::os::unix::fs::symlink(to, path(&format!("{name}.composite"))).unwrap();
     }
+    fs::write(path(".copy.composite"), "<composite").unwrap();
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let all = composites_below(folder.path(), &mut sources, &mut diagnostics);
     let names: Vec<_> = all.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!(names, ["dead.composite", "fleet.composite", "link.composite"], "a dead link is told");
+    assert_eq!(names, ["around.composite", "dead.composite", "fleet.composite", "link.composite"]);
     let fleets = load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
-    assert_eq!(fleets.len(), 3);
+    let files: Vec<_> = fleets.iter().map(|fleet| fleet.files[0].file_stem().unwrap()).collect();
+    assert_eq!(files, ["fleet", "link"]);
+    let told = diagnostics.iter().map(|one| (one.code.id, one.message.as_str()));
+    let told: Vec<_> = told.filter(|(code, _)| *code != "S2001").collect();
+    let expected = ["this link leads back to itself", "this link leads to no file"];
+    assert_eq!(told, expected.map(|message| ("S0001", message)));
 }

@@ -280,13 +280,21 @@ fn what_a_composite_names_is_no_pipe_and_no_device() {
 
 #[test]
 fn files_that_are_no_composites_are_named_with_the_reason() {
+    let names = "<include name='b:lounge'/><include name='b:hall'/><include name='a:gate'/>";
     let files = [
-        ("fleet.composite", composite("urn:a", "fleet", "<include name='b:hall'/>")),
+        ("fleet.composite", composite("urn:a", "fleet", names)),
         ("hall.composite", "<\0c\0".to_owned()),
         ("more.composite", " ".to_owned()),
         ("other.composite", "<contribution xmlns='http://www.osoa.org/xmlns/sca/1.0'/>".to_owned()),
+        ("deep/gate.composite", "<composite".to_owned()),
     ];
+    // What is called as the name is meant by it, and says itself what is wrong.
     expect![[r#"
-        fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` is no composite: the file is in UTF-16LE, and UTF-8 is expected; `more.composite` is no composite: the file is empty; `other.composite` is no composite: the root element is `contribution` and has to be `composite`
-    "#]].assert_eq(&links(&files, "fleet.composite"));
+        fleet.composite: b:lounge is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` is no composite: the file is in UTF-16LE, and UTF-8 is expected; `more.composite` is no composite: the file is empty; `other.composite` is no composite: the root element is `contribution` and has to be `composite`
+        fleet.composite: b:hall is faulty
+        fleet.composite: a:gate is faulty
+        hall.composite S0007
+        deep/gate.composite S0103
+    "#]]
+    .assert_eq(&links(&files, "fleet.composite"));
 }
