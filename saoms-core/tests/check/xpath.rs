@@ -221,3 +221,26 @@ fn sources_that_would_take_for_ever_are_told() {
     let found = outcome(&[&fleet], &[]);
     assert!(found.contains("S2023: it looks at more parts of values than a check can"), "{found}");
 }
+
+#[test]
+fn an_expression_has_an_end() {
+    let long = format!("$s{}", " + 1".repeat(100_000));
+    let found = ids(&[&long]);
+    assert!(
+        found.ends_with("error S2023: there are more than 1000 operators\n"),
+        "{}",
+        &found[found.len() - 200..]
+    );
+    // Each composite doubles what the one around it gives.
+    let inner = |place: usize| {
+        let inside = match place {
+            25 => "<component name=\"R\"><implementation.java class=\"example.Robot\"/><property name=\"ID\" source=\"$p\"/><property name=\"period\">1</property></component>".to_owned(),
+            _ => format!("<component name=\"C\"><implementation.composite name=\"t:c{}\"/><property name=\"p\" source=\"concat($p, $p)\"/></component>", place + 1),
+        };
+        part(&format!("c{place}"), "", &format!("<property name=\"p\">{}</property>{inside}", "x".repeat(32)))
+    };
+    let texts: Vec<String> = (0..=25).map(inner).collect();
+    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let found = outcome(&texts, &[]);
+    assert!(found.contains("S2023: it looks at more parts of values than a check can"), "{found}");
+}

@@ -15,6 +15,9 @@ use crate::diagnostic::quoted;
 use crate::source::{Located, Location};
 use crate::xml::Element;
 
+/// So many bytes of a text that is made are as much work as a part of a value.
+const BYTES: usize = 32;
+
 /// What variables stand for, and how much more work there may be.
 pub(super) struct Scope<'v, 'a> {
     /// The text of the expression.
@@ -143,8 +146,13 @@ impl<'a> Scope<'_, 'a> {
             Part::Call(function, arguments) => {
                 let arguments = arguments.iter().map(|one| self.value(one, &part));
                 let arguments = arguments.collect::<Result<Vec<_>, _>>()?;
-                (function.run)(self, at, &arguments)
-                    .map_err(|message| Fault::new(expression.span.clone(), message))?
+                let value = (function.run)(self, at, &arguments)
+                    .map_err(|message| Fault::new(expression.span.clone(), message))?;
+                // Texts that are joined with themselves, from composite to composite, double each time.
+                if let Value::Text(text) = &value {
+                    self.spend(text.len() / BYTES);
+                }
+                value
             }
             Part::Negation(inner) => Value::Number(-self.value(inner, &part)?.number(self)),
             Part::Binary("|", left, right) => {

@@ -1,5 +1,7 @@
 //! The functions of XPath 1.0 (4), but for `id` and `lang`, which ask for what values of properties do not have.
 
+use std::collections::HashMap;
+
 use super::evaluate::{At, Scope};
 use super::value::{Node, Value, number};
 use crate::diagnostic::quoted;
@@ -92,11 +94,13 @@ pub(super) static ALL: [Function; 25] = [
     }),
     function("translate", (3, 3), |scope, _, all| {
         let (from, to) = (all[1].text(scope), all[2].text(scope));
-        let to: Vec<char> = to.chars().collect();
-        let letter = |one: char| match from.chars().position(|known| known == one) {
-            None => Some(one),
-            Some(place) => to.get(place).copied(),
-        };
+        let (mut to, mut others) = (to.chars(), HashMap::new());
+        for one in from.chars() {
+            let other = to.next();
+            // Of a letter that is there twice the first counts.
+            others.entry(one).or_insert(other);
+        }
+        let letter = |one: char| others.get(&one).copied().unwrap_or(Some(one));
         Ok(Value::Text(all[0].text(scope).chars().filter_map(letter).collect()))
     }),
     function("boolean", (1, 1), |_, _, all| Ok(Value::Boolean(all[0].boolean()))),

@@ -9,6 +9,8 @@ use crate::diagnostic::quoted;
 
 /// Expressions inside each other.
 const MOST_DEEP: usize = 60;
+/// Operators in one expression: each stands around those before it.
+const MOST_OPERATORS: usize = 1_000;
 
 /// An expression with its bytes.
 #[derive(Debug)]
@@ -86,7 +88,7 @@ const UNARY: usize = 6;
 
 /// Reads an expression.
 pub(super) fn parse(text: &str) -> Result<Expression, Fault> {
-    let mut parser = Parser { tokens: tokens(text)?, at: 0, length: text.len(), depth: 0 };
+    let mut parser = Parser { tokens: tokens(text)?, at: 0, operators: 0, length: text.len(), depth: 0 };
     let expression = parser.level(0)?;
     match parser.tokens.get(parser.at) {
         None => Ok(expression),
@@ -100,6 +102,7 @@ pub(super) fn parse(text: &str) -> Result<Expression, Fault> {
 struct Parser {
     tokens: Vec<Placed>,
     at: usize,
+    operators: usize,
     length: usize,
     depth: usize,
 }
@@ -150,6 +153,11 @@ impl Parser {
         }
         let mut left = self.level(level + 1)?;
         while let Some(operator) = self.operator(operators) {
+            self.operators += 1;
+            if self.operators > MOST_OPERATORS {
+                let message = format!("there are more than {MOST_OPERATORS} operators");
+                return Err(Fault::new(self.here(), message));
+            }
             let right = self.level(level + 1)?;
             let node = Node::Binary(operator, Box::new(left), Box::new(right));
             left = Expression { node, span: self.since(start) };
