@@ -223,6 +223,34 @@ fn sources_that_would_take_for_ever_are_told() {
 }
 
 #[test]
+fn texts_that_are_added_are_told_how_they_are_joined() {
+    expect![[r#"
+        'Cart' + $s: 6:93-104 error S2023: `'Cart'` is no number, and `+` adds numbers: `concat(...)` joins texts
+              fix: replace `'Cart' + $s` with `concat('Cart', $s)` [6:93-104 "concat(&apos;Cart&apos;, $s)"]
+        $s + '-' + count($b/bay): 6:93-117 error S2023: `$s` is `Hall`, which is no number, and `+` adds numbers: `concat(...)` joins texts
+              fix: replace `$s + '-' + count($b/bay)` with `concat($s, '-', count($b/bay))` [6:93-117 "concat($s, &apos;-&apos;, count($b/bay))"]
+        1 + $many[2] + $b/bay[9]/x: 6:108-119 error S2023: `$b/bay[9]/x` leads to nothing, and `+` takes numbers
+        concat('x', $s * 2): 6:105-107 error S2023: `$s` is `Hall`, which is no number, and `*` takes numbers
+        -$s: 6:94-96 error S2023: `$s` is `Hall`, which is no number, and `-` takes numbers
+        $s &lt; 'x' - 1: Text("false")
+        number($s): Text("NaN")
+        '7' + $many[2]: Text("9")
+        translate('abca', 'aba', 'xyz'): Text("xycx")
+    "#]]
+    .assert_eq(&ids(&[
+        "'Cart' + $s",
+        "$s + '-' + count($b/bay)",
+        "1 + $many[2] + $b/bay[9]/x",
+        "concat('x', $s * 2)",
+        "-$s",
+        "$s &lt; 'x' - 1",
+        "number($s)",
+        "'7' + $many[2]",
+        "translate('abca', 'aba', 'xyz')",
+    ]));
+}
+
+#[test]
 fn an_expression_has_an_end() {
     let long = format!("$s{}", " + 1".repeat(100_000));
     let found = ids(&[&long]);

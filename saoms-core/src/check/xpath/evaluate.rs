@@ -5,6 +5,7 @@ use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::no_number::NoNumber;
 use super::parse::{Axis, Expression, Node as Part, Step, Test};
 use super::value::{Key, Node, Value, compares};
 use crate::check::instance::Instance;
@@ -29,6 +30,8 @@ pub(super) struct Scope<'v, 'a> {
     tops: OnceCell<HashMap<Key, Node<'a>>>,
     /// The first step that leads nowhere.
     dead: RefCell<Option<Fault>>,
+    /// The first operand of arithmetic that is no number.
+    no_number: RefCell<Option<NoNumber>>,
 }
 
 /// What an expression is evaluated at.
@@ -48,8 +51,8 @@ pub(super) fn evaluate<'a>(
     (variables, left): (&[(String, Raw<'a>)], &Cell<usize>),
     place: Location,
 ) -> Result<Raw<'a>, Fault> {
-    let (tops, dead) = (OnceCell::new(), RefCell::new(None));
-    let scope = Scope { text, variables, left, tops, dead };
+    let (tops, dead, no_number) = (OnceCell::new(), RefCell::default(), RefCell::default());
+    let scope = Scope { text, variables, left, tops, dead, no_number };
     let at = At { node: None, position: 1, size: 1, is_whole: true };
     let value = scope.value(expression, &at)?;
     if left.get() == 0 {
@@ -61,7 +64,13 @@ pub(super) fn evaluate<'a>(
             return Err(fault.unwrap_or_else(|| Fault::new(0..text.len(), "it leads to nothing")));
         }
         Value::Nodes(nodes) => nodes.iter().map(|node| scope.piece(node)).collect(),
-        other => vec![Piece::Text(Cow::Owned(Located::new(other.text(&scope).into(), place)))],
+        other => {
+            let written = other.text(&scope);
+            if let Some(operand) = scope.no_number.take().filter(|_| written.contains("NaN")) {
+                return Err(operand.fault(expression, text));
+            }
+            vec![Piece::Text(Cow::Owned(Located::new(written.into(), place)))]
+        }
     };
     Ok(Raw(pieces))
 }
@@ -154,21 +163,21 @@ impl<'a> Scope<'_, 'a> {
                 }
                 value
             }
-            Part::Negation(inner) => Value::Number(-self.value(inner, &part)?.number(self)),
+            Part::Negation(inner) => Value::Number(-self.operand("-", inner, &self.value(inner, &part)?)),
             Part::Binary("|", left, right) => {
                 let mut all = self.nodes(left, at)?;
                 all.extend(self.nodes(right, at)?);
                 Value::Nodes(in_order(all))
             }
             Part::Binary(operator, left, right) => {
-                let left = self.value(left, &part)?;
+                let first = self.value(left, &part)?;
                 match *operator {
-                    "or" if left.boolean() => return Ok(Value::Boolean(true)),
-                    "and" if !left.boolean() => return Ok(Value::Boolean(false)),
+                    "or" if first.boolean() => return Ok(Value::Boolean(true)),
+                    "and" if !first.boolean() => return Ok(Value::Boolean(false)),
                     _ => {}
                 }
-                let right = self.value(right, &part)?;
-                self.binary(operator, &left, &right)
+                let second = self.value(right, &part)?;
+                self.binary(operator, (left, &first), (right, &second))
             }
             Part::Path(start, predicates, steps) => {
                 let mut nodes = match start {
@@ -194,17 +203,34 @@ impl<'a> Scope<'_, 'a> {
         })
     }
 
-    fn binary(&self, operator: &str, left: &Value<'a>, right: &Value<'a>) -> Value<'a> {
-        let numbers = || (left.number(self), right.number(self));
-        match operator {
-            "or" | "and" => Value::Boolean(right.boolean()),
-            "+" => Value::Number(numbers().0 + numbers().1),
-            "-" => Value::Number(numbers().0 - numbers().1),
-            "*" => Value::Number(numbers().0 * numbers().1),
-            "div" => Value::Number(numbers().0 / numbers().1),
-            "mod" => Value::Number(numbers().0 % numbers().1),
-            _ => Value::Boolean(compares(operator, left, right, self)),
+    fn binary(
+        &self,
+        operator: &str,
+        (left, first): (&Expression, &Value<'a>),
+        (right, second): (&Expression, &Value<'a>),
+    ) -> Value<'a> {
+        let calculate: fn(f64, f64) -> f64 = match operator {
+            "or" | "and" => return Value::Boolean(second.boolean()),
+            "+" => |one, other| one + other,
+            "-" => |one, other| one - other,
+            "*" => |one, other| one * other,
+            "div" => |one, other| one / other,
+            "mod" => |one, other| one % other,
+            _ => return Value::Boolean(compares(operator, first, second, self)),
+        };
+        let one = self.operand(operator, left, first);
+        Value::Number(calculate(one, self.operand(operator, right, second)))
+    }
+
+    /// A value as a number of arithmetic. The first that is none is kept.
+    fn operand(&self, operator: &str, expression: &Expression, value: &Value<'a>) -> f64 {
+        let number = value.number(self);
+        let is_first = number.is_nan() && self.no_number.borrow().is_none();
+        if is_first && let Value::Nodes(_) | Value::Text(_) = value {
+            *self.no_number.borrow_mut() =
+                Some(NoNumber::new(operator, (expression, self.text), value, &value.text(self)));
         }
+        number
     }
 
     fn nodes(&self, expression: &Expression, at: &At<'a>) -> Result<Vec<Node<'a>>, Fault> {

@@ -5,6 +5,7 @@
 
 mod evaluate;
 mod functions;
+mod no_number;
 mod parse;
 mod token;
 mod value;
