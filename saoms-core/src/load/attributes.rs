@@ -230,7 +230,9 @@ impl Loader<'_> {
         }
         let shown = element.name();
         let message = format!("{} needs the attribute {}", quoted(shown), quoted(name));
-        let help = format!("write {}", quoted(&format!("<{shown} {name}=\"...\"")));
+        let text = &element.document().text()[..element.start_tag_span().end as usize];
+        let end = if text.ends_with("/>") { "/>" } else { ">" };
+        let help = format!("write {}", quoted(&format!("<{shown} {name}=\"...\"{end}")));
         self.report(Diagnostic::new(&codes::MISSING_ATTRIBUTE, location, message).help(help));
     }
 

@@ -4,7 +4,7 @@ use smol_str::SmolStr;
 
 use super::Loader;
 use super::attributes::is_attribute_as_element;
-use super::vocabulary::{self, Kind, OWN_ELEMENTS};
+use super::vocabulary::{self, Kind, OWN_ELEMENTS, SEVERITY};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
@@ -93,6 +93,9 @@ impl Loader<'_> {
             _ => vocabulary::children(parent).collect(),
         };
         let is_own = family == Family::Own && OWN_ELEMENTS.contains(&name);
+        if is_own && name == SEVERITY.name {
+            self.meant_severity(element);
+        }
         let is_of_sca = vocabulary::is_known(name) || vocabulary::IN_DEFINITIONS.contains(&name);
         let is_misplaced = is_own || (family == Family::Sca && is_of_sca);
         let code = if is_misplaced { &codes::MISPLACED_ELEMENT } else { &codes::UNKNOWN_ELEMENT };
@@ -120,7 +123,10 @@ impl Loader<'_> {
                 self.report(one.suggest_edits(format!("replace {} with `include`", quoted(name)), edits));
                 return Some("include");
             }
-            self.report(one.help(holds()));
+            self.report(match is_own {
+                true => one.help(format!("it can stand in {}", list(vocabulary::own_parents(name)))),
+                false => one.help(holds()),
+            });
             return None;
         }
         let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
@@ -169,7 +175,7 @@ impl Loader<'_> {
             let is_known =
                 vocabulary::children(kind).any(|known| known == name) || kind.children.iter().any(is_made);
             if family == Family::Own
-                && name == "severity"
+                && name == SEVERITY.name
                 && vocabulary::SEVERITY_PARENTS.contains(&kind.name)
             {
                 self.severity(child, element);
@@ -246,8 +252,11 @@ impl Loader<'_> {
     }
 
     /// Reports an element of SAOMS that is not in its namespace, with what puts it there.
-    pub(super) fn own_without_namespace(&mut self, element: Element<'_>) {
+    fn own_without_namespace(&mut self, element: Element<'_>) {
         let name = element.local_name();
+        if name == SEVERITY.name {
+            self.meant_severity(element);
+        }
         let root = element.document().root();
         let file = element.document().file();
         let message = format!(
@@ -393,4 +402,15 @@ pub(super) fn variant(element: Element<'_>, prefix: &str) -> SmolStr {
 pub(super) fn is_defined(element: Element<'_>) -> bool {
     let name = meant_name(element);
     vocabulary::VARIANTS.iter().any(|(_, variants)| variants.contains(&name))
+}
+
+/// Names in a sentence: `a`, `b` and `c`.
+fn list(names: &[&str]) -> String {
+    match names {
+        [most @ .., last] if !most.is_empty() => {
+            let most: Vec<String> = most.iter().copied().map(quoted).collect();
+            format!("{} and {}", most.join(", "), quoted(last))
+        }
+        names => names.iter().copied().map(quoted).collect(),
+    }
 }

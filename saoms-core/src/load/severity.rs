@@ -4,7 +4,7 @@ use super::Loader;
 use super::vocabulary::SEVERITY;
 use crate::diagnostic::{Level, nearest, quoted};
 use crate::model::{Origin, SeverityRule};
-use crate::source::Located;
+use crate::source::{Located, Location};
 use crate::xml::Element;
 
 impl Loader<'_> {
@@ -18,10 +18,18 @@ impl Loader<'_> {
         let is_wrong = level.is_none() || reason.is_none();
         let level = level.unwrap_or_else(|| Located::new(Level::Allow, code.location));
         let reason = reason.unwrap_or_else(|| Located::new("".into(), code.location));
-        let file = element.document().file();
-        let within = parent.parent().is_some().then(|| parent.span().in_file(file));
-        let origin = Origin::of(element);
+        let (origin, within) = (Origin::of(element), within(parent));
         self.severities.push(SeverityRule { origin, code, level, reason, is_wrong, within });
+    }
+
+    /// Remembers what a `severity` that lacks its prefix, or stands where it cannot, would be about: that is not told beside it.
+    pub(super) fn meant_severity(&mut self, element: Element<'_>) {
+        let (Some(parent), Some(code)) = (element.parent(), element.attribute("code")) else { return };
+        let code = code.trimmed();
+        let (level, reason) =
+            (Located::new(Level::Allow, code.location), Located::new("".into(), code.location));
+        let (origin, within) = (Origin::of(element), within(parent));
+        self.severities.push(SeverityRule { origin, code, level, reason, is_wrong: true, within });
     }
 
     fn level(&mut self, element: Element<'_>) -> Option<Located<Level>> {
@@ -44,4 +52,9 @@ impl Loader<'_> {
         }
         None
     }
+}
+
+/// What a severity in an element is about; `None` for the whole composite.
+fn within(parent: Element<'_>) -> Option<Location> {
+    parent.parent().is_some().then(|| parent.span().in_file(parent.document().file()))
 }

@@ -248,9 +248,9 @@ fn what_is_wrong_with_severities_is_found() {
         2:101-105 error S1011: `level` is `deny` and has to be `allow`, `note`, `warning` or `error`
           fix: replace it with `error` [2:101-105 "error"]
         3:2-16 error S1008: `saoms:severity` needs the attribute `reason`
-          help: write `<saoms:severity reason="..."`
+          help: write `<saoms:severity reason="..."/>`
         3:46-60 error S1008: `saoms:severity` needs the attribute `code`
-          help: write `<saoms:severity code="..."`
+          help: write `<saoms:severity code="..."/>`
         3:75-84 error S1011: the attribute `reason` is empty
         4:118-126 error S1004: `severity` is an element of SAOMS: it has to be in the namespace `urn:saoms:1`
           help: write `<saoms:severity .../>`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
@@ -330,4 +330,30 @@ fn severities_hold_for_what_is_only_counted() {
     assert!(!notes.told.contains(" error "), "{}", notes.told);
     let allowed = all("allow");
     assert!(allowed.runs && !allowed.told.contains("S1007"), "{}", allowed.told);
+}
+
+#[test]
+fn a_severity_without_its_prefix_is_told_and_not_what_it_is_about() {
+    let severity = "<severity code=\"S4001\" level=\"allow\" reason=\"one dashboard for both\"/>";
+    expect![[r#"
+        3:134-142 error S1004: `severity` is an element of SAOMS: it has to be in the namespace `urn:saoms:1`
+          help: write `<saoms:severity .../>`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
+          fix: replace `severity` with `saoms:severity` [3:134-142 "saoms:severity"]
+    "#]]
+    .assert_eq(&of(&clocks(severity, ""), &[]).told);
+}
+
+#[test]
+fn an_element_of_saoms_that_stands_elsewhere_says_where_it_can() {
+    let inside = severity("S2026", "allow");
+    let looping = "<saoms:loop name=\"x\"/><saoms:interface.rust interface=\"y\"/>";
+    expect![[r#"
+        2:21-35 error S1005: `saoms:severity` cannot stand in `property`
+          help: it can stand in `composite`, `component`, `service`, `reference`, `wire` and `include`
+        2:93-103 error S1005: `saoms:loop` cannot stand in `composite`
+          help: it can stand in `component`
+        2:115-135 error S1005: `saoms:interface.rust` cannot stand in `composite`
+          help: it can stand in `service` and `reference`
+    "#]]
+    .assert_eq(&of(&format!("<property name=\"p\">{inside}</property>{looping}"), &[]).told);
 }

@@ -62,6 +62,15 @@ pub const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust", "lo
 /// The elements of SCA that a `severity` stands in.
 pub const SEVERITY_PARENTS: &[&str] = &["composite", "component", "service", "reference", "wire", "include"];
 
+/// The elements of SCA that an element of SAOMS stands in.
+pub(in crate::load) fn own_parents(name: &str) -> &'static [&'static str] {
+    match name {
+        "severity" => SEVERITY_PARENTS,
+        "interface.rust" => &["service", "reference"],
+        _ => &["component"],
+    }
+}
+
 /// What a composite says about how bad a diagnostic is.
 pub static SEVERITY: Kind = Kind {
     name: "severity",
