@@ -166,6 +166,7 @@ codes! {
     EFFECTOR_CLASH = "S4507" Error "effector-clash": "Two loops of a component change one effector.";
     ENTRY_REPEATED = "S4508" Error "entry-repeated": "A loop adds an entry that is there already.";
     LOOP_REFERENCE = "S4509" Error "loop-reference": "A loop has a reference of the same name as another one of the component, with another interface.";
+    LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "A loop is named, and nothing is said that changes it.";
 }
 
 /// Whether errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of every rule of a crate of

@@ -62,6 +62,18 @@ fn a_composite_adds_replaces_removes_moves_and_parametrises_loops() {
 }
 
 #[test]
+fn a_loop_of_which_nothing_changes_is_told() {
+    assert_eq!(
+        faults("<saoms:loop name=\"BatteryMS\"/>\n<saoms:loop name=\"PathMS\" remove=\"false\"/>"),
+        "3:2-12 warning S4510: this changes nothing: the component has the loop `BatteryMS` by its class
+  help: remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties
+4:2-12 warning S4510: this changes nothing: the component has the loop `PathMS` by its class
+  help: remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties
+"
+    );
+}
+
+#[test]
 fn values_of_loops_come_from_properties_of_the_composite() {
     let text = cart(
         "<saoms:loop name=\"CollisionMS\"><property name=\"patience\" source=\"$patience\"/></saoms:loop>",

@@ -12,7 +12,7 @@ use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Loop, Part};
 use crate::registry::Registry;
-use crate::source::Text;
+use crate::source::{Location, Text};
 use crate::xml::escaped;
 
 /// The loops of a component in their order, and whether nothing about them is wrong.
@@ -77,6 +77,9 @@ pub(super) fn plan<'a>(
                 usual -= 1;
             }
             (Some(place), class) => {
+                if is_sound {
+                    unchanged(one, member, report);
+                }
                 loops[place].element = Some(one);
                 if let Some(class) = class {
                     loops[place].class = class;
@@ -158,6 +161,26 @@ fn fits_together(one: &Loop, report: &mut Report<'_>) -> bool {
         return false;
     }
     true
+}
+
+/// Says that an element names a loop that the component has, and leaves all of it as it is. What was meant to change it may be wrong, which is told.
+fn unchanged(one: &Loop, member: &Member<'_>, report: &mut Report<'_>) {
+    let says_something = [&one.class, &one.before, &one.after].into_iter().any(Option::is_some);
+    let document = &member.composite.document;
+    let span = one.origin().element(document).span();
+    let is_inside = |at: Location| at.file == document.file() && span.contains(at.span);
+    if says_something
+        || !one.properties.is_empty()
+        || report.diagnostics().iter().any(|told| is_inside(told.location))
+    {
+        return;
+    }
+    let message =
+        format!("this changes nothing: the component has the loop {} by its class", quoted(&one.name));
+    let one = Diagnostic::new(&codes::LOOP_UNCHANGED, one.tag(), message);
+    report.push(
+        one.help("remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties"),
+    );
 }
 
 /// Reports a name that is none of a component's loops.
