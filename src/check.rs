@@ -6,13 +6,14 @@ use std::path::Path;
 use saoms_core::assembly::Assembly;
 use saoms_core::check::Options;
 use saoms_core::diagnostic::Severity;
-use serde_json::{Value, json};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::{CheckArguments, CheckFormat};
 use crate::folder::{Several, checked_each};
-use crate::output::{counted, eprint, print};
-use crate::wiring;
+use crate::output::{counted, eprint, print, print_json};
+use crate::wiring::Wiring;
 
 pub(crate) fn check(arguments: &CheckArguments) -> Exit {
     let asked =
@@ -37,32 +38,26 @@ fn tell<T>(
     format: CheckFormat,
 ) -> Exit {
     let Several { checked: outcome, made, fleets } = several;
-    let wired: Vec<(&Path, &Assembly)> =
-        made.iter().filter_map(|(path, made)| Some((path.as_path(), assembly(made)?))).collect();
-    let wiring = match wired[..] {
-        [] => None,
-        [(_, only)] if *fleets == 1 => Some(wiring::value(only)),
-        _ => {
-            let by_file = wired.iter().map(|(path, one)| (path.display().to_string(), wiring::value(one)));
-            Some(Value::Object(by_file.collect()))
-        }
-    };
+    let wired: Vec<(&Path, Wiring<'_>)> =
+        made.iter().filter_map(|(path, made)| Some((path.as_path(), Wiring(assembly(made)?)))).collect();
+    let wiring = Wired { of: &wired, is_one: *fleets == 1 };
     match format {
-        CheckFormat::Json => print(&written(outcome.json(), wiring)),
+        CheckFormat::Json if wired.is_empty() => print_json(&outcome.json()),
+        CheckFormat::Json => print_json(&With(&outcome.json(), "wiring", wiring)),
+        CheckFormat::Sarif if wired.is_empty() => print_json(&outcome.sarif()),
         CheckFormat::Sarif => {
             let mut log = outcome.sarif();
-            if let Some(wiring) = wiring {
-                log["runs"][0]["properties"] = json!({ "wiring": wiring });
-            }
-            print(&written(log, None));
+            let run = log["runs"][0].take();
+            let properties = With(&Value::Null, "wiring", wiring);
+            print_json(&With(&log, "runs", [With(&run, "properties", properties)]));
         }
         CheckFormat::Human => {
             eprint(&outcome.human(Severity::Note));
-            for (path, assembly) in wired {
+            for (path, wiring) in &wired {
                 if *fleets > 1 {
                     print(&format!("{}\n", path.display()));
                 }
-                print(&wiring::text(assembly));
+                print(wiring);
             }
             let errors = counted(outcome.count(Severity::Error), "error");
             let warnings = counted(outcome.count(Severity::Warning), "warning");
@@ -78,10 +73,32 @@ fn tell<T>(
     if outcome.count(Severity::Error) == 0 { Exit::Done } else { Exit::WrongInput }
 }
 
-/// JSON as text, with the wiring report in it where there is one.
-fn written(mut value: Value, wiring: Option<Value>) -> String {
-    if let Some(wiring) = wiring {
-        value["wiring"] = wiring;
+/// An object in which one entry is another one.
+struct With<'a, T>(&'a Value, &'static str, T);
+
+impl<T: Serialize> Serialize for With<'_, T> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let With(object, name, value) = self;
+        let mut all = to.serialize_map(None)?;
+        for (key, value) in object.as_object().into_iter().flatten().filter(|(key, _)| key != name) {
+            all.serialize_entry(key, value)?;
+        }
+        all.serialize_entry(name, value)?;
+        all.end()
     }
-    format!("{value:#}\n")
+}
+
+/// The wiring of several fleets, each by its first file; that of one alone.
+struct Wired<'a> {
+    of: &'a [(&'a Path, Wiring<'a>)],
+    is_one: bool,
+}
+
+impl Serialize for Wired<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        match self.of {
+            [(_, only)] if self.is_one => only.serialize(to),
+            all => to.collect_map(all.iter().map(|(path, wiring)| (path.display().to_string(), wiring))),
+        }
+    }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use saoms_core::check::{Options, expand as expanded};
 use saoms_core::diagnostic::Severity;
-use saoms_core::format::{WIDTH, format};
+use saoms_core::format::{Formatted, WIDTH};
 use saoms_core::source::FileId;
 use saoms_core::xml;
 
@@ -27,7 +27,7 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
     let text = Arc::new(expansion.text(first, outcome.diagnostics()));
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
     match xml::parse(FileId(0), &text).document {
-        Some(document) => print(&format(&document, WIDTH)),
+        Some(document) => print(&Formatted { document: &document, width: WIDTH }),
         None => print(&text),
     }
     Exit::Done

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, Setting, SeveritySetting, Variable};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human, json, sarif};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Human, Severity, json, sarif};
 use saoms_core::load::{Finder, STANDARD_INPUT, load_file, read, read_from, read_values};
 use saoms_core::model::{Composite, Contribution};
 use saoms_core::plugin::{Search, open_named};
@@ -145,9 +145,9 @@ impl<T> Checked<T> {
     }
 
     /// The diagnostics of at least this severity, as people read them.
-    pub(crate) fn human(&self, least: Severity) -> String {
-        let shown: Vec<Diagnostic> = self.told().filter(|one| one.severity >= least).cloned().collect();
-        human(&shown, &self.sources, std::io::stderr().is_terminal())
+    pub(crate) fn human(&self, least: Severity) -> Human<'_> {
+        let shown = self.told().filter(|one| one.severity >= least);
+        Human::of(shown, &self.sources, std::io::stderr().is_terminal())
     }
 
     /// All diagnostics as one JSON object.

@@ -1,15 +1,16 @@
 //! `saoms fmt`: writes composites in one layout.
 
 use std::collections::HashSet;
+use std::fmt::{self, Display};
 use std::fs::{self, OpenOptions};
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use saoms_core::diagnostic::{Diagnostics, human};
-use saoms_core::format::format;
+use saoms_core::format::Formatted;
 use saoms_core::load::composites_below;
 use saoms_core::source::{FileId, Sources};
-use saoms_core::xml;
+use saoms_core::xml::{self, Document};
 
 use crate::Exit;
 use crate::arguments::FmtArguments;
@@ -72,12 +73,13 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
     let is_input = path == Path::new(INPUT);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let file = read_or_input(path, arguments.max_size, &mut sources, &mut diagnostics);
-    let formatted = file.and_then(|file| formatted(file, arguments.width, &sources, &mut diagnostics));
-    let (Some(file), Some(formatted)) = (file, formatted) else {
+    let document = file.and_then(|file| well_formed(file, &sources, &mut diagnostics));
+    let Some(document) = document else {
         let diagnostics = diagnostics.into_sorted();
         return Outcome::Wrong(human(&diagnostics, &sources, io::stderr().is_terminal()));
     };
-    let is_same = **sources.get(file).text() == *formatted;
+    let formatted = Formatted { document: &document, width: arguments.width };
+    let is_same = is_same(&formatted, document.text());
     if arguments.check {
         return if is_same { Outcome::Formatted } else { Outcome::Unformatted };
     }
@@ -89,20 +91,33 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
     written.map_or_else(Outcome::NotWritten, |()| Outcome::Formatted)
 }
 
-/// The formatted text, unless the file is not well-formed.
-fn formatted(file: FileId, width: usize, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<String> {
+/// The document, unless the file is not well-formed.
+fn well_formed(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Document> {
     let parsed = xml::parse(file, sources.get(file).text());
-    match (parsed.fault, parsed.document) {
-        (None, Some(document)) => Some(format(&document, width)),
-        (fault, _) => {
-            fault.into_iter().for_each(|one| diagnostics.push(one));
+    match parsed.fault {
+        None => parsed.document,
+        Some(fault) => {
+            diagnostics.push(fault);
             None
         }
     }
 }
 
+/// Whether what is shown is this text, found without keeping it.
+fn is_same(shown: &impl Display, text: &str) -> bool {
+    struct Rest<'t>(&'t str);
+    impl fmt::Write for Rest<'_> {
+        fn write_str(&mut self, part: &str) -> fmt::Result {
+            self.0 = self.0.strip_prefix(part).ok_or(fmt::Error)?;
+            Ok(())
+        }
+    }
+    let mut rest = Rest(text);
+    fmt::Write::write_fmt(&mut rest, format_args!("{shown}")).is_ok() && rest.0.is_empty()
+}
+
 /// Gives the file another text, whole or not at all: the text is written beside it and takes its name.
-fn replace(path: &Path, text: &str) -> io::Result<()> {
+fn replace(path: &Path, text: &impl Display) -> io::Result<()> {
     // What links lead to is replaced, not the link.
     let path = fs::canonicalize(path)?;
     let about = fs::metadata(&path)?;
@@ -113,7 +128,10 @@ fn replace(path: &Path, text: &str) -> io::Result<()> {
     OpenOptions::new().write(true).open(&path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
     let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(text.as_bytes())?;
+    let mut buffered = BufWriter::new(&mut file);
+    write!(buffered, "{text}")?;
+    buffered.flush()?;
+    drop(buffered);
     file.as_file().set_permissions(about.permissions())?;
     file.as_file().sync_all()?;
     file.persist(&path)?;

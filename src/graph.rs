@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
 use saoms_core::check::{Census, Options, Variable};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Human, Severity};
 use saoms_core::graph::{Diagram, dot, mermaid, svg};
 use saoms_core::load::{Finder, load_file, read_values};
 use saoms_core::model::Contribution;
@@ -66,7 +66,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let of_options: Vec<Diagnostic> = found.iter().filter(is_of_option).cloned().collect();
     if contribution.composites().is_empty() || !of_options.is_empty() {
         let shown = if of_options.is_empty() { &found } else { &of_options };
-        eprint(&human(shown, &sources, io::stderr().is_terminal()));
+        eprint(&Human::of(shown, &sources, io::stderr().is_terminal()));
         return Exit::WrongInput;
     }
     // How many there are, a check finds: a picture asks for no more than it needs.

@@ -1,16 +1,28 @@
 //! Writing to standard output and standard error, where a closed pipe is no reason to fail.
 
-use std::io::{self, Write};
+use std::fmt::Display;
+use std::io::{self, BufWriter, Write};
 
-/// Writes text to standard output.
-pub(crate) fn print(text: &str) {
-    let _ = try_print(text);
+use serde::Serialize;
+
+/// Writes what can be shown to standard output, piece by piece.
+pub(crate) fn print(shown: &(impl Display + ?Sized)) {
+    let _ = try_print(shown);
 }
 
-/// Writes text to standard output. A reader that went away (`saoms components | head`) is not an error.
-pub(crate) fn try_print(text: &str) -> io::Result<()> {
-    let mut output = io::stdout().lock();
-    unless_closed(output.write_all(text.as_bytes()).and_then(|()| output.flush()))
+/// The same. A reader that went away (`saoms components | head`) is not an error.
+pub(crate) fn try_print(shown: &(impl Display + ?Sized)) -> io::Result<()> {
+    let mut output = BufWriter::new(io::stdout().lock());
+    unless_closed(write!(output, "{shown}").and_then(|()| output.flush()))
+}
+
+/// Writes data to standard output as JSON, piece by piece.
+pub(crate) fn print_json(value: &impl Serialize) {
+    let mut output = BufWriter::new(io::stdout().lock());
+    // Nothing fails but writing.
+    if serde_json::to_writer_pretty(&mut output, value).is_ok() {
+        let _ = output.write_all(b"\n").and_then(|()| output.flush());
+    }
 }
 
 /// What came of writing, where it is no fault that nobody reads on.
@@ -21,9 +33,10 @@ pub(crate) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Writes text to standard error.
-pub(crate) fn eprint(text: &str) {
-    let _ = io::stderr().lock().write_all(text.as_bytes());
+/// Writes what can be shown to standard error, piece by piece.
+pub(crate) fn eprint(shown: &(impl Display + ?Sized)) {
+    let mut output = BufWriter::new(io::stderr().lock());
+    let _ = write!(output, "{shown}").and_then(|()| output.flush());
 }
 
 /// `1 error`, `2 errors`.

@@ -1,11 +1,13 @@
 //! The wiring report of `saoms check --wiring`: every topic with its writers and readers.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::time::Duration;
 
 use saoms_api::format_duration;
 use saoms_core::assembly::{Assembly, End, Topic, Traffic};
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 
 /// Components of one class that use a topic alike.
 struct Group<'a> {
@@ -30,38 +32,47 @@ fn groups<'a>(ends: &[End], assembly: &'a Assembly) -> Vec<Group<'a>> {
     all
 }
 
-/// The topics for people, one below the other.
-pub(crate) fn text(assembly: &Assembly) -> String {
-    let traffic = Traffic::of(assembly);
-    let mut out = String::new();
-    for topic in &traffic.topics {
-        out += &format!("{}  {} topic of {}", topic.name, topic.kind.name(), topic.message);
-        if !topic.writers.is_empty() {
-            out += &format!(", {} messages/s at one an execution", rate(topic));
+/// The report about a fleet: text for people, and data for machines. It is made while it is written, as it can be larger than the fleet.
+pub(crate) struct Wiring<'a>(pub(crate) &'a Assembly);
+
+impl fmt::Display for Wiring<'_> {
+    /// The topics one below the other.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let traffic = Traffic::of(self.0);
+        if traffic.topics.is_empty() {
+            return out.write_str("no topics\n\n");
         }
-        out += "\n";
-        for (does, ends) in [("published by", &topic.writers), ("read by", &topic.readers)] {
-            let groups = groups(ends, assembly);
-            if groups.is_empty() {
-                out += &format!("  {does} nobody\n");
+        for topic in &traffic.topics {
+            write!(out, "{}  {} topic of {}", topic.name, topic.kind.name(), topic.message)?;
+            if !topic.writers.is_empty() {
+                write!(out, ", {} messages/s at one an execution", rate(topic))?;
             }
-            for group in &groups {
-                out += &format!("  {does} {}\n", shown(group));
+            writeln!(out)?;
+            for (does, ends) in [("published by", &topic.writers), ("read by", &topic.readers)] {
+                let groups = groups(ends, self.0);
+                if groups.is_empty() {
+                    writeln!(out, "  {does} nobody")?;
+                }
+                for group in &groups {
+                    writeln!(out, "  {does} {group}")?;
+                }
             }
         }
-    }
-    match out.is_empty() {
-        true => "no topics\n\n".to_owned(),
-        false => out + "\n",
+        writeln!(out)
     }
 }
 
-fn shown(group: &Group<'_>) -> String {
-    let every = group.period.map_or_else(String::new, |period| format!(" every {}", format_duration(period)));
-    match group.paths[..] {
-        [only] => format!("{only} ({}{every})", group.class),
-        [first, .., last] => format!("{} of {}{every}: {first} to {last}", group.paths.len(), group.class),
-        [] => String::new(),
+impl fmt::Display for Group<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let every =
+            self.period.map_or_else(String::new, |period| format!(" every {}", format_duration(period)));
+        match self.paths[..] {
+            [only] => write!(out, "{only} ({}{every})", self.class),
+            [first, .., last] => {
+                write!(out, "{} of {}{every}: {first} to {last}", self.paths.len(), self.class)
+            }
+            [] => Ok(()),
+        }
     }
 }
 
@@ -71,28 +82,46 @@ fn rate(topic: &Topic) -> String {
     if rate < 10.0 { format!("{}", (rate * 10.0).round() / 10.0) } else { format!("{rate:.0}") }
 }
 
-/// The topics for machines.
-pub(crate) fn value(assembly: &Assembly) -> Value {
-    let ends = |ends: &[End]| -> Vec<Value> {
-        let group = |group: Group<'_>| {
-            json!({
-                "class": group.class,
-                "period_us": group.period.map(|period| u64::try_from(period.as_micros()).unwrap_or(u64::MAX)),
-                "messages_per_execution": group.parts,
-                "components": group.paths,
-            })
-        };
-        groups(ends, assembly).into_iter().map(group).collect()
-    };
-    let topic = |topic: &Topic| {
-        json!({
-            "name": topic.name,
-            "kind": topic.kind.name(),
-            "message": topic.message,
-            "messages_per_second": topic.rate(),
-            "writers": ends(&topic.writers),
-            "readers": ends(&topic.readers),
-        })
-    };
-    json!({ "topics": Traffic::of(assembly).topics.iter().map(topic).collect::<Vec<_>>() })
+impl Serialize for Wiring<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        /// A topic as machines read it.
+        #[derive(Serialize)]
+        struct Row<'a> {
+            kind: &'static str,
+            message: &'a str,
+            messages_per_second: f64,
+            name: &'a str,
+            readers: Vec<Group<'a>>,
+            writers: Vec<Group<'a>>,
+        }
+        struct Rows<'a>(&'a Traffic, &'a Assembly);
+        impl Serialize for Rows<'_> {
+            fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+                let Rows(traffic, assembly) = *self;
+                to.collect_seq(traffic.topics.iter().map(|topic| Row {
+                    kind: topic.kind.name(),
+                    message: &topic.message,
+                    messages_per_second: topic.rate(),
+                    name: &topic.name,
+                    readers: groups(&topic.readers, assembly),
+                    writers: groups(&topic.writers, assembly),
+                }))
+            }
+        }
+        let mut object = to.serialize_map(Some(1))?;
+        object.serialize_entry("topics", &Rows(&Traffic::of(self.0), self.0))?;
+        object.end()
+    }
+}
+
+impl Serialize for Group<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let period = self.period.map(|period| u64::try_from(period.as_micros()).unwrap_or(u64::MAX));
+        let mut object = to.serialize_map(Some(4))?;
+        object.serialize_entry("class", self.class)?;
+        object.serialize_entry("components", &self.paths)?;
+        object.serialize_entry("messages_per_execution", &self.parts)?;
+        object.serialize_entry("period_us", &period)?;
+        object.end()
+    }
 }

@@ -92,6 +92,8 @@ impl Finding {
     /// Adds a line of help.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Finding {
+        // Most have one, and a fleet may have as many findings as components.
+        self.help.reserve_exact(1);
         self.help.push(text.into());
         self
     }
@@ -106,6 +108,7 @@ impl Finding {
     /// Adds a further place that explains it, with what is to be seen there.
     #[must_use]
     pub fn label(mut self, place: Place, text: impl Into<String>) -> Finding {
+        self.others.reserve_exact(1);
         self.others.push((place, text.into()));
         self
     }

@@ -23,7 +23,6 @@ use crate::messages::{
 use player::Player;
 
 pub use player::Event;
-pub(crate) use scenario::blocks;
 pub use scenario::{Drawn, Happening, Line, Next, Scenario, Spot, Written, next};
 
 /// What a composite says about the environment.

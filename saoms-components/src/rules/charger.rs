@@ -1,9 +1,11 @@
 //! Chargers where no robot can be.
 
+use std::collections::HashMap;
+
 use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
 
 use super::map::areas;
-use super::robots::robots;
+use super::robots::{Known, robots};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -19,18 +21,27 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let areas = areas(fleet);
+    let robots = robots(fleet);
+    let mut by_world: HashMap<usize, Vec<&Known>> = HashMap::new();
+    for robot in robots.iter() {
+        if let Some(world) = robot.world {
+            by_world.entry(world).or_default().push(robot);
+        }
+    }
     let mut findings = Vec::new();
-    for robot in robots(fleet).iter() {
-        let Some(area) = areas.iter().find(|area| Some(area.index) == robot.world) else { continue };
-        let Some(problem) = area.problem(robot.charger) else { continue };
-        let message = format!("the charger of robot {} is at {}, {problem}", robot.number, robot.charger);
-        let in_columns = u32::try_from(robot.charger.x).is_ok_and(|column| column < area.map.width());
-        let place = if in_columns { robot.charger_place(fleet) } else { robot.column_place(fleet) };
-        let finding = Finding::new(place, message);
-        let help =
-            "give it a free block: `chargeX` is its column, `chargeY` its row, by default the robot's number";
-        findings.push(area.explain(finding.help(help), robot.charger));
+    if by_world.is_empty() {
+        return findings;
+    }
+    for area in areas(fleet) {
+        for robot in by_world.get(&area.index).into_iter().flatten() {
+            let Some(problem) = area.problem(robot.charger) else { continue };
+            let message = format!("the charger of robot {} is at {}, {problem}", robot.number, robot.charger);
+            let in_columns = u32::try_from(robot.charger.x).is_ok_and(|column| column < area.map.width());
+            let place = if in_columns { robot.charger_place(fleet) } else { robot.column_place(fleet) };
+            let finding = Finding::new(place, message);
+            let help = "give it a free block: `chargeX` is its column, `chargeY` its row, by default the robot's number";
+            findings.push(area.explain(finding.help(help), robot.charger));
+        }
     }
     findings
 }

@@ -1,10 +1,14 @@
 //! Maps whose parts are not connected.
 
+use std::collections::HashSet;
+use std::ops::Range;
+
 use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
 
-use super::map::{Area, Luggage, area, luggage};
+use super::looks::Looks;
+use super::map::{Area, Luggage, area, luggage, rows};
 use super::robots::{Known, may_be_others, robots};
-use crate::environment::{Spot, Written, blocks};
+use crate::environment::{Spot, Written};
 use crate::grid::{Block, Map};
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -28,18 +32,25 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     }
     let parts = Parts::of(&area.map);
     // A charger where no robot can be is reported: nobody knows which part it is meant to be in.
-    if robots.iter().any(|robot| parts.part(robot.charger).is_none()) {
-        return Vec::new();
-    }
-    let chargers: Vec<u32> = robots.iter().filter_map(|robot| parts.part(robot.charger)).collect();
-    luggage(fleet).iter().flat_map(|piece| judge(&area, &parts, &chargers, piece)).collect()
+    let chargers: Option<HashSet<u32>> = robots.iter().map(|robot| parts.part(robot.charger)).collect();
+    let Some(chargers) = chargers else { return Vec::new() };
+    let mut reached = Reached { area: &area, parts: &parts, chargers: &chargers, looks: Looks::default() };
+    luggage(fleet).iter().flat_map(|piece| judge(&mut reached, piece)).collect()
 }
 
-fn judge(area: &Area, parts: &Parts<'_>, chargers: &[u32], piece: &Luggage) -> Vec<Finding> {
-    let mut findings: Vec<Finding> = [&piece.from, &piece.to]
-        .into_iter()
-        .filter_map(|spot| cut_off(area, parts, chargers, piece, spot))
-        .collect();
+/// What robots get to.
+struct Reached<'a> {
+    area: &'a Area,
+    parts: &'a Parts,
+    /// The parts in which there are chargers.
+    chargers: &'a HashSet<u32>,
+    looks: Looks,
+}
+
+fn judge(reached: &mut Reached<'_>, piece: &Luggage) -> Vec<Finding> {
+    let mut findings: Vec<Finding> =
+        [&piece.from, &piece.to].into_iter().filter_map(|spot| cut_off(reached, piece, spot)).collect();
+    let parts = reached.parts;
     let ends = [&piece.from, &piece.to].map(|spot| spot.value.block().and_then(|block| parts.part(block)));
     if let [Some(from), Some(to)] = ends
         && from != to
@@ -56,22 +67,30 @@ fn judge(area: &Area, parts: &Parts<'_>, chargers: &[u32], piece: &Luggage) -> V
 }
 
 /// What is wrong with a spot that no robot can reach from its charger.
-fn cut_off(
-    area: &Area,
-    parts: &Parts<'_>,
-    chargers: &[u32],
-    piece: &Luggage,
-    spot: &Written<Spot>,
-) -> Option<Finding> {
+fn cut_off(reached: &mut Reached<'_>, piece: &Luggage, spot: &Written<Spot>) -> Option<Finding> {
     const HELP: &str = "open a way through the blocked blocks, or put a robot with its charger there";
-    let is_cut = |block: &Block| parts.part(*block).is_some_and(|part| !chargers.contains(&part));
+    let Reached { area, parts, chargers, looks } = reached;
     if let Some(block) = spot.value.block() {
         let message = format!("no way on the map leads to {block} from the charger of any robot");
-        return is_cut(&block).then(|| Finding::new(piece.place(spot), message).help(HELP));
+        let is_cut = parts.part(block).is_some_and(|part| !chargers.contains(&part));
+        return is_cut.then(|| Finding::new(piece.place(spot), message).help(HELP));
     }
     let (first, last) = spot.value.corners(Some(&area.map))?;
-    let free = || blocks(first, last, Some(&area.map)).filter(|block| area.map.is_free(*block));
-    let (cut, all) = (free().filter(is_cut).count(), free().count());
+    let (mut cut, mut all) = (0, 0);
+    let (rows, columns) = rows(first, last, &area.map);
+    for row in rows {
+        for part in parts.between(row, &columns) {
+            let free = part.end.min(columns.end) - part.start.max(columns.start);
+            all += free;
+            cut += if chargers.contains(&part.part) { 0 } else { free };
+            if !looks.admit(1) {
+                return None;
+            }
+        }
+        if !looks.admit(1) {
+            return None;
+        }
+    }
     let message = format!(
         "no way on the map leads to {cut} of the {all} free blocks here from the charger of any robot"
     );
@@ -80,35 +99,124 @@ fn cut_off(
 }
 
 /// The parts of a map between which no way leads.
-struct Parts<'m> {
-    map: &'m Map,
-    /// The part of each block, from 1; 0 where it is blocked.
-    parts: Vec<u32>,
+struct Parts {
+    /// The free blocks beside one another in a row, row by row.
+    ranges: Vec<FreeRange>,
+    /// Where each row starts in the ranges, and where the last ends.
+    rows: Vec<usize>,
 }
 
-impl<'m> Parts<'m> {
-    fn of(map: &'m Map) -> Parts<'m> {
-        let (mut parts, mut count, mut open) = (vec![0; map.size()], 0, Vec::new());
-        for start in 0..map.size() {
-            if parts[start] != 0 || !map.is_free(map.block(start)) {
-                continue;
+/// Columns of a row in which free blocks are beside one another.
+#[derive(Clone, Copy, Debug)]
+struct FreeRange {
+    start: u32,
+    end: u32,
+    /// The first range of the part that it belongs to.
+    part: u32,
+}
+
+impl Parts {
+    /// Joins ranges that touch from row to row. What it takes follows from the blocked blocks and the rows, not from how many blocks are free.
+    fn of(map: &Map) -> Parts {
+        let (mut ranges, mut rows): (Vec<FreeRange>, Vec<usize>) = (Vec::new(), vec![0]);
+        for row in 0..map.height() {
+            let (mut above, end) = (rows.len().checked_sub(2).map_or(0, |row| rows[row]), ranges.len());
+            for Range { start, end: own_end } in map.free_ranges(row, 0..map.width()) {
+                let own = ranges.len();
+                ranges.push(FreeRange { start, end: own_end, part: own as u32 });
+                // What ends before this one touches none that comes later.
+                while above < end && ranges[above].end <= start {
+                    above += 1;
+                }
+                let mut other = above;
+                while other < end && ranges[other].start < own_end {
+                    let (one, two) = (root(&mut ranges, own), root(&mut ranges, other));
+                    ranges[one.max(two)].part = one.min(two) as u32;
+                    other += 1;
+                }
             }
-            count += 1;
-            parts[start] = count;
-            open.push(map.block(start));
+            rows.push(ranges.len());
+        }
+        for range in 0..ranges.len() {
+            ranges[range].part = root(&mut ranges, range) as u32;
+        }
+        Parts { ranges, rows }
+    }
+
+    /// The ranges with blocks in these columns of a row.
+    fn between(&self, row: u32, columns: &Range<u32>) -> &[FreeRange] {
+        let row = row as usize;
+        let (Some(start), Some(end)) = (self.rows.get(row), self.rows.get(row + 1)) else { return &[] };
+        let all = &self.ranges[*start..*end];
+        let from = all.partition_point(|range| range.end <= columns.start);
+        let to = all.partition_point(|range| range.start < columns.end);
+        &all[from..to.max(from)]
+    }
+
+    /// The part that a block is in; `None` where it is blocked, or outside the map.
+    fn part(&self, block: Block) -> Option<u32> {
+        let (column, row) = (u32::try_from(block.x).ok()?, u32::try_from(block.y).ok()?);
+        self.between(row, &(column..column + 1)).first().map(|range| range.part)
+    }
+}
+
+/// The first range of a part as far as it is known, with shorter ways there for the next time (Tarjan and van Leeuwen, "Worst-case Analysis
+/// of Set Union Algorithms", 1984: path halving).
+fn root(ranges: &mut [FreeRange], mut range: usize) -> usize {
+    while ranges[range].part as usize != range {
+        let above = ranges[range].part as usize;
+        ranges[range].part = ranges[above].part;
+        range = above;
+    }
+    range
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use saoms_api::Chance;
+
+    use super::*;
+
+    /// The blocks of each part, found block by block.
+    fn flooded(map: &Map) -> HashMap<Block, Block> {
+        let mut parts = HashMap::new();
+        for start in (0..map.size()).map(|place| map.block(place)) {
+            let mut open = vec![start];
             while let Some(block) = open.pop() {
-                for beside in block.neighbours().into_iter().filter(|beside| map.is_free(*beside)) {
-                    if let Some(place) = map.place(beside).filter(|place| parts[*place] == 0) {
-                        parts[place] = count;
-                        open.push(beside);
-                    }
+                if map.is_free(block) && !parts.contains_key(&block) {
+                    parts.insert(block, start);
+                    open.extend(block.neighbours());
                 }
             }
         }
-        Parts { map, parts }
+        parts
     }
 
-    fn part(&self, block: Block) -> Option<u32> {
-        self.map.place(block).map(|place| self.parts[place]).filter(|part| *part != 0)
+    #[test]
+    fn two_blocks_are_in_one_part_where_a_way_leads_from_one_to_the_other() {
+        let mut chance = Chance::new(7);
+        for (width, height) in [(1, 1), (1, 9), (9, 1), (5, 4), (12, 9), (70, 5), (130, 12)] {
+            for _ in 0..20 {
+                let mut map = Map::new(width, height);
+                for place in 0..map.size() {
+                    if chance.range(0..=99) < 40 {
+                        map.set_blocked(map.block(place));
+                    }
+                }
+                let (parts, known) = (Parts::of(&map), flooded(&map));
+                let mut names = HashMap::new();
+                for block in (0..map.size()).map(|place| map.block(place)) {
+                    let (part, known) = (parts.part(block), known.get(&block));
+                    assert_eq!(part.is_some(), known.is_some(), "{block} of {map:?}");
+                    if let (Some(part), Some(known)) = (part, known) {
+                        assert_eq!(names.entry(known).or_insert(part), &part, "{block} of {map:?}");
+                    }
+                }
+                let different: HashSet<u32> = names.values().copied().collect();
+                assert_eq!(different.len(), names.len(), "{map:?}");
+            }
+        }
     }
 }

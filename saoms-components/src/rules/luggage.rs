@@ -2,8 +2,9 @@
 
 use saoms_api::{Code, ComponentView, Finding, FleetRule, FleetView, Severity};
 
-use super::map::{Area, Luggage, area, luggage};
-use crate::environment::{Spot, Written, blocks};
+use super::looks::Looks;
+use super::map::{Area, Luggage, area, luggage, rows};
+use crate::environment::{Spot, Written};
 use crate::messages::AREA;
 use crate::world::World;
 
@@ -25,11 +26,11 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let says =
         |component: &ComponentView<'_>| component.has_broker || component.publishes.contains(&AREA.name());
     let is_said = fleet.misses::<World>() || fleet.components().iter().any(says);
-    let mut findings = Vec::new();
+    let (mut findings, mut looks) = (Vec::new(), Looks::default());
     for piece in luggage(fleet) {
         for spot in [&piece.from, &piece.to] {
             match &area {
-                Some(area) => findings.extend(judge(area, &piece, spot)),
+                Some(area) => findings.extend(judge(area, &piece, spot, &mut looks)),
                 None if spot.value == Spot::Anywhere && !is_said => {
                     let message = "`random` needs an area to draw from, and nothing in the fleet says one";
                     let help = "add a `saoms.World`, or write two corners such as `(1,0)..(10,10)`";
@@ -42,7 +43,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     findings
 }
 
-fn judge(area: &Area, piece: &Luggage, spot: &Written<Spot>) -> Option<Finding> {
+fn judge(area: &Area, piece: &Luggage, spot: &Written<Spot>, looks: &mut Looks) -> Option<Finding> {
     let place = piece.place(spot);
     if let Some(block) = spot.value.block() {
         let problem = area.problem(block)?;
@@ -50,7 +51,12 @@ fn judge(area: &Area, piece: &Luggage, spot: &Written<Spot>) -> Option<Finding> 
         return Some(area.explain(finding.help("robots collect and deposit luggage on free blocks"), block));
     }
     let (first, last) = spot.value.corners(Some(&area.map))?;
-    if !blocks(first, last, Some(&area.map)).any(|block| area.map.is_free(block)) {
+    let (mut rows, columns) = rows(first, last, &area.map);
+    // Most often the first row says it.
+    let is_free = rows.any(|row| {
+        !looks.admit(1 + columns.len() / 64) || area.map.free_ranges(row, columns.clone()).next().is_some()
+    });
+    if !is_free {
         let message = format!("there is no free block from {first} to {last}, so no luggage can be there");
         return Some(Finding::new(place, message).help("choose blocks of the map that are not blocked"));
     }

@@ -1,5 +1,7 @@
 //! The map of a fleet, as rules look at it.
 
+use std::cell::OnceCell;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -14,20 +16,22 @@ pub(super) struct Area {
     pub(super) index: usize,
     pub(super) map: Map,
     pub(super) properties: WorldProperties,
+    /// Which value says first that a block is blocked.
+    blocked: OnceCell<HashMap<Block, usize>>,
 }
 
-/// All worlds whose maps are right.
-pub(super) fn areas(fleet: &FleetView<'_>) -> Vec<Area> {
+/// All worlds whose maps are right. Each is made when it is asked for, as a map may take megabytes.
+pub(super) fn areas<'f>(fleet: &'f FleetView<'_>) -> impl Iterator<Item = Area> + use<'f> {
     let worlds = fleet.all::<World>();
-    worlds
-        .filter_map(|(index, properties)| Some(Area { index, map: properties.map().ok()?, properties }))
-        .collect()
+    worlds.filter_map(|(index, properties)| {
+        Some(Area { index, map: properties.map().ok()?, properties, blocked: OnceCell::new() })
+    })
 }
 
 /// The map of the fleet; `None` where there is no world, or where several, or one with a fault, leave open which one is meant.
 pub(super) fn area(fleet: &FleetView<'_>) -> Option<Area> {
-    let mut areas = areas(fleet);
-    (fleet.all::<World>().count() == 1 && !fleet.misses::<World>()).then(|| areas.pop()).flatten()
+    let is_one = fleet.indices::<World>().take(2).count() == 1 && !fleet.misses::<World>();
+    is_one.then(|| areas(fleet).next()).flatten()
 }
 
 impl Area {
@@ -40,10 +44,16 @@ impl Area {
         (!self.map.is_free(block)).then(|| "blocked on the map".to_owned())
     }
 
+    fn blocked(&self) -> &HashMap<Block, usize> {
+        self.blocked.get_or_init(|| {
+            let all = self.properties.blocked.iter().enumerate().rev();
+            all.filter_map(|(value, text)| Some((text.parse().ok()?, value))).collect()
+        })
+    }
+
     /// Adds where the block is blocked, or where the map's size is said.
     pub(super) fn explain(&self, finding: Finding, block: Block) -> Finding {
-        let blocked = self.properties.blocked.iter().position(|text| text.parse() == Ok(block));
-        if let Some(value) = blocked {
+        if let Some(&value) = self.blocked().get(&block) {
             let all = 0..self.properties.blocked[value].len();
             return finding
                 .label(Place::property("blocked").part(value, all).in_component(self.index), "blocked here");
@@ -97,4 +107,13 @@ pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<Luggage> {
         }
     }
     all
+}
+
+/// The rows of an area between two corners, and its columns, as far as they are on the map.
+pub(super) fn rows(first: Block, last: Block, map: &Map) -> (Range<u32>, Range<u32>) {
+    let side = |first: i32, last: i32, length: u32| {
+        let end = u32::try_from(last).map_or(0, |last| length.min(last + 1));
+        u32::try_from(first).unwrap_or(0).min(end)..end
+    };
+    (side(first.y, last.y, map.height()), side(first.x, last.x, map.width()))
 }

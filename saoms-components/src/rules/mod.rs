@@ -5,6 +5,7 @@
 
 mod charger;
 mod divided;
+mod looks;
 mod luggage;
 mod map;
 mod number;

@@ -1,9 +1,12 @@
 //! Breakdowns of robots that do not exist.
 
+use std::collections::HashMap;
+
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity, nearest};
 
+use super::looks::Looks;
 use super::robots::{Known, may_be_others, robots};
-use crate::environment::{Drawn, Environment, Happening, Scenario, Written};
+use crate::environment::{Drawn, Environment, Happening, Scenario};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -18,9 +21,14 @@ pub(super) static RULE: FleetRule = FleetRule {
     check,
 };
 
+/// What it costs to compare a name with another one, in looks.
+const NAME: usize = 50;
+
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let severity = if may_be_others(fleet) { Severity::Warning } else { Severity::Error };
+    let names = Names::of(fleet, &robots);
+    let mut looks = Looks::default();
     let mut findings = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
@@ -28,33 +36,54 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             let Happening::Breakdown(robot) = &line.happening else { continue };
             let text = &properties.scenario[line.text][robot.bytes.clone()];
             let place = Place::property("scenario").part(line.text, robot.bytes.clone()).in_component(index);
-            findings
-                .extend(judge(fleet, &robots, robot, text, place).map(|finding| finding.severity(severity)));
+            let finding = judge(&robots, &names, robot.value, text, place, &mut looks);
+            findings.extend(finding.map(|finding| finding.severity(severity)));
         }
     }
     findings
 }
 
+/// What robots are called by.
+struct Names<'r> {
+    /// The number of the first robot with an ID or a path.
+    by_name: HashMap<&'r str, u32>,
+    /// In order.
+    numbers: Vec<u32>,
+}
+
+impl<'r> Names<'r> {
+    fn of(fleet: &FleetView<'r>, robots: &'r [Known]) -> Names<'r> {
+        let mut by_name = HashMap::with_capacity(robots.len());
+        for robot in robots {
+            by_name.entry(robot.properties.id.as_str()).or_insert(robot.number);
+            by_name.entry(fleet.components()[robot.index].path).or_insert(robot.number);
+        }
+        let mut numbers: Vec<u32> = robots.iter().map(|robot| robot.number).collect();
+        numbers.sort_unstable();
+        Names { by_name, numbers }
+    }
+
+    /// How many robots have numbers from the one to the other.
+    fn between(&self, least: u32, most: u32) -> usize {
+        let up_to = |most: u32| self.numbers.partition_point(|number| *number <= most);
+        up_to(most).saturating_sub(self.numbers.partition_point(|number| *number < least))
+    }
+}
+
 fn judge(
-    fleet: &FleetView<'_>,
     robots: &[Known],
-    written: &Written<Drawn<u32>>,
+    names: &Names<'_>,
+    Drawn { least, most }: Drawn<u32>,
     text: &str,
     place: Place,
+    looks: &mut Looks,
 ) -> Option<Finding> {
-    let named = robots
-        .iter()
-        .find(|robot| robot.properties.id == text || fleet.components()[robot.index].path == text);
-    if let Some(robot) = named.filter(|robot| robot.number != written.value.least) {
-        let number = robot.number;
-        let message = format!(
-            "`{text}` stands for robot {}, and the robot of this name has the number {number}",
-            written.value.least
-        );
+    if let Some(number) = names.by_name.get(text).filter(|number| **number != least) {
+        let message =
+            format!("`{text}` stands for robot {least}, and the robot of this name has the number {number}");
         return Some(Finding::new(place, message).instead(number.to_string()));
     }
-    let Drawn { least, most } = written.value;
-    let known = robots.iter().filter(|robot| (least..=most).contains(&robot.number)).count();
+    let known = names.between(least, most);
     if known as u64 > u64::from(most - least) {
         return None;
     }
@@ -65,7 +94,9 @@ fn judge(
     };
     let ids = robots.iter().map(|robot| robot.properties.id.as_str());
     let finding = Finding::new(place, message);
-    Some(match nearest(text, ids.clone()).filter(|_| !text.starts_with(|sign: char| sign.is_ascii_digit())) {
+    let is_name = !text.starts_with(|sign: char| sign.is_ascii_digit());
+    let near = (is_name && looks.admit(NAME * robots.len())).then(|| nearest(text, ids.clone())).flatten();
+    Some(match near {
         Some(near) => finding.instead(near),
         None if robots.is_empty() => finding.help("add it to the composite, or leave the event out"),
         None => {

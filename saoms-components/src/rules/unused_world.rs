@@ -1,5 +1,7 @@
 //! Worlds that no robot is in.
 
+use std::collections::{HashMap, HashSet};
+
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
 use super::map::{Area, areas};
@@ -25,13 +27,34 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     if robots.is_empty() || may_be_others(fleet) || fleet.misses::<Robot>() {
         return Vec::new();
     }
-    let is_used = |area: &Area| {
-        fleet.components().iter().any(|one| one.wires.iter().any(|(_, target)| *target == area.index))
-    };
-    let (used, unused): (Vec<Area>, Vec<Area>) = areas(fleet).into_iter().partition(is_used);
-    let mut findings: Vec<Finding> = unused.iter().map(|area| without_robots(fleet, area)).collect();
-    findings.extend(robots.iter().filter_map(|robot| beside(fleet, robot, &robots, &used)));
+    // The robot that is wired first to each world, and what else is wired to.
+    let mut first: HashMap<usize, &Known> = HashMap::new();
+    for robot in robots.iter() {
+        if let Some(world) = robot.world {
+            first.entry(world).or_insert(robot);
+        }
+    }
+    let used: HashSet<usize> =
+        fleet.components().iter().flat_map(|one| one.wires.iter().map(|(_, target)| *target)).collect();
+    let mut findings = Vec::new();
+    // The last world that robots are wired to in each composite, by what paths there start with.
+    let mut around: HashMap<&str, (usize, &Known)> = HashMap::new();
+    for area in areas(fleet) {
+        let index = area.index;
+        if !used.contains(&index) {
+            findings.push(without_robots(fleet, &area));
+        } else if let Some(robot) = first.get(&index) {
+            around.insert(composite(fleet.components()[index].path), (index, robot));
+        }
+    }
+    let lost = robots.iter().filter(|robot| robot.world.is_none());
+    findings.extend(lost.filter_map(|robot| beside(fleet, robot, &around)));
     findings
+}
+
+/// The path of the composite that a component is in, with the slash behind it.
+fn composite(path: &str) -> &str {
+    path.rfind('/').map_or("", |at| &path[..=at])
 }
 
 fn without_robots(fleet: &FleetView<'_>, area: &Area) -> Finding {
@@ -44,26 +67,17 @@ fn without_robots(fleet: &FleetView<'_>, area: &Area) -> Finding {
     Finding::new(Place::component(area.index), message).help(help)
 }
 
-/// Says that a robot is in no world, where others around it are in one.
-fn beside(fleet: &FleetView<'_>, robot: &Known, robots: &[Known], used: &[Area]) -> Option<Finding> {
-    if robot.world.is_some() {
-        return None;
-    }
-    let components = fleet.components();
-    let around = |path: &str| path.rsplit_once('/').map_or(String::new(), |(around, _)| format!("{around}/"));
-    let own = components[robot.index].path;
-    // The innermost world that is around it.
-    let area = used
-        .iter()
-        .filter(|area| own.starts_with(&around(components[area.index].path)))
-        .max_by_key(|area| around(components[area.index].path).len())?;
-    let other = robots.iter().find(|other| other.world == Some(area.index))?;
-    let path = components[area.index].path;
+/// Says that a robot is in no world, where others around it are in one: the innermost one counts.
+fn beside(fleet: &FleetView<'_>, robot: &Known, around: &HashMap<&str, (usize, &Known)>) -> Option<Finding> {
+    let own = composite(fleet.components()[robot.index].path);
+    let mut outer = std::iter::successors(Some(own), |path| Some(composite(path.strip_suffix('/')?)));
+    let (world, other) = outer.find_map(|path| around.get(path))?;
+    let path = fleet.components()[*world].path;
     let message =
         "this robot is wired to no world, and others are: neither the world nor they know where it is";
     let finding = Finding::new(Place::component(robot.index), message)
         .label(Place::component(other.index), "this one is wired");
-    Some(finding.help(match around(path) == around(own) {
+    Some(finding.help(match composite(path) == own {
         true => {
             let name = path.rsplit('/').next().unwrap_or(path);
             format!("give it a `<reference name=\"world\" target=\"{name}\"/>`")

@@ -14,7 +14,7 @@ use crate::messages::Collision;
 pub(super) struct Referee {
     map: Map,
     bodies: BTreeMap<u32, Body>,
-    /// How many robots hold each block of the map.
+    /// How many robots hold each block of the map; empty before the first one enters, since worlds are also made to be checked.
     holders: Vec<u16>,
     /// Robots that meet in a block at present.
     meetings: Vec<Meeting>,
@@ -45,8 +45,7 @@ struct Meeting {
 
 impl Referee {
     pub(super) fn new(map: Map) -> Referee {
-        let holders = vec![0; map.size()];
-        Referee { map, bodies: BTreeMap::new(), holders, meetings: Vec::new(), moving: 0 }
+        Referee { map, bodies: BTreeMap::new(), holders: Vec::new(), meetings: Vec::new(), moving: 0 }
     }
 
     pub(super) fn map(&self) -> &Map {
@@ -212,13 +211,16 @@ impl Referee {
 
     fn hold(&mut self, block: Block) {
         if let Some(place) = self.map.place(block) {
+            if self.holders.is_empty() {
+                self.holders = vec![0; self.map.size()];
+            }
             self.holders[place] = self.holders[place].saturating_add(1);
         }
     }
 
     fn leave(&mut self, robot: u32, block: Block) {
-        if let Some(place) = self.map.place(block) {
-            self.holders[place] = self.holders[place].saturating_sub(1);
+        if let Some(holders) = self.map.place(block).and_then(|place| self.holders.get_mut(place)) {
+            *holders = holders.saturating_sub(1);
         }
         if !self.meetings.is_empty() {
             self.meetings.retain(|meeting| {
@@ -229,8 +231,7 @@ impl Referee {
 
     /// Another robot that holds the block.
     fn holder(&self, block: Block, robot: u32) -> Option<u32> {
-        let place = self.map.place(block)?;
-        if self.holders[place] == 0 {
+        if *self.holders.get(self.map.place(block)?)? == 0 {
             return None;
         }
         let holds = |body: &Body| body.block == block || body.moving.is_some_and(|(to, _)| to == block);

@@ -1,6 +1,6 @@
 //! Who says what to whom: the topics of a fleet with their writers and readers.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
 use saoms_api::TopicKind;
@@ -46,22 +46,65 @@ pub struct End {
 impl Traffic {
     /// The topics of an assembly.
     pub fn of(assembly: &Assembly) -> Self {
-        let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
+        let mut all = Known::default();
         for (component, spec) in assembly.components.iter().enumerate() {
             let loops = || spec.loops.iter().map(|one| one.class.declaration());
             let own = spec.class.declaration();
             let written = own.publishes.iter().chain(loops().flat_map(|one| &one.publishes));
             let read = own.subscribes.iter().chain(loops().flat_map(|one| &one.subscribes));
             for declared in written {
-                add(&mut topics, declared, component, spec, |topic| {
-                    // Who gives it another name means a reader.
-                    topic.is_optional &= declared.optional && topic.name == declared.name;
-                    &mut topic.writers
-                });
+                let topic = all.topic(declared, spec);
+                // Who gives it another name means a reader.
+                topic.is_optional &= declared.optional && topic.name == declared.name;
+                add(&mut topic.writers, component, spec);
             }
-            read.for_each(|topic| add(&mut topics, topic, component, spec, |topic| &mut topic.readers));
+            read.for_each(|declared| add(&mut all.topic(declared, spec).readers, component, spec));
         }
-        Self { topics: topics.into_values().collect() }
+        let mut topics = all.topics;
+        topics.sort_unstable_by(|one, other| one.name.cmp(&other.name));
+        Self { topics }
+    }
+}
+
+/// Topics, with their places by their names.
+#[derive(Default)]
+struct Known<'a> {
+    topics: Vec<Topic>,
+    places: HashMap<&'a str, usize>,
+}
+
+impl<'a> Known<'a> {
+    /// The topic that a component uses under the name that it gives it.
+    fn topic(&mut self, declared: &'a TopicDeclaration, spec: &'a ComponentSpec) -> &mut Topic {
+        let renames = spec.task.as_ref().map_or(&[][..], |task| &task.topic_rename);
+        let renamed = renames.iter().find(|(old, _)| *old == declared.name);
+        let name = renamed.map_or(&declared.name, |(_, new)| new);
+        let place = *self.places.entry(name).or_insert(self.topics.len());
+        if place == self.topics.len() {
+            self.topics.push(Topic {
+                name: name.clone(),
+                kind: declared.kind,
+                message: declared.message.clone(),
+                is_optional: true,
+                writers: Vec::new(),
+                readers: Vec::new(),
+            });
+        }
+        &mut self.topics[place]
+    }
+}
+
+/// Adds a component to the ends of a topic.
+fn add(ends: &mut Vec<End>, component: usize, spec: &ComponentSpec) {
+    match ends.last_mut().filter(|last| last.component == component) {
+        Some(last) => last.parts += 1,
+        None => {
+            // Where each component has topics of its own, there is one end to each.
+            if ends.is_empty() {
+                ends.reserve_exact(1);
+            }
+            ends.push(End { component, parts: 1, period: spec.task.as_ref().map(|task| task.period) });
+        }
     }
 }
 
@@ -118,30 +161,5 @@ impl Pace {
             *sum = sum.saturating_add(more);
             Some(*sum)
         })
-    }
-}
-
-fn add(
-    topics: &mut BTreeMap<String, Topic>,
-    declared: &TopicDeclaration,
-    component: usize,
-    spec: &ComponentSpec,
-    ends: impl FnOnce(&mut Topic) -> &mut Vec<End>,
-) {
-    let renames = spec.task.as_ref().map_or(&[][..], |task| &task.topic_rename);
-    let renamed = renames.iter().find(|(old, _)| *old == declared.name);
-    let name = renamed.map_or(&declared.name, |(_, new)| new);
-    let topic = topics.entry(name.clone()).or_insert_with(|| Topic {
-        name: name.clone(),
-        kind: declared.kind,
-        message: declared.message.clone(),
-        is_optional: true,
-        writers: Vec::new(),
-        readers: Vec::new(),
-    });
-    let ends = ends(topic);
-    match ends.last_mut().filter(|last| last.component == component) {
-        Some(last) => last.parts += 1,
-        None => ends.push(End { component, parts: 1, period: spec.task.as_ref().map(|task| task.period) }),
     }
 }

@@ -1,9 +1,10 @@
 //! Diagnostics that say the same of many places: for people one of them is told, with how many more there are and where.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 
-use super::Diagnostic;
-use crate::source::Sources;
+use super::{Diagnostic, Severity};
+use crate::source::{FileId, Sources};
 
 /// Fewer that are alike are shown one by one.
 const MANY: usize = 5;
@@ -13,26 +14,36 @@ const NAMED: usize = 10;
 /// The diagnostics to show, each with how many more are like it and where. Alike are those of one code and severity in one file whose messages differ
 /// in numbers alone, as those of robots that are written out one by one do.
 pub(super) fn told_together<'d>(
-    diagnostics: &'d [Diagnostic],
+    diagnostics: Vec<&'d Diagnostic>,
     sources: &Sources,
 ) -> Vec<(&'d Diagnostic, Option<String>)> {
-    let mut groups: HashMap<_, Vec<&Diagnostic>> = HashMap::new();
-    let kind = |one: &Diagnostic| (one.code.id, one.severity, one.location.file, shape(&one.message));
-    for one in diagnostics {
-        groups.entry(kind(one)).or_default().push(one);
+    let kinds: Vec<Kind> = diagnostics.iter().map(|one| kind(one)).collect();
+    let mut counts: HashMap<&Kind, usize> = HashMap::new();
+    for kind in &kinds {
+        *counts.entry(kind).or_default() += 1;
     }
-    let mut shown = Vec::with_capacity(diagnostics.len());
-    for one in diagnostics {
-        match groups.get(&kind(one)).map_or(&[][..], Vec::as_slice) {
-            alike @ [first, ..] if alike.len() >= MANY => {
-                if std::ptr::eq(*first, one) {
-                    shown.push((one, Some(others(&alike[1..], sources))));
-                }
+    let is_many = |kind: &&Kind| counts.get(kind).is_some_and(|count| *count >= MANY);
+    let mut many: HashMap<&Kind, Vec<&Diagnostic>> = HashMap::new();
+    for (kind, one) in kinds.iter().zip(&diagnostics).filter(|(kind, _)| is_many(kind)) {
+        many.entry(kind).or_default().push(one);
+    }
+    let told =
+        kinds.iter().zip(&diagnostics).filter_map(|(kind, one)| match many.get(kind).map(Vec::as_slice) {
+            None => Some((*one, None)),
+            Some([first, rest @ ..]) => {
+                std::ptr::eq(*first, *one).then(|| (*one, Some(others(rest, sources))))
             }
-            _ => shown.push((one, None)),
-        }
-    }
-    shown
+            Some([]) => None,
+        });
+    told.collect()
+}
+
+/// What those have in common that are alike: code, severity, file, and the message but for its numbers, as a hash, since there may be very many.
+type Kind = (&'static str, Severity, FileId, u64);
+
+fn kind(one: &Diagnostic) -> Kind {
+    let shape = BuildHasherDefault::<DefaultHasher>::default().hash_one(shape(&one.message));
+    (one.code.id, one.severity, one.location.file, shape)
 }
 
 /// A message without the numbers in it.

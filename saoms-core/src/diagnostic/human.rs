@@ -1,5 +1,7 @@
 //! Diagnostics for people, with a picture of the place in the look of rustc.
 
+use std::fmt;
+
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use super::alike::told_together;
@@ -10,20 +12,43 @@ use crate::source::{FileId, Sources};
 /// All diagnostics as text, one after the other, an empty line between two. Beside the code stands the rule of the SCA
 /// specification, where there is one. Many that are alike are told once, with the lines of the others.
 pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
-    let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
-    let mut out = String::new();
-    for (one, others) in told_together(diagnostics, sources) {
-        if !out.is_empty() {
-            out.push('\n');
-        }
-        let rendered = render(one, others.as_deref(), sources, &renderer);
-        // Where a part of a line is shown, its place is told before it, and the picture has a place without a name besides.
-        let lines = rendered.lines().filter(|line| !is_nameless_place(line));
-        // A blank line that only ends the picture would be two with ours.
-        out.push_str(lines.collect::<Vec<_>>().join("\n").trim_end());
-        out.push('\n');
+    Human::of(diagnostics, sources, colour).to_string()
+}
+
+/// What [`human`] gives, made while it is shown: that of a thousand files with faults is long.
+#[derive(Debug)]
+pub struct Human<'d> {
+    told: Vec<(&'d Diagnostic, Option<String>)>,
+    sources: &'d Sources,
+    renderer: Renderer,
+}
+
+impl<'d> Human<'d> {
+    /// These diagnostics, in colours if asked.
+    pub fn of(
+        diagnostics: impl IntoIterator<Item = &'d Diagnostic>,
+        sources: &'d Sources,
+        colour: bool,
+    ) -> Self {
+        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        Self { told: told_together(diagnostics.into_iter().collect(), sources), sources, renderer }
     }
-    out
+}
+
+impl fmt::Display for Human<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, (one, others)) in self.told.iter().enumerate() {
+            if place > 0 {
+                out.write_str("\n")?;
+            }
+            let rendered = render(one, others.as_deref(), self.sources, &self.renderer);
+            // Where a part of a line is shown, its place is told before it, and the picture has a place without a name besides.
+            let lines = rendered.lines().filter(|line| !is_nameless_place(line));
+            // A blank line that only ends the picture would be two with ours.
+            writeln!(out, "{}", lines.collect::<Vec<_>>().join("\n").trim_end())?;
+        }
+        Ok(())
+    }
 }
 
 /// Whether a line has nothing but `:::` in it, which stands before the path of a file.

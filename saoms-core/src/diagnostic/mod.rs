@@ -20,7 +20,7 @@ mod window;
 pub(crate) use candidates::Candidates;
 pub use codes::Code;
 pub use collector::Diagnostics;
-pub use human::human;
+pub use human::{Human, human};
 pub use json::json;
 pub use level::{Level, SetBy};
 pub use quoted::quoted;

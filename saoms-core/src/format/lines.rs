@@ -1,5 +1,7 @@
 //! The lines that are written.
 
+use std::fmt::{Result, Write};
+
 /// Columns of each level; all columns are a multiple of it.
 const INDENT: usize = 2;
 
@@ -7,25 +9,22 @@ const INDENT: usize = 2;
 const DEEPEST: usize = 40;
 
 /// Text that is being written; its lines end as the first line of the source does.
-pub(super) struct Lines {
-    out: String,
+pub(super) struct Lines<'w> {
+    out: &'w mut dyn Write,
     line_end: &'static str,
-    /// Length of the mark at the start.
-    mark: usize,
+    /// Whether nothing but the mark at the start is written yet.
+    pub(super) is_empty: bool,
+    /// What came of writing; after a failure nothing more is written.
+    result: Result,
 }
 
-impl Lines {
+impl<'w> Lines<'w> {
     /// Nothing but `mark` yet.
-    pub(super) fn new(source: &str, mark: &str) -> Self {
+    pub(super) fn new(source: &str, mark: &str, out: &'w mut dyn Write) -> Self {
         let first = source.find(['\r', '\n']).map_or("", |at| &source[at..]);
         let line_end = if first.starts_with("\r\n") { "\r\n" } else { "\n" };
-        let mut out = String::with_capacity(source.len() + source.len() / 8 + 16);
-        out.push_str(mark);
-        Self { out, line_end, mark: mark.len() }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.out.len() == self.mark
+        let result = out.write_str(mark);
+        Self { out, line_end, is_empty: true, result }
     }
 
     /// The columns that a level takes.
@@ -36,38 +35,45 @@ impl Lines {
     /// Starts a line, after a blank one if asked.
     pub(super) fn next(&mut self, depth: usize, blank: bool) {
         if blank {
-            self.out.push_str(self.line_end);
+            self.push(self.line_end);
         }
         self.next_at(Self::columns(depth));
     }
 
     /// Starts a line with so many blanks.
     pub(super) fn next_at(&mut self, columns: usize) {
-        self.out.push_str(self.line_end);
-        for _ in 0..columns / INDENT {
-            self.out.push_str("  ");
+        const BLANKS: &str = "                ";
+        self.push(self.line_end);
+        let mut left = columns / INDENT * INDENT;
+        while left > 0 {
+            let some = left.min(BLANKS.len());
+            self.push(&BLANKS[..some]);
+            left -= some;
         }
     }
 
     /// Writes text without line ends.
     pub(super) fn push(&mut self, text: &str) {
-        self.out.push_str(text);
+        self.is_empty = false;
+        if self.result.is_ok() {
+            self.result = self.out.write_str(text);
+        }
     }
 
     /// Writes text of the source; each line end in it becomes one of this text, which XML does not tell apart (XML 1.0, 2.11).
     pub(super) fn verbatim(&mut self, mut text: &str) {
         while let Some(at) = text.find(['\r', '\n']) {
-            self.out.push_str(&text[..at]);
-            self.out.push_str(self.line_end);
+            self.push(&text[..at]);
+            self.push(self.line_end);
             let length = if text[at..].starts_with("\r\n") { 2 } else { 1 };
             text = &text[at + length..];
         }
-        self.out.push_str(text);
+        self.push(text);
     }
 
-    /// Ends the last line.
-    pub(super) fn finish(mut self) -> String {
-        self.out.push_str(self.line_end);
-        self.out
+    /// Ends the last line, and says what came of writing all of it.
+    pub(super) fn finish(mut self) -> Result {
+        self.push(self.line_end);
+        self.result
     }
 }

@@ -10,6 +10,8 @@ mod tag;
 #[cfg(test)]
 mod tests;
 
+use std::fmt;
+
 use gap::{Gap, Item};
 use lines::Lines;
 
@@ -37,23 +39,39 @@ const WITH_TEXT: [&str; 3] = ["property", "value", "documentation"];
 ///
 /// A document that [`parse`](crate::xml::parse) gave together with a fault is not whole and not for this function.
 pub fn format(document: &Document, width: usize) -> String {
-    let text = document.text();
-    let mark = if text.starts_with('\u{feff}') { "\u{feff}" } else { "" };
-    let mut writer =
-        Writer { text, lines: Lines::new(text, mark), width, at: mark.len() as u32, open: Vec::new() };
-    let mut end = writer.at;
-    for element in document.elements() {
-        // What is inside an element whose content stays as it is was written with it.
-        if element.span().start >= end {
-            end = writer.element(element);
-        }
-    }
-    writer.finish()
+    Formatted { document, width }.to_string()
 }
 
-struct Writer<'a> {
+/// What [`format`] gives, made while it is shown: of a file with deep elements it is many times as long.
+#[derive(Clone, Copy, Debug)]
+pub struct Formatted<'d> {
+    /// The document.
+    pub document: &'d Document,
+    /// The columns that a start tag has to fit into.
+    pub width: usize,
+}
+
+impl fmt::Display for Formatted<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { document, width } = *self;
+        let text = document.text();
+        let mark = if text.starts_with('\u{feff}') { "\u{feff}" } else { "" };
+        let lines = Lines::new(text, mark, out);
+        let mut writer = Writer { text, lines, width, at: mark.len() as u32, open: Vec::new() };
+        let mut end = writer.at;
+        for element in document.elements() {
+            // What is inside an element whose content stays as it is was written with it.
+            if element.span().start >= end {
+                end = writer.element(element);
+            }
+        }
+        writer.finish()
+    }
+}
+
+struct Writer<'a, 'w> {
     text: &'a str,
-    lines: Lines,
+    lines: Lines<'w>,
     width: usize,
     /// Up to where the text is written.
     at: u32,
@@ -61,7 +79,7 @@ struct Writer<'a> {
     open: Vec<Element<'a>>,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> Writer<'a, '_> {
     /// Writes an element, of one that is laid out only the start tag. Gives the place up to which elements are done.
     fn element(&mut self, element: Element<'a>) -> u32 {
         let span = element.span();
@@ -69,7 +87,7 @@ impl<'a> Writer<'a> {
             self.close(outer);
         }
         let blank = self.gap(span.start);
-        if !self.lines.is_empty() {
+        if !self.lines.is_empty {
             self.lines.next(self.open.len(), blank);
         }
         let content = element.content_span();
@@ -97,7 +115,7 @@ impl<'a> Writer<'a> {
         for Item { text, breaks } in Gap::new(&self.text[self.at as usize..end as usize]) {
             blank = breaks > 1;
             let Some(text) = text else { continue };
-            if self.lines.is_empty() {
+            if self.lines.is_empty {
                 // The very start of the file.
             } else if breaks == 0 {
                 self.lines.push(" ");
@@ -120,7 +138,7 @@ impl<'a> Writer<'a> {
         self.at = element.span().end;
     }
 
-    fn finish(mut self) -> String {
+    fn finish(mut self) -> fmt::Result {
         while let Some(&outer) = self.open.last() {
             self.close(outer);
         }

@@ -7,7 +7,7 @@ use crate::xml::{Attribute, Element};
 const HANG: usize = 4;
 
 /// Writes a start tag, or the whole of an empty element: on one line when it fits.
-pub(super) fn start(element: Element<'_>, is_empty: bool, width: usize, depth: usize, lines: &mut Lines) {
+pub(super) fn start(element: Element<'_>, is_empty: bool, width: usize, depth: usize, lines: &mut Lines<'_>) {
     let close = if is_empty { "/>" } else { ">" };
     let columns = Lines::columns(depth);
     // A line end counts once, however it is written: it may become another one.
@@ -32,13 +32,13 @@ pub(super) fn start(element: Element<'_>, is_empty: bool, width: usize, depth: u
 }
 
 /// Writes an end tag.
-pub(super) fn end(element: Element<'_>, lines: &mut Lines) {
+pub(super) fn end(element: Element<'_>, lines: &mut Lines<'_>) {
     lines.push("</");
     lines.push(element.name());
     lines.push(">");
 }
 
-fn attribute(one: Attribute<'_>, lines: &mut Lines) {
+fn attribute(one: Attribute<'_>, lines: &mut Lines<'_>) {
     let value = one.raw_value();
     let quote = if value.contains('"') { "'" } else { "\"" };
     lines.push(one.name());

@@ -95,7 +95,7 @@ impl Spot {
 }
 
 /// The blocks between two corners, those outside the area left out.
-pub(crate) fn blocks(first: Block, last: Block, area: Option<&Map>) -> impl Iterator<Item = Block> {
+fn blocks(first: Block, last: Block, area: Option<&Map>) -> impl Iterator<Item = Block> {
     let cut = |end: i32, side: fn(&Map) -> u32| {
         area.map_or(end, |area| end.min(i32::try_from(side(area)).unwrap_or(i32::MAX).saturating_sub(1)))
     };

@@ -11,7 +11,6 @@ use std::time::Duration;
 
 use saoms_api::Finding;
 
-pub(crate) use draw::blocks;
 pub use draw::{Drawn, Spot};
 pub use next::{Next, next};
 

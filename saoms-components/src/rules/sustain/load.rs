@@ -15,6 +15,7 @@ use super::Range;
 use super::reach::Ways;
 use crate::environment::Spot;
 use crate::grid::{Block, Map};
+use crate::rules::looks::Looks;
 use crate::rules::map::{Area, Luggage};
 
 /// How many executions a robot off its charger goes on with what it gains in one there.
@@ -41,6 +42,12 @@ pub(super) fn overloaded(
         endless.map(|(luggage, every)| Line { luggage, every: pick(every.least, every.most) }).collect()
     };
     let rarest = lines(|_, most| most.as_secs_f64());
+    // Each line is held to each other one, and to each robot.
+    let sides = (area.map.width() + area.map.height()) as usize;
+    let looks = rarest.len().saturating_mul(sides).saturating_add(ranges.len());
+    if !Looks::default().admit(rarest.len().saturating_mul(looks)) {
+        return None;
+    }
     let usual = lines(|least, most| f64::midpoint(least.as_secs_f64(), most.as_secs_f64()));
     let busiest = usual.iter().min_by(|one, other| one.every.total_cmp(&other.every))?;
     let place = busiest.luggage.whole();

@@ -43,8 +43,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let ranges: Vec<Range> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();
-    let mut ways = Ways::on(&area.map);
     let luggage = luggage(fleet);
+    let chargers = ranges.iter().map(|range| range.charger);
+    let ends = luggage.iter().flat_map(|piece| [&piece.from, &piece.to]);
+    let mut ways = Ways::on(&area.map, chargers.chain(ends.filter_map(|spot| spot.value.block())));
     let mut findings: Vec<Finding> =
         luggage.iter().filter_map(|piece| out_of_reach(&area, &ranges, piece, &mut ways)).collect();
     // What is never brought is no load.

@@ -1,12 +1,13 @@
 //! Luggage that is farther off than any full battery lasts.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::HashMap;
 
 use saoms_api::{Finding, Severity};
 
 use super::Range;
 use crate::environment::Spot;
 use crate::grid::{Block, Map};
+use crate::rules::looks::Looks;
 use crate::rules::map::{Area, Luggage};
 
 pub(super) fn out_of_reach(
@@ -22,6 +23,9 @@ pub(super) fn out_of_reach(
             // Of thousands of robots, the one that reached the last piece, or one that is written behind it, as a rule reaches this one.
             let (before, behind) = ranges.split_at(ways.reached.min(ranges.len()));
             for (place, range) in behind.iter().chain(before).enumerate() {
+                if !ways.looks.admit(LOOK) {
+                    return None;
+                }
                 // What no way leads to is told by another rule.
                 let Some(moves) = ways.moves(range.charger, block)? else { continue };
                 is_reached = range.reaches(moves);
@@ -33,7 +37,7 @@ pub(super) fn out_of_reach(
             }
             let Some(nearest) = nearest.filter(|_| !is_reached) else { continue };
             let is_one = spot.value.block().is_some();
-            let most = ranges.iter().map(Range::most).max().unwrap_or(0);
+            let most = *ways.most.get_or_insert_with(|| ranges.iter().map(Range::most).max().unwrap_or(0));
             let message = format!(
                 "no robot can bring luggage {} {block}: {nearest} moves from the nearest charger, and a full battery lasts for {most} and back",
                 if spot.bytes == piece.from.bytes { "from" } else { "to" }
@@ -59,53 +63,118 @@ fn farthest(area: &Area, spot: Spot) -> Vec<Block> {
 /// How many moves lead from one block to another.
 pub(super) struct Ways<'m> {
     map: &'m Map,
-    /// The moves to a block from all others, row by row.
+    /// The blocks from which ways are asked for, in order.
+    starts: Vec<Block>,
+    /// The same as blocked blocks, which are found faster.
+    marked: Map,
+    /// The moves to a block from each start.
     known: HashMap<Block, Vec<u32>>,
     left: usize,
+    looks: Looks,
     /// The robot that reached the last block.
     reached: usize,
+    /// How many moves from its charger any robot may go, once that was asked for.
+    most: Option<u32>,
 }
 
 /// How many blocks are searched at most, for all luggage together: a check must not take longer than the run.
 const SEARCHED: usize = 20_000_000;
 
+/// How many moves are kept at most.
+const KEPT: usize = 250_000;
+
+/// What it costs to ask for the moves from a charger, which is some searches in lists.
+const LOOK: usize = 5;
+
 /// No way leads there.
 const NO_WAY: u32 = u32::MAX;
 
 impl<'m> Ways<'m> {
-    pub(super) fn on(map: &'m Map) -> Ways<'m> {
-        Ways { map, known: HashMap::new(), left: SEARCHED, reached: 0 }
+    /// Ways from these blocks.
+    pub(super) fn on(map: &'m Map, starts: impl Iterator<Item = Block>) -> Ways<'m> {
+        let mut starts: Vec<Block> = starts.filter(|block| map.contains(*block)).collect();
+        starts.sort_unstable();
+        starts.dedup();
+        let mut marked = Map::new(map.width(), map.height());
+        if !map.is_open() {
+            starts.iter().for_each(|block| _ = marked.set_blocked(*block));
+        }
+        let known = HashMap::new();
+        Ways { map, starts, marked, known, left: SEARCHED, looks: Looks::default(), reached: 0, most: None }
     }
 
     /// The outer `None` says that too much was searched already, the inner one that no way leads there.
     pub(super) fn moves(&mut self, from: Block, to: Block) -> Option<Option<u32>> {
-        let (Some(place), true) = (self.map.place(from), self.map.is_free(to)) else { return Some(None) };
+        let (Ok(start), true) = (self.starts.binary_search(&from), self.map.is_free(to)) else {
+            return Some(None);
+        };
         if self.map.is_open() {
             return Some(Some(from.distance(to)));
         }
         if !self.known.contains_key(&to) {
             self.left = self.left.checked_sub(self.map.size())?;
-            self.known.insert(to, moves_to(self.map, to));
+            if (self.known.len() + 1) * self.starts.len() > KEPT {
+                self.known.clear();
+            }
+            self.known.insert(to, self.moves_to(to));
         }
-        Some(self.known.get(&to)?.get(place).copied().filter(|moves| *moves != NO_WAY))
+        Some(self.known.get(&to)?.get(start).copied().filter(|moves| *moves != NO_WAY))
+    }
+
+    /// The moves to a block from each start. Of the blocks in between no more is kept than that they were reached: a large map has few starts.
+    fn moves_to(&self, to: Block) -> Vec<u32> {
+        let mut moves = vec![NO_WAY; self.starts.len()];
+        let mut unreached = self.map.clone();
+        unreached.set_blocked(to);
+        let (mut open, mut next, mut count) = (vec![to], Vec::new(), 0);
+        while !open.is_empty() {
+            for block in open.drain(..) {
+                if !self.marked.is_free(block)
+                    && let Ok(start) = self.starts.binary_search(&block)
+                {
+                    moves[start] = count;
+                }
+                for beside in block.neighbours() {
+                    if unreached.is_free(beside) {
+                        unreached.set_blocked(beside);
+                        next.push(beside);
+                    }
+                }
+            }
+            std::mem::swap(&mut open, &mut next);
+            count += 1;
+        }
+        moves
     }
 }
 
-/// The moves to a block from all others, row by row.
-fn moves_to(map: &Map, to: Block) -> Vec<u32> {
-    let mut moves = vec![NO_WAY; map.size()];
-    let mut open = VecDeque::from([to]);
-    if let Some(place) = map.place(to) {
-        moves[place] = 0;
-    }
-    while let Some(block) = open.pop_front() {
-        let Some(here) = map.place(block).map(|place| moves[place]) else { continue };
-        for beside in block.neighbours().into_iter().filter(|beside| map.is_free(*beside)) {
-            if let Some(place) = map.place(beside).filter(|place| moves[*place] == NO_WAY) {
-                moves[place] = here + 1;
-                open.push_back(beside);
-            }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_lead_around_walls() {
+        let map = Map::read("..@..\n.@@..\n.....\n..@@@\n..@..").unwrap();
+        let block = Block::new;
+        let starts = [block(0, 0), block(3, 0), block(4, 4), block(2, 0), block(9, 9)];
+        let mut ways = Ways::on(&map, starts.into_iter());
+        let asked = [
+            ((0, 0), (0, 0), Some(0)),
+            ((0, 0), (3, 0), Some(7)),
+            ((3, 0), (0, 0), Some(7)),
+            ((0, 0), (4, 1), Some(7)),
+            // Nowhere, from nowhere, and outside.
+            ((4, 4), (0, 0), None),
+            ((2, 0), (1, 0), None),
+            ((1, 0), (2, 0), None),
+            ((9, 9), (0, 0), None),
+        ];
+        for ((x, y), (to_x, to_y), moves) in asked {
+            assert_eq!(
+                ways.moves(block(x, y), block(to_x, to_y)),
+                Some(moves),
+                "({x},{y}) to ({to_x},{to_y})"
+            );
         }
     }
-    moves
 }
