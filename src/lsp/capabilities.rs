@@ -42,7 +42,7 @@ impl Client {
 
 /// The answer to `initialize`.
 pub(super) fn capabilities() -> Value {
-    let triggers = ["<", "/", "\"", "'", " ", "$", "{", ":", ","];
+    let triggers = ["<", "/", "\"", "'", " ", "$", "{", ":", ",", "[", "@"];
     let capabilities = ServerCapabilities {
         position_encoding: Some(PositionEncodingKind::UTF16),
         text_document_sync: Some(TextDocumentSyncCapability::Options(TextDocumentSyncOptions {

@@ -7,6 +7,7 @@ mod item;
 pub(super) mod names;
 mod paths;
 mod scenario;
+mod sources;
 pub(super) mod table;
 #[cfg(test)]
 mod tests;
@@ -132,7 +133,7 @@ fn value_of(
         Holds::LoopClass => names::loop_classes(scene, element, &value),
         Holds::Composite => names::composites(scene, element, &value),
         Holds::End | Holds::Ends => ends::complete(scene, element, name, value, at),
-        Holds::Source => names::sources(scene, &value),
+        Holds::Source => sources::complete(scene, value, at),
         Holds::Value if is_of(&COMPONENT_PROPERTY) => values::complete(scene, element, value, at),
         Holds::Value => values::of_parameter(scene, element, value, at),
         // The expressions are over properties of the composite.

@@ -1,6 +1,7 @@
 mod beside;
 mod ends;
 mod fleets;
+mod sources;
 
 use super::*;
 use crate::lsp::testing::{composite, scene};
