@@ -63,7 +63,7 @@ fn all_that_is_resolved_is_written_out() {
         <composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:s="urn:saoms:1" name="fleet" targetNamespace="urn:t">
           <component name="hall.Robot_" s:path="hall/Robot">
             <implementation.rust class="example.Robot001"/>
-            <property name="ID">A &lt; &quot;B&quot;</property>
+            <property name="ID">A &lt; "B"</property>
             <property name="charger">
               <x xmlns="">3</x>
               <y xmlns="">4</y>

@@ -376,3 +376,46 @@ fn a_target_of_which_nobody_knows_what_it_means_is_told() {
     );
     assert!(settled(&[&named, &inner]).contains(r#"<reference name="r" target="in.x/T">"#));
 }
+
+/// What is beside a component that autowire wires is not all that is there once composites are resolved.
+#[test]
+fn autowire_that_gets_more_to_choose_from_is_told() {
+    let user =
+        r#"<component name="user"><implementation.java class="a.User"/><reference name="r"/></component>"#;
+    let outer = part(
+        "outer",
+        "",
+        r#"<component name="in"><implementation.composite name="t:in"/></component>
+<component name="wired" autowire="true"><implementation.java class="a.User"/></component>
+<component name="other"><implementation.java class="a.User"/><reference name="r" autowire="true"/><reference name="s" target="wired" autowire="true"/></component>"#,
+    );
+    let inner = part(
+        "in",
+        "autowire=\"true\"",
+        &format!(
+            "{user}<component name=\"not\" autowire=\"false\"><implementation.java class=\"a.X\"/></component>"
+        ),
+    );
+    let told = |texts: &[&str]| {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let files: Vec<_> = texts.iter().map(|text| sources.add("t", *text)).collect();
+        let mut composites: Vec<_> =
+            files.iter().filter_map(|file| load_file(*file, &sources, &mut diagnostics)).collect();
+        let others = composites.split_off(1);
+        let options = Options { assume_classes: true, ..Options::default() };
+        let all = Contribution::with(composites, others);
+        assert!(expand(&all, &registry(), &options, &sources, &mut diagnostics).is_some());
+        diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect::<String>()
+    };
+    expect![[r#"
+        3:35-39 warning S2014: autowire wires component `wired` to others of its composite; once expanded, to any of all composites
+          help: which they are only its class knows: give its references each a `target`
+        4:92-96 warning S2014: autowire wires component `other` to others of its composite; once expanded, to any of all composites
+          help: which they are only its class knows: give its references each a `target`
+        t:1:129-133 warning S2014: autowire wires component `user` to others of its composite; once expanded, to any of all composites
+          help: which they are only its class knows: give its references each a `target`
+    "#]]
+    .assert_eq(&told(&[&outer, &inner]));
+    // Alone all that is there stands beside it.
+    assert_eq!(told(&[&inner]), "");
+}

@@ -1,5 +1,7 @@
 //! Where references lead when composites inside each other are one.
 
+use std::collections::HashSet;
+
 use super::Expanding;
 use super::outer::inside;
 use crate::check::fleet::Kind;
@@ -14,12 +16,9 @@ impl<'a> Expanding<'_, 'a> {
     /// The targets of a reference of a component, each once; those that components around it give it included. An empty name stands for a
     /// reference whose name nobody knows.
     pub(super) fn ends(&self, place: (usize, &str)) -> Vec<String> {
-        let mut all: Vec<String> = Vec::new();
-        for end in self.all_ends(place) {
-            if !all.contains(&end) {
-                all.push(end);
-            }
-        }
+        let mut all = self.all_ends(place);
+        let mut seen = HashSet::new();
+        all.retain(|end| seen.insert(end.clone()));
         all
     }
 

@@ -1,5 +1,6 @@
 //! Fleets in which classes are taken as given, as one composite: what is known is resolved, what is not stays as it is written.
 
+mod autowired;
 mod contracts;
 mod ends;
 mod outer;
@@ -35,6 +36,8 @@ struct Expanding<'f, 'a> {
     wiring: &'f Wiring,
     /// What each component is called, by its place; those that composites implement are not there.
     names: Vec<String>,
+    /// How many components of each scope are there.
+    beside: Vec<usize>,
     like: &'a Composite,
     /// What composites around each component make of its services and its references.
     services: Outer<'a>,
@@ -79,11 +82,14 @@ pub(super) fn given<'a>(
     for (place, name) in runs.iter().zip(names(&paths)) {
         all[*place] = name;
     }
+    let mut beside = vec![0; fleet.scopes.len()];
+    runs.iter().for_each(|place| beside[fleet.members[*place].scope] += 1);
     let expanding = Expanding {
         fleet,
         classes,
         wiring,
         names: all,
+        beside,
         like,
         services: Outer::of(Side::Service, fleet, classes),
         references: Outer::of(Side::Reference, fleet, classes),
@@ -96,6 +102,7 @@ pub(super) fn given<'a>(
     for (place, resolved) in
         resolved.into_iter().enumerate().filter(|(place, _)| fleet.members[*place].runs())
     {
+        expanding.widened(place).into_iter().for_each(|one| report.push(one));
         let library = library(fleet.members[place].component);
         components.push(expanding.component(place, resolved, library, (&mut parameters, silent)));
     }
