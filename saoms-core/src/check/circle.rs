@@ -8,7 +8,7 @@ use super::cycles::cycles;
 use super::fleet::Fleet;
 use super::report::Report;
 use super::target::Provider;
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::source::Location;
 
 /// At most this many wires of one circle are shown.
@@ -48,14 +48,15 @@ impl<'f> Circles<'f> {
     /// Reports every circle at the wire that closes it.
     pub(super) fn check(&self, fleet: &Fleet<'_>, report: &mut Report<'_>) {
         let edges: Vec<(usize, usize)> = self.wires.iter().map(|wire| (wire.member, wire.to)).collect();
-        for circle in cycles(fleet.members.len(), &edges) {
-            self.report(&circle, fleet, report);
-        }
+        cycles(fleet.members.len(), &edges, |circle| self.report(circle, fleet, report));
     }
 
     fn report(&self, circle: &[usize], fleet: &Fleet<'_>, report: &mut Report<'_>) {
         let name = |member: usize| quoted(fleet.members[member].path());
         let Some(last) = circle.last().map(|wire| &self.wires[*wire]) else { return };
+        if report.skip(&codes::CALL_CYCLE, Severity::Error, last.place) {
+            return;
+        }
         if circle.len() == 1 {
             let message =
                 format!("component {} is wired to itself: it would call while it is busy", name(last.member));

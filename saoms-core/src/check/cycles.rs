@@ -1,10 +1,11 @@
 //! Cycles in a directed graph.
 
-/// The cycles among so many nodes that have these edges, each from a node to another one.
+/// Finds the cycles among so many nodes that have these edges, each from a node to another one.
 ///
 /// A cycle is the places of its edges in the order of walking it; there is one for each edge that leads back to where a walk in
-/// order of the nodes came from: without all those there is no cycle. Time and space are linear in the graph.
-pub(super) fn cycles(nodes: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> {
+/// order of the nodes came from: without all those there is no cycle. Time and space are linear in the graph; all cycles together can
+/// have as many edges as its square, so that each is only lent to `found`.
+pub(super) fn cycles(nodes: usize, edges: &[(usize, usize)], mut found: impl FnMut(&[usize])) {
     #[derive(Clone, Copy, PartialEq)]
     enum State {
         New,
@@ -21,7 +22,6 @@ pub(super) fn cycles(nodes: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> 
     let mut leaving: Vec<usize> = (0..edges.len()).collect();
     leaving.sort_by_key(|edge| edges[*edge].0);
     let mut states = vec![State::New; nodes];
-    let mut found = Vec::new();
     // Nodes from the start of a walk, each with its next edge, and the edges between them.
     let mut path: Vec<(usize, usize)> = Vec::new();
     let mut walked: Vec<usize> = Vec::new();
@@ -49,13 +49,12 @@ pub(super) fn cycles(nodes: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> 
                     walked.push(edge);
                 }
                 State::Open(place) => {
-                    let mut cycle = walked[place..].to_vec();
-                    cycle.push(edge);
-                    found.push(cycle);
+                    walked.push(edge);
+                    found(&walked[place..]);
+                    walked.pop();
                 }
                 State::Done => {}
             }
         }
     }
-    found
 }

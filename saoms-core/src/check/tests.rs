@@ -4,8 +4,13 @@ use std::collections::HashSet;
 
 use proptest::prelude::*;
 
-use super::cycles::cycles;
 use super::{endpoint, rename};
+
+fn cycles(nodes: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> {
+    let mut all = Vec::new();
+    super::cycles::cycles(nodes, edges, |cycle| all.push(cycle.to_vec()));
+    all
+}
 
 #[test]
 fn every_cycle_is_cut_at_the_wire_that_closes_it() {
@@ -19,6 +24,16 @@ fn every_cycle_is_cut_at_the_wire_that_closes_it() {
 fn a_long_chain_costs_no_stack() {
     let wires: Vec<_> = (0..200_000).map(|node| (node, (node + 1) % 200_000)).collect();
     assert_eq!(cycles(200_000, &wires).len(), 1);
+}
+
+#[test]
+fn cycles_that_have_most_of_their_edges_in_common_cost_no_memory() {
+    // Each calls the next one, and each the first one: all cycles together have five thousand million edges.
+    let next = (0..100_000).map(|node| (node, node + 1));
+    let wires: Vec<_> = next.chain((1..100_000).map(|node| (node, 0))).collect();
+    let (mut count, mut edges) = (0, 0);
+    super::cycles::cycles(100_001, &wires, |cycle| (count, edges) = (count + 1, edges + cycle.len()));
+    assert_eq!((count, edges), (99_999, 5_000_049_999));
 }
 
 /// Whether there is a cycle, found another way: by taking away what nothing leads to.
