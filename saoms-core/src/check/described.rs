@@ -1,6 +1,7 @@
 //! Component types: held against themselves, against the classes they describe, and against the components that use them.
 
-use std::collections::HashMap;
+use std::cell::OnceCell;
+use std::collections::{HashMap, HashSet};
 
 use saoms_api::PropertyValue;
 
@@ -9,12 +10,12 @@ use super::contracts::{narrows, of_class as of_class_reference};
 use super::fleet::{Fleet, Member};
 use super::given;
 use super::global;
-use super::parameters::Found;
+use super::parameters::{Found, is_misspelt};
 use super::properties::Given;
 use super::report::Report;
 use super::value_type::{self, Typed};
 use super::written::type_and_element;
-use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::{Component, ComponentType, Multiplicity, Part, Property, Reference, Version};
 use crate::source::{Location, Text};
 use crate::xml::escaped;
@@ -170,15 +171,15 @@ pub(super) fn value(described: &ComponentType, name: &str, given: &Given<'_>, re
 
 /// Reports the properties that a component has to give, and does not: those that the file says must be supplied and gives no value.
 pub(super) fn supplied(component: &Component, described: &ComponentType, report: &mut Report<'_>) {
+    let names = OnceCell::new();
+    let is_declared = |name: &str| {
+        let all = || described.properties.iter().map(|one| one.name.as_str()).collect::<HashSet<&str>>();
+        names.get_or_init(all).contains(name)
+    };
     for property in &described.properties {
         let must = property.must_supply().is_some_and(|must| must.value) && !property.has_value();
-        let is_misspelt = || {
-            let unknown = component.properties.iter().filter(|given| {
-                described.properties.iter().all(|declared| declared.name != *given.name.value)
-            });
-            unknown.into_iter().any(|given| nearest(&given.name, [property.name.as_str()]).is_some())
-        };
-        if must && component.property(&property.name).is_none() && !is_misspelt() {
+        let is_missing = must && component.property(&property.name).is_none();
+        if is_missing && !is_misspelt(&property.name, component, is_declared) {
             let message = format!(
                 "component {} lacks the property {}",
                 quoted(&component.name),

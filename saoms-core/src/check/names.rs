@@ -48,9 +48,9 @@ impl Names {
     ) -> Self {
         let mut names = Self::default();
         let composites = with_included(main, contribution);
-        let is_declared = |name: &str| {
-            composites.iter().any(|composite| composite.properties.iter().any(|one| one.name == *name))
-        };
+        let declared = composites.iter().flat_map(|composite| &composite.properties);
+        let declared: HashSet<&str> = declared.map(|one| one.name.as_str()).collect();
+        let is_declared = |name: &str| declared.contains(name);
         for composite in &composites {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {

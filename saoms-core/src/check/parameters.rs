@@ -40,6 +40,9 @@ const MOST_PARTS: usize = 4_000_000;
 /// Values that sources with several can lead to: each component that takes all of a list has each of its values.
 const MOST_VALUES: usize = 4_000_000;
 
+/// Names that a composite does not have which are looked at for one that it has: where a component is full of them they mean nothing by each.
+const MOST_MISSPELT: usize = 100;
+
 /// The properties of one composite, those of what it includes among them.
 #[derive(Default)]
 struct Declared<'a> {
@@ -424,8 +427,8 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
 
 /// Whether the component that a composite implements gives this property under a misspelt name, which is reported.
 pub(super) fn is_misspelt(name: &str, owner: &Component, is_declared: impl Fn(&str) -> bool) -> bool {
-    let mut given = owner.properties.iter();
-    given.any(|given| nearest(&given.name, [name]).is_some() && !is_declared(&given.name))
+    let unknown = owner.properties.iter().filter(|given| !is_declared(&given.name));
+    unknown.take(MOST_MISSPELT).any(|given| nearest(&given.name, [name]).is_some())
 }
 
 /// Whether a file could not be read that may hold a composite, which is reported.
