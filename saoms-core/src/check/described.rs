@@ -11,7 +11,7 @@ use super::fleet::{Fleet, Member};
 use super::given;
 use super::global;
 use super::parameters::{Found, is_misspelt};
-use super::properties::Given;
+use super::properties::{Given, one_value};
 use super::report::Report;
 use super::value_type::{self, Typed};
 use super::written::type_and_element;
@@ -35,6 +35,8 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
             global::check(property, &described.document, &codes::COMPOSITE_VALUE_TYPE, report);
             value_type::named(property, &described.document, report);
             value_type::own(Typed { property, document: &described.document }, report);
+            one_value(property, described.version, report);
+            two_ways(property, report);
         }
         repeated(
             described.services.iter().map(|one| &one.name),
@@ -85,6 +87,16 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
         }
     }
     report.about_all();
+}
+
+/// Reports a property whose value is written as an attribute and inside.
+fn two_ways(property: &Property, report: &mut Report<'_>) {
+    let inside = property.values().first().map(Part::tag);
+    let inside = inside.or_else(|| property.text().map(|text| text.location));
+    let (Some(first), Some(second)) = (property.value(), inside) else { return };
+    let message = format!("the property {} is given a value in two ways", quoted(&property.name));
+    let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message);
+    report.push(one.label(first.location, "the other one").help("keep one of them"));
 }
 
 fn repeated<'t>(

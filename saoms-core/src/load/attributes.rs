@@ -74,14 +74,12 @@ impl Loader<'_> {
         }
         self.newer.push(known.name);
         let location = attribute.name_span().in_file(element.document().file());
-        let message =
-            format!("{} is an attribute of SCA 1.1, and this file is of SCA 1.0", quoted(known.name));
+        let (name, of) = (quoted(known.name), quoted(element.name()));
+        let message = format!("{name} of {of} is an attribute of SCA 1.1, and this file is of SCA 1.0");
         let one = Diagnostic::new(&codes::NEWER_ATTRIBUTE, location, message)
             .help("it counts here, and other programs do not know it: let the file be one of SCA 1.1");
-        self.report(match known.name {
-            "value" => one.help("or write the value as text inside"),
-            _ => one,
-        });
+        let inside = "or write the value as text inside";
+        self.report(if known.name == "value" { one.help(inside) } else { one });
     }
 
     fn unknown(

@@ -68,6 +68,9 @@ pub fn load_component_type(
             (Family::Sca, "service") => made.services.push(loader.service(child, &COMPONENT_SERVICE)),
             (Family::Sca, "reference") => made.references.push(loader.reference(child, &COMPONENT_REFERENCE)),
             (Family::Sca, "property") => made.properties.push(loader.property(child, &COMPOSITE_PROPERTY)),
+            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
+                loader.beside(child);
+            }
             // What else a component type can say is for the containers of other languages.
             (Family::Sca, name) if vocabulary::children(&COMPONENT_TYPE).any(|known| known == name) => {}
             (Family::Sca | Family::Own, _) => _ = loader.unexpected(child, &COMPONENT_TYPE, family),

@@ -170,7 +170,11 @@ impl Loader<'_> {
             } else {
                 self.optional(element, names.0)
             },
-            callback_interface: self.optional(element, names.1),
+            callback_interface: if required && element.attribute(names.1).is_some() {
+                self.required(element, names.1)
+            } else {
+                self.optional(element, names.1)
+            },
             remotable: if family != Family::Foreign { self.boolean(element, "remotable") } else { None },
             policy: self.policy(element),
         });

@@ -11,6 +11,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::definitions;
+use super::intents::{self, Excluded};
 use super::shelf::{Shelf, is_of_definitions};
 use super::vocabulary::XML_SCHEMA;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
@@ -43,6 +44,7 @@ struct Names {
     all: HashMap<(OutsideKind, String), BTreeSet<String>>,
     /// Namespaces of which more is elsewhere.
     open: HashSet<(OutsideKind, String)>,
+    excluded: Excluded,
 }
 
 impl Declared {
@@ -81,6 +83,12 @@ impl Declared {
             self.known.insert(folder.to_owned(), made);
         }
         let names = &self.known[folder];
+        if composite.outside.iter().any(|one| one.kind == OutsideKind::Intent) {
+            let declared =
+                |namespace: &str| names.all.get(&(OutsideKind::Intent, namespace.to_owned())).cloned();
+            intents::misspelt(composite, declared, diagnostics);
+            names.excluded.check(composite, diagnostics);
+        }
         for one in composite.outside.iter().filter(|_| !names.all.is_empty()) {
             let Some((namespace, kind, local)) = meant(one, composite) else { continue };
             let key = (kind, namespace);
@@ -258,5 +266,11 @@ impl Names {
     fn definitions(&mut self, root: Element<'_>, target: &str) {
         self.children(root, "intent", OutsideKind::Intent, target);
         self.children(root, "policySet", OutsideKind::PolicySet, target);
+        for intent in root.children().filter(|one| one.local_name() == "intent") {
+            if let Some(name) = intent.attribute("name").map(|one| one.trimmed()) {
+                let local = name.rsplit(':').next().unwrap_or(&name).to_owned();
+                self.excluded.add(&(target.to_owned(), local), intent);
+            }
+        }
     }
 }

@@ -10,8 +10,11 @@ use super::vocabulary::CONTRIBUTION;
 use super::{Loader, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::Version;
-use crate::source::{FileId, Sources, Text};
+use crate::source::{FileId, Location, Sources, Text};
 use crate::xml::{self, Element};
+
+/// The kinds of imports and exports that are known beside those of namespaces.
+const ENDINGS: [&str; 4] = ["java", "resource", "c", "cpp"];
 
 /// What is imported and exported.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -26,8 +29,12 @@ pub(super) enum Kind {
 pub(super) struct Entry {
     kind: Kind,
     what: String,
+    /// Where it is written.
+    pub(super) at: Location,
     /// The folder of the other contribution, where it is said.
     pub(super) location: Option<PathBuf>,
+    /// Whether nothing else is said of it.
+    is_bare: bool,
 }
 
 /// A composite that runs by itself.
@@ -138,7 +145,17 @@ impl Description {
         let mut loader = Loader::new(version, root.namespace(), diagnostics);
         loader.check_attributes(root, &CONTRIBUTION);
         loader.no_text(root);
-        root.children().for_each(|child| made.add(child, &mut loader));
+        let mut extensions: Option<Location> = None;
+        for child in root.children() {
+            made.add(child, &mut loader);
+            if child.local_name() != "extensions" || child.namespace() != root.namespace() {
+                continue;
+            }
+            match extensions {
+                Some(first) => loader.repeated(child, first, &CONTRIBUTION, "`extensions`"),
+                None => extensions = Some(child.name_location()),
+            }
+        }
         // What composites have to conform to they have by another rule (SCA Assembly 1.1, 13).
         diagnostics.adjust(known, |one| one.rule = Some("ASM12027"));
         made.locations(root, file, sources, diagnostics);
@@ -153,37 +170,63 @@ impl Description {
         }
         let Some(part) = CONTRIBUTION.child(name) else {
             // Imports of other kinds are extensions, whichever namespace they are in.
-            let is_extension = (name.starts_with("import.") || name.starts_with("export."))
-                && nearest(name, CONTRIBUTION.children.iter().copied()).is_none();
-            if !is_extension && !CONTRIBUTION.children.contains(&name) {
+            let ending = name.strip_prefix("import.").or_else(|| name.strip_prefix("export."));
+            let is_extension = ending.is_some_and(|ending| nearest(ending, ENDINGS).is_none());
+            if CONTRIBUTION.children.contains(&name) {
+                loader.beside(child);
+            } else if !is_extension {
                 _ = loader.unexpected(child, &CONTRIBUTION, family);
             }
             return;
         };
-        loader.check_attributes(child, part);
-        let Some(what) = part.attributes.first().and_then(|first| loader.required(child, first.name)) else {
-            return;
-        };
+        loader.parts_of(child, part);
+        let (import, export) = (name.strip_prefix("import"), name.strip_prefix("export"));
+        if let Some("") = import.or(export)
+            && let Some(none) = child.attribute("namespace").filter(|one| one.trimmed().is_empty())
+        {
+            // What is in no namespace.
+            return self.exchange(Kind::Namespace, none.location(), "", child, loader);
+        }
+        let needed = part.attributes.iter().filter(|known| known.required);
+        let mut needed: Vec<Option<Text>> = needed.map(|one| loader.required(child, one.name)).collect();
+        let Some(what) = (!needed.is_empty()).then(|| needed.swap_remove(0)).flatten() else { return };
         if part.name == "deployable" {
             let namespace = namespace(&what, child);
             self.judge(&what, namespace.as_deref(), child, loader);
             return self.deployables.push(Deployable { name: what, namespace });
         }
-        let (list, ending) = match name.strip_prefix("import") {
-            Some(ending) => (&mut self.imports, ending),
-            None => (&mut self.exports, name.trim_start_matches("export")),
-        };
-        let kind = match ending {
-            "" => Kind::Namespace,
-            ".java" => Kind::Java,
+        match import.or(export) {
+            Some("") => self.exchange(Kind::Namespace, what.location, &what, child, loader),
+            Some(".java") => self.exchange(Kind::Java, what.location, &what, child, loader),
             // Files are named by their paths, wherever they are.
-            _ => return,
-        };
+            _ => {}
+        }
+    }
+
+    /// Adds what is imported or exported; warns of what is said twice.
+    fn exchange(
+        &mut self,
+        kind: Kind,
+        at: Location,
+        what: &str,
+        child: Element<'_>,
+        loader: &mut Loader<'_>,
+    ) {
         let location = child.attribute("location").map(|one| one.trimmed());
         // The addresses of contributions elsewhere are no folders.
         let location = location.filter(|location| !location.contains(':'));
         let location = location.map(|location| PathBuf::from(location.as_str()));
-        list.push(Entry { kind, what: what.as_str().to_owned(), location });
+        let is_import = child.local_name().starts_with("import");
+        let list = if is_import { &mut self.imports } else { &mut self.exports };
+        let is_bare = ["location", "version"].iter().all(|one| child.attribute(one).is_none());
+        let is_same = |one: &&Entry| is_bare && one.is_bare && one.is(kind, what) && one.at.file == at.file;
+        if let Some(first) = list.iter().find(is_same) {
+            let how = if is_import { "imported" } else { "exported" };
+            let one = format!("{} is {how} twice", quoted(what));
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, at, one).severity(Severity::Warning);
+            loader.report(one.label(first.at, "the first").help("keep one of them"));
+        }
+        list.push(Entry { kind, what: what.to_owned(), at, location, is_bare });
     }
 }
 

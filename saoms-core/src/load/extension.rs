@@ -91,9 +91,7 @@ impl Loader<'_> {
             "implementation.bpel" => self.process(element),
             "interface.wsdl" => {
                 self.wsdl(element, "interface");
-                if let Some(callback) = element.attribute("callbackInterface") {
-                    self.outside(element, &callback.trimmed(), OutsideKind::Wsdl);
-                }
+                self.wsdl(element, "callbackInterface");
             }
             "binding.ws" => self.wsdl(element, "wsdlElement"),
             "binding.ejb" => {
@@ -175,15 +173,36 @@ impl Loader<'_> {
         let Some(attribute) = element.attribute(name) else { return };
         let text = attribute.trimmed();
         self.outside(element, &text, OutsideKind::Wsdl);
-        if !text.is_empty() && !text.contains('#') {
-            let message = format!("{} names nothing in a WSDL document", quoted(&text));
-            let help = match name {
-                "interface" => format!("write `{text}#wsdl.interface(NAME)`, or `#wsdl.porttype(NAME)`"),
-                _ => format!(
-                    "write `{text}#wsdl.binding(NAME)`, `#wsdl.port(SERVICE/PORT)` or `#wsdl.service(NAME)`"
-                ),
-            };
-            self.wrong_value(attribute, message, &help);
+        let known: &[&str] = match name {
+            "wsdlElement" => &["binding", "port", "endpoint", "service", "porttype", "interface"],
+            _ => &["interface", "porttype"],
+        };
+        let is_known = |fragment: &str| {
+            let inside =
+                fragment.strip_prefix("wsdl.").and_then(|rest| rest.strip_suffix(')')?.split_once('('));
+            inside.is_some_and(|(what, name)| {
+                !name.is_empty() && known.iter().any(|known| known.eq_ignore_ascii_case(what))
+            })
+        };
+        let help = |start: &str| match name {
+            "wsdlElement" => {
+                format!(
+                    "write `{start}#wsdl.binding(NAME)`, `#wsdl.port(SERVICE/PORT)` or `#wsdl.service(NAME)`"
+                )
+            }
+            _ => format!("write `{start}#wsdl.interface(NAME)`, or `#wsdl.porttype(NAME)`"),
+        };
+        match text.split_once('#') {
+            None if !text.is_empty() => {
+                let message = format!("{} names nothing in a WSDL document", quoted(&text));
+                self.wrong_value(attribute, message, &help(&text));
+            }
+            Some((start, fragment)) if fragment.starts_with("wsdl.") && !is_known(fragment) => {
+                let what = if name == "wsdlElement" { "binding, port or service" } else { "interface" };
+                let message = format!("{} is no {what} in a WSDL document", quoted(&format!("#{fragment}")));
+                self.wrong_value(attribute, message, &help(start));
+            }
+            _ => {}
         }
     }
 

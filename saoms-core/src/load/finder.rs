@@ -25,6 +25,8 @@ pub struct Finder {
     pub(super) shelf: Shelf,
     pub(super) imports: Imports,
     pub(super) declared: Declared,
+    /// The contributions around others, of whose descriptions nothing is told.
+    pub(super) around: Option<Imports>,
     /// How many right names are still looked at for wrong ones.
     pub(super) candidates: Candidates,
     /// Whether folders may hold component types.
@@ -42,6 +44,7 @@ impl Finder {
             shelf: Shelf::new(open),
             imports: Imports::default(),
             declared: Declared::default(),
+            around: None,
             candidates: Candidates::default(),
             folders: HashMap::new(),
             side_files: HashMap::new(),

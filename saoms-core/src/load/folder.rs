@@ -48,26 +48,28 @@ impl Finder {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) -> Vec<FolderFleet> {
-        let shelf = &mut self.shelf;
-        shelf.turn_to_folder();
+        self.shelf.turn_to_folder();
         let (mut fleets, mut has_definitions) = (Vec::new(), false);
         let mut waiting = vec![folder.to_owned()];
         while let Some(root) = waiting.pop() {
-            let (files, mut inner) = shelf.contribution(&root);
+            let (files, mut inner) = self.shelf.contribution(&root);
             inner.reverse();
             waiting.extend(inner);
             let description = Description::of(&root, max_size, sources, diagnostics);
             let contribution = Files::read(files, max_size, sources, diagnostics);
             contribution.repeated(describes(&root), max_size, sources, diagnostics);
-            let definitions = shelf.definitions(&root);
+            let definitions = self.shelf.definitions(&root);
             // Without a description nobody says that they belong together.
             let together = if describes(&root) { definitions.len().max(1) } else { 1 };
             for files in definitions.chunks(together) {
                 has_definitions |= self.declared.definitions(files, max_size, sources, diagnostics);
             }
+            if let Some(description) = &description {
+                self.exchange(description, &root, (max_size, sources.open()), diagnostics);
+            }
             let deployables = description.iter().flat_map(|description| &description.deployables);
             let mut deployed: Vec<Option<PathBuf>> =
-                deployables.map(|one| contribution.find(one, shelf, &root, diagnostics)).collect();
+                deployables.map(|one| contribution.find(one, &mut self.shelf, &root, diagnostics)).collect();
             let inside = root.join(DEPLOYABLES);
             deployed.extend(
                 contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some),
@@ -75,7 +77,7 @@ impl Finder {
             contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
         }
         let is_empty = fleets.is_empty() && !has_definitions && !diagnostics.has_errors();
-        unlisted(folder, is_empty, shelf, sources, diagnostics);
+        unlisted(folder, is_empty, &self.shelf, sources, diagnostics);
         fleets
     }
 
@@ -90,6 +92,7 @@ impl Finder {
     ) {
         self.shelf.turn_to_folder();
         let description = Description::read(path.to_owned(), max_size, sources, diagnostics);
+        self.exchange(&description, root, (max_size, sources.open()), diagnostics);
         let (files, _) = self.shelf.contribution(root);
         let contribution = Files::read(files, max_size, sources, &mut Diagnostics::new());
         for deployable in &description.deployables {

@@ -42,6 +42,11 @@ impl Neighbour {
 }
 
 impl Imports {
+    /// For descriptions of which nothing is to be told.
+    pub(super) fn untold(max_size: u64) -> Self {
+        Self { max_size, ..Self::default() }
+    }
+
     /// For a fleet whose composites are in these contributions. What was read is kept.
     pub(super) fn turn_to_fleet(&mut self, given: impl Iterator<Item = PathBuf>, max_size: u64) {
         let mut seen = HashSet::new();
@@ -175,6 +180,20 @@ impl Imports {
         hints
     }
 
+    /// The contributions that that in `root` may import a namespace from, with the namespaces that they export.
+    pub(super) fn around(&mut self, root: &Path, namespace: &str) -> Vec<(PathBuf, Vec<String>)> {
+        let (mut sources, mut untold) = (Sources::new(), Diagnostics::new());
+        _ = self.description(root, &mut sources, &mut untold);
+        let mut all = self.others(root, Kind::Namespace, namespace);
+        all.truncate(MOST_BESIDE);
+        let mut exported = |other: PathBuf| {
+            let exports = &self.description(&other, &mut sources, &mut untold)?.exports;
+            let exports = exports.iter().filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
+            Some((other, exports))
+        };
+        all.into_iter().filter_map(&mut exported).collect()
+    }
+
     /// The contributions that that in `root` may import this from, the likeliest first.
     fn others(&mut self, root: &Path, kind: Kind, what: &str) -> Vec<PathBuf> {
         let own = self.descriptions.get(root).and_then(Option::as_ref);
@@ -206,7 +225,7 @@ impl Imports {
 /// The files of the composites that the contribution of `folder` imports from others, which export them. What is wrong with their descriptions is not told.
 pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
-    let mut imports = Imports { max_size: MAX_SIZE, ..Imports::default() };
+    let mut imports = Imports::untold(MAX_SIZE);
     let root = shelf::root(folder);
     let description = imports.description(&root, &mut sources, &mut diagnostics);
     let entries = description.into_iter().flat_map(|one| &one.imports);
@@ -226,7 +245,7 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
 /// The files of the composites in contributions beside that of `folder` that import what it exports. What is wrong with their descriptions is not told.
 pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
-    let mut imports = Imports { max_size: MAX_SIZE, ..Imports::default() };
+    let mut imports = Imports::untold(MAX_SIZE);
     let root = shelf::root(folder);
     let description = imports.description(&root, &mut sources, &mut diagnostics);
     let entries = description.into_iter().flat_map(|one| &one.exports);

@@ -43,7 +43,7 @@ pub(super) struct Shelf {
     files: HashMap<PathBuf, HashMap<OsString, Vec<PathBuf>>>,
     roots: HashMap<PathBuf, PathBuf>,
     /// The files of contributions that may declare what composites name.
-    declaring: HashMap<PathBuf, Rc<[PathBuf]>>,
+    pub(super) declaring: HashMap<PathBuf, Rc<[PathBuf]>>,
     /// What was looked for, from which folder: names are used again and again.
     found: HashMap<Wanted, Option<PathBuf>>,
     /// Of contributions that were looked through, the files called as composites that are none as far as could be read: the first of each name.
@@ -62,11 +62,11 @@ type Wanted = (PathBuf, Option<Vec<String>>, String);
 
 /// The composites in a folder, and the folders in it, sorted.
 #[derive(Debug, Default)]
-struct Listing {
+pub(super) struct Listing {
     composites: Vec<PathBuf>,
-    folders: Vec<PathBuf>,
+    pub(super) folders: Vec<PathBuf>,
     /// Schemas, WSDL and definitions of policies.
-    declaring: Vec<PathBuf>,
+    pub(super) declaring: Vec<PathBuf>,
 }
 
 /// A way through the folders of a contribution, the upper ones first, that goes on where it stopped.
@@ -314,55 +314,6 @@ impl Shelf {
         (composites, others)
     }
 
-    /// The files that may declare what a composite in `folder` names: those beside it, and those of a contribution that is described as such.
-    pub(super) fn declaring(&mut self, folder: &Path) -> Rc<[PathBuf]> {
-        let root = self.root(folder);
-        let own = self.listing(folder);
-        let of_root = self.declaring_of(&root);
-        // As a rule a folder is one of its contribution.
-        if own.declaring.iter().all(|path| of_root.binary_search(path).is_ok()) {
-            return of_root;
-        }
-        let mut all = [&own.declaring[..], &of_root].concat();
-        all.sort_unstable();
-        all.dedup();
-        all.into()
-    }
-
-    /// Those of the contribution in `root`.
-    fn declaring_of(&mut self, root: &Path) -> Rc<[PathBuf]> {
-        if let Some(known) = self.declaring.get(root) {
-            return Rc::clone(known);
-        }
-        let definitions = root.join("META-INF/definitions.xml");
-        let mut all: Vec<PathBuf> = Some(definitions).filter(|path| path.is_file()).into_iter().collect();
-        let mut waiting = if describes(root) { vec![root.to_owned()] } else { Vec::new() };
-        while let Some(next) = waiting.pop() {
-            let listing = self.listing(&next);
-            all.extend_from_slice(&listing.declaring);
-            waiting.extend_from_slice(&listing.folders);
-        }
-        all.sort_unstable();
-        all.dedup();
-        let all: Rc<[PathBuf]> = all.into();
-        self.declaring.insert(root.to_owned(), Rc::clone(&all));
-        all
-    }
-
-    /// The files of definitions in a contribution, sorted.
-    pub(super) fn definitions(&mut self, root: &Path) -> Vec<PathBuf> {
-        let (mut all, mut waiting) = (Vec::new(), vec![root.to_owned()]);
-        while let Some(next) = waiting.pop() {
-            if next == root || !describes(&next) {
-                let listing = self.listing(&next);
-                all.extend(listing.declaring.iter().filter(|path| is_of_definitions(path)).cloned());
-                waiting.extend_from_slice(&listing.folders);
-            }
-        }
-        all.sort_unstable();
-        all
-    }
-
     /// Whether every file was looked at.
     pub(super) fn is_complete(&self) -> bool {
         !self.is_cut
@@ -375,7 +326,7 @@ impl Shelf {
         self.roots.entry(own).or_insert(root);
     }
 
-    fn listing(&mut self, folder: &Path) -> Rc<Listing> {
+    pub(super) fn listing(&mut self, folder: &Path) -> Rc<Listing> {
         if let Some(known) = self.folders.get(folder) {
             return Rc::clone(known);
         }
@@ -424,7 +375,7 @@ impl Shelf {
         self.head(path).as_ref().is_some_and(|head| head.namespace == namespace)
     }
 
-    fn head(&mut self, path: &Path) -> &Option<Head> {
+    pub(super) fn head(&mut self, path: &Path) -> &Option<Head> {
         self.heads.entry(path.to_owned()).or_insert_with(|| head(path, &self.open))
     }
 }

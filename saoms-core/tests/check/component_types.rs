@@ -315,3 +315,30 @@ fn a_slip_in_a_name_that_a_component_of_an_unknown_class_declares_is_told() {
     let apart = inside("ItemCollection2", "other", "LocalItemCollection", "stockQuotes");
     expect![""].assert_eq(&found(&apart, &[], true));
 }
+
+#[test]
+fn a_value_in_a_component_type_is_one_and_written_once() {
+    let inside = "<property name='a' type='xsd:int'><value>1</value><value>2</value></property><property name='b' type='xsd:int' value='1'><value>2</value></property>
+<property name='c' type='xsd:int' value='1'>2</property><property name='d' type='xsd:int' many='true'><value>1</value><value>2</value></property>
+<property name='e' type='xsd:int' value='1'/><property name='f' type='xsd:int'>2</property>
+<requires/><requires intents=''/><policySetAttachment/><documentation/><extensions><service name='x'/></extensions>";
+    let component = "<component name='S'><implementation.java class='a.Run'/></component>";
+    expect![[r#"
+        Run.componentType:2:52-57 error S3011: the property `a` takes one value, and here are 2
+          Run.componentType:2:36-41 the first
+          help: keep one of them, or write `many="true"` where the property is declared
+        Run.componentType:2:123-128 error S3012: the property `b` is given a value in two ways
+          Run.componentType:2:119-120 the other one
+          help: keep one of them
+        Run.componentType:3:45-46 error S3012: the property `c` is given a value in two ways
+          Run.componentType:3:42-43 the other one
+          help: keep one of them
+        Run.componentType:5:2-10 error S1008: `requires` needs the attribute `intents`
+          help: write `<requires intents="..."/>`
+        Run.componentType:5:35-54 error S1008: `policySetAttachment` needs the attribute `name`
+          help: write `<policySetAttachment name="..."/>`
+        Run.componentType:5:85-92 error S1005: `service` cannot stand in `extensions`
+          help: `extensions` holds no elements of SCA
+    "#]]
+    .assert_eq(&found(component, &[("Run.componentType", inside)], true));
+}

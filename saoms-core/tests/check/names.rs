@@ -143,14 +143,14 @@ fn attributes_of_the_other_version_are_told() {
 <property name="period" value="100"/><property name="number">1</property><service name="TaskInterface"><interface.java interface="unibg.robotics.tca.TaskInterface" remotable="false"/></service></component>
 <wire source="N/other" target="R" replace="true"/>"#;
     expect![[r#"
-        2:106-111 warning S1014: `value` is an attribute of SCA 1.1, and this file is of SCA 1.0
+        2:106-111 warning S1014: `value` of `property` is an attribute of SCA 1.1, and this file is of SCA 1.0
           help: it counts here, and other programs do not know it: let the file be one of SCA 1.1
           help: or write the value as text inside
-        3:165-174 warning S1014: `remotable` is an attribute of SCA 1.1, and this file is of SCA 1.0
+        3:165-174 warning S1014: `remotable` of `interface.java` is an attribute of SCA 1.1, and this file is of SCA 1.0
           help: it counts here, and other programs do not know it: let the file be one of SCA 1.1
         4:15-16 error S2011: there is no component `N`
           help: the components are `R`
-        4:35-42 warning S1014: `replace` is an attribute of SCA 1.1, and this file is of SCA 1.0
+        4:35-42 warning S1014: `replace` of `wire` is an attribute of SCA 1.1, and this file is of SCA 1.0
           help: it counts here, and other programs do not know it: let the file be one of SCA 1.1
     "#]]
     .assert_eq(&faults_of(&[&fleet_1_0(inside)], &[]));

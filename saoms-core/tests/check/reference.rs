@@ -107,10 +107,10 @@ fn example(code: &Code) -> Result<String, String> {
             files.push(("hall0.composite".to_owned(), crate::support::part("hall0", "", gps)));
             checked(&files, 1, &[])
         }
-        id @ ("S2043" | "S2044" | "S2047" | "S2052" | "S2053" | "S2054" | "S2055" | "S2056") => {
+        id @ ("S2043" | "S2044" | "S2047" | "S2052" | "S2053" | "S2054" | "S2055" | "S2056" | "S2060") => {
             from_folder(id)
         }
-        id @ ("S2051" | "S2057" | "S2058") => contribution(id),
+        id @ ("S2051" | "S2057" | "S2058" | "S2059") => contribution(id),
         id => from_files(id),
     };
     let found: Vec<Diagnostic> = diagnostics.iter().filter(|one| one.code == code).cloned().collect();

@@ -206,3 +206,28 @@ fn variables_have_names_that_somebody_can_set() {
         3:69-74 error S1011: `9 bad` is no name of an environment variable: it has letters, digits and `_`, and no digit first
     "#]].assert_eq(&told);
 }
+
+#[test]
+fn what_its_implementation_wires_nothing_else_wires() {
+    let inside = "<component name='A'><implementation.java class='x.A'/>
+<reference name='a' wiredByImpl='true' target='B'/><reference name='b' wiredByImpl='true' multiplicity='0..1'><binding.ws uri='http://b'/></reference>
+<reference name='c' wiredByImpl='true' autowire='true'/><reference name='d' wiredByImpl='true'/>
+<reference name='e' wiredByImpl='true' autowire='false'><binding.ws/></reference><reference name='f' wiredByImpl='false' target='B'/></component>
+<component name='B'><implementation.java class='x.B'/></component>
+<wire source='A/d' target='B'/><wire source='A/f' target='B/s' replace='true'/>";
+    expect![[r#"
+        3:48-49 error S2038: reference `a` is wired by its implementation, and has a target
+          3:34-38 said here
+          help: remove the target, or `wiredByImpl`
+        3:128-136 error S2038: reference `b` is wired by its implementation, and has a binding that leads to one
+          3:85-89 said here
+          help: remove the target, or `wiredByImpl`
+        4:50-54 error S2038: reference `c` is wired by its implementation, and asks for one by `autowire`
+          4:34-38 said here
+          help: remove the target, or `wiredByImpl`
+        7:15-18 error S2038: reference `d` is wired by its implementation, and starts a wire
+          4:90-94 said here
+          help: remove the target, or `wiredByImpl`
+    "#]].assert_eq(&found(inside, &[], true));
+    assert!(!found(&inside.replace("='true' target", "='0' target"), &[], true).contains("`a`"));
+}

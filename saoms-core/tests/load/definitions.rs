@@ -10,10 +10,10 @@ use saoms_core::load::{Finder, MAX_SIZE, SideFile, load, load_folder, load_named
 use saoms_core::model::Contribution;
 use saoms_core::source::{OpenTexts, Sources};
 
-const OASIS: &str = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
-const OSOA: &str = "http://www.osoa.org/xmlns/sca/1.0";
+pub(crate) const OASIS: &str = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
+pub(crate) const OSOA: &str = "http://www.osoa.org/xmlns/sca/1.0";
 
-fn written(files: &[(&str, String)]) -> tempfile::TempDir {
+pub(crate) fn written(files: &[(&str, String)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
         let path = folder.path().join(name);
@@ -23,7 +23,7 @@ fn written(files: &[(&str, String)]) -> tempfile::TempDir {
     folder
 }
 
-fn shown(folder: &Path, sources: &Sources, diagnostics: Diagnostics) -> String {
+pub(crate) fn shown(folder: &Path, sources: &Sources, diagnostics: Diagnostics) -> String {
     let mut out = String::new();
     for one in &diagnostics.into_sorted() {
         let file = sources.get(one.location.file);
@@ -40,17 +40,17 @@ fn shown(folder: &Path, sources: &Sources, diagnostics: Diagnostics) -> String {
         one.help.iter().for_each(|help| _ = writeln!(out, "  {help}"));
         one.suggestions.iter().for_each(|one| _ = writeln!(out, "  {}", one.description));
     }
-    out.replace(&format!("{}/", folder.display()), "")
+    out.replace(&format!("{}/", folder.display()), "").replace(&folder.display().to_string(), "FOLDER")
 }
 
-fn definitions(namespace: &str, inside: &str) -> String {
+pub(crate) fn definitions(namespace: &str, inside: &str) -> String {
     format!(
         "<definitions xmlns='{namespace}' xmlns:sca='{namespace}' xmlns:t='urn:t' xmlns:o='urn:o' xmlns:x='urn:x' targetNamespace='urn:t'>\n{inside}\n</definitions>"
     )
 }
 
 /// What is said of a file by itself.
-fn alone(name: &str, text: String) -> String {
+pub(crate) fn alone(name: &str, text: String) -> String {
     let folder = written(&[(name, text)]);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let mut finder = Finder::new(OpenTexts::default());
@@ -62,12 +62,20 @@ fn alone(name: &str, text: String) -> String {
     }
 }
 
-fn of_folder(files: &[(&str, String)]) -> String {
+pub(crate) fn of_folder(files: &[(&str, String)]) -> String {
     let folder = written(files);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
-    let shown = shown(folder.path(), &sources, diagnostics);
-    shown.replace(&*folder.path().to_string_lossy(), "FOLDER")
+    shown(folder.path(), &sources, diagnostics)
+}
+
+/// What is said of `fleet.composite` and of what it names, in a folder of these files.
+pub(crate) fn of_fleet(files: &[(&str, String)]) -> String {
+    let folder = written(files);
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let first = load(&folder.path().join("fleet.composite"), &mut sources, &mut diagnostics).unwrap();
+    load_named(&mut Contribution::of(vec![first]), MAX_SIZE, &mut sources, &mut diagnostics);
+    shown(folder.path(), &sources, diagnostics)
 }
 
 #[test]
@@ -178,7 +186,7 @@ fn what_1_0_does_not_have_is_told_there() {
         <policySet name='p' attachTo='//x'/><policySet name='r' appliesTo='x'><allow/><runAs/><authorization><allow/></authorization></policySet>
         <externalAttachment attachTo='//x' intents='t:a'/><documentation/>";
     expect![[r#"
-        definitions.xml:3:26 [intentType] warning S1014 `intentType` is an attribute of SCA 1.1, and this file is of SCA 1.0
+        definitions.xml:3:26 [intentType] warning S1014 `intentType` of `intent` is an attribute of SCA 1.1, and this file is of SCA 1.0
           it counts here, and other programs do not know it: let the file be one of SCA 1.1
         definitions.xml:3:52 [qualifier] error S1004 SCA 1.0 has no element `qualifier`
           `intent` can hold `description`
@@ -324,12 +332,7 @@ fn what_is_beside_a_composite_is_checked_where_that_names_intents() {
     };
     let told = |requires: &str| {
         let faulty = definitions(OASIS, "<intent name='safe' exclude='t:a'/>");
-        let folder = written(&[("fleet.composite", fleet(requires)), ("META-INF/definitions.xml", faulty)]);
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let path = folder.path().join("fleet.composite");
-        let first = load(&path, &mut sources, &mut diagnostics).unwrap();
-        load_named(&mut Contribution::of(vec![first]), MAX_SIZE, &mut sources, &mut diagnostics);
-        shown(folder.path(), &sources, diagnostics)
+        of_fleet(&[("fleet.composite", fleet(requires)), ("META-INF/definitions.xml", faulty)])
     };
     expect![""].assert_eq(&told(""));
     expect![[r#"

@@ -110,7 +110,6 @@ fn what_is_wrong_with_a_contribution_is_told() {
           write `<deployable composite="..."/>`
         sca-contribution.xml:6:13 [composit] error S1007 `deployable` has no attribute `composit`
           replace `composit` with `composite`
-        sca-contribution.xml:7:9 [namespace=''] error S1011 the attribute `namespace` is empty
         sca-contribution.xml:8:27 [locaton] error S1007 `export` has no attribute `locaton`
           `export` has the attributes `namespace`
         sca-contribution.xml:9:2 [imports] error S1004 SCA 1.1 has no element `imports`
@@ -120,7 +119,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         sca-contribution.xml:10:6 [import.resource] error S1008 `import.resource` needs the attribute `uri`
           write `<import.resource uri="..."/>`
         sca-contribution.xml:11:43 [component] error S1005 `component` cannot stand in `contribution`
-          `contribution` can hold `deployable`, `import`, `import.java`, `import.resource`, `export`, `export.java`, `export.resource`, `documentation`, `extensions`
+          `contribution` can hold `deployable`, `import`, `import.java`, `import.resource`, `import.c`, `import.cpp`, `export`, `export.java`, `export.resource`, `export.c`, `export.cpp`, `documentation`, `extensions`
     "#]].assert_eq(&one(
         "\n<deployable composite='x:flet' xmlns:x='urn:a'/>\n<deployable composite='x:hall' xmlns:x='urn:a'/>\n<deployable composite='x:hall' xmlns:x='urn:c'/>\n<deployable/>\n<deployable composit='fleet'/>\n<import namespace=''/>\n<export namespace='urn:a' locaton='x'/>\n<imports/>\ntext<import.resource/>\n<import.sdo x='1'/><x:y xmlns:x='urn:x'/><component/>",
     ));

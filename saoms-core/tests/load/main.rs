@@ -5,11 +5,13 @@
 mod corpus;
 mod declared;
 mod definitions;
+mod exchange;
 mod files;
 mod folders;
 mod format;
 mod graph;
 mod imports;
+mod intents;
 mod named;
 mod oracle;
 mod places;

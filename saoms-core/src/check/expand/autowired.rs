@@ -19,7 +19,7 @@ impl Expanding<'_, '_> {
         let own = component.autowire().filter(|said| said.value);
         let of_reference =
             component.references.iter().filter_map(Reference::autowire).find(|said| said.value);
-        let said = own.or(member.composite.autowire.clone()).filter(|said| said.value).or(of_reference);
+        let said = own.or(member.composite.autowire).filter(|said| said.value).or(of_reference);
         let at = said.map_or(component.name.location, |said| said.location);
         let message = format!(
             "autowire wires component {} to others of its composite; once expanded, to any of all composites",

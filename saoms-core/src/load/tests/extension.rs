@@ -154,3 +154,45 @@ fn a_queue_of_jms_is_named_in_one_way() {
         "3:32 [destination] warning S2054 binding.jms has a `uri`, and a `destination` that says where messages go",
     );
 }
+
+#[test]
+fn interfaces_and_callbacks_name_interfaces_of_wsdl() {
+    let told = |interface: &str, expected: &str| {
+        let inside = format!(
+            "<component name='a'>\n{JAVA}<service name='s'>\n<interface.wsdl {interface}/>\n</service></component>"
+        );
+        faults_1_1(&inside, expected);
+    };
+    for right in ["u#wsdl.interface(I)", "u#wsdl.portType(I)", "u#wsdl.porttype(I)", "u#xpointer(//I)"] {
+        told(&format!("interface='{right}' callbackInterface='{right}'"), "");
+    }
+    told(
+        "interface='u#wsdl.service(S)'",
+        "4:28 [u#wsdl.service(S)] error S1011 `#wsdl.service(S)` is no interface in a WSDL document",
+    );
+    told(
+        "interface='u#wsdl.porttype'",
+        "4:28 [u#wsdl.porttype] error S1011 `#wsdl.porttype` is no interface in a WSDL document",
+    );
+    told(
+        "interface='u#wsdl.porttype()'",
+        "4:28 [u#wsdl.porttype()] error S1011 `#wsdl.porttype()` is no interface in a WSDL document",
+    );
+    told(
+        "interface='u#wsdl.interface(I)' callbackInterface='u'",
+        "4:68 [u] error S1011 `u` names nothing in a WSDL document",
+    );
+    told(
+        "interface='u#wsdl.interface(I)' callbackInterface='u#wsdl.binding(B)'",
+        "4:68 [u#wsdl.binding(B)] error S1011 `#wsdl.binding(B)` is no interface in a WSDL document",
+    );
+    told(
+        "interface='u#wsdl.interface(I)' callbackInterface=''",
+        "4:49 [callbackInterface=''] error S1011 the attribute `callbackInterface` is empty",
+    );
+    binding("<binding.ws wsdlElement='u#wsdl.endpoint(S/E)'/>", "");
+    binding(
+        "<binding.ws wsdlElement='u#wsdl.prot(S/P)'/>",
+        "4:26 [u#wsdl.prot(S/P)] error S1011 `#wsdl.prot(S/P)` is no binding, port or service in a WSDL document",
+    );
+}

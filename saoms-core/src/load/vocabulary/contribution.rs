@@ -6,6 +6,9 @@ use super::{Holds, Kind, Known};
 const LOCATION: Known = known("location", Holds::Uri, "The folder of the contribution that it comes from.");
 const PACKAGE: Known = required("package", Holds::Text, "A package of classes.");
 const NAMESPACE: Known = required("namespace", Holds::Namespace, "The target namespace of composites.");
+const NAME: Known = required("name", Holds::Text, "The name under which files are exported.");
+const FROM: Known = required("location", Holds::Uri, "The folder of the contribution that it comes from.");
+const PATH: Known = known("path", Holds::Text, "The folder of the files, in the contribution.");
 const URI: Known = required("uri", Holds::Uri, "A file of the contribution.");
 
 /// The root of the file.
@@ -18,9 +21,13 @@ pub static CONTRIBUTION: Kind = Kind {
         "import",
         "import.java",
         "import.resource",
+        "import.c",
+        "import.cpp",
         "export",
         "export.java",
         "export.resource",
+        "export.c",
+        "export.cpp",
         "documentation",
         "extensions",
     ],
@@ -48,7 +55,7 @@ pub(in crate::load) static COMPONENT_TYPE: Kind = Kind {
 };
 
 /// The elements of a contribution that have attributes.
-pub(super) static PARTS: [Kind; 7] = [
+pub(super) static PARTS: [Kind; 11] = [
     Kind {
         name: "deployable",
         doc: "A composite that runs by itself.",
@@ -58,6 +65,10 @@ pub(super) static PARTS: [Kind; 7] = [
     part("import", &[NAMESPACE, LOCATION]),
     part("import.java", &[PACKAGE, LOCATION]),
     part("import.resource", &[URI, LOCATION]),
+    part("import.c", &[NAME, FROM]),
+    part("import.cpp", &[NAME, FROM]),
+    part("export.c", &[NAME, PATH]),
+    part("export.cpp", &[NAME, PATH]),
     part("export", &[NAMESPACE]),
     part("export.java", &[PACKAGE]),
     part("export.resource", &[URI]),

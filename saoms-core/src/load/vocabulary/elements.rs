@@ -308,8 +308,8 @@ const INTERFACE_ATTRIBUTES: &[Known] = &[
     required("interface", Holds::Interface, "The interface's name."),
     known("callbackInterface", Holds::Interface, "The interface by which the service calls back."),
     new("remotable", Holds::Boolean, "Whether calls may come from other processes."),
-    REQUIRES,
-    POLICY_SETS,
+    Known { only_1_1: true, ..REQUIRES },
+    Known { only_1_1: true, ..POLICY_SETS },
 ];
 
 /// An interface by its name, as composites of others write it.

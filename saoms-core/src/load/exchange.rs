@@ -1,0 +1,124 @@
+//! What contributions say that they give and take, held to what is there (SCA Assembly 1.1, 10.2).
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use super::description::{Description, Entry};
+use super::finder::Finder;
+use super::head;
+use super::imports::Imports;
+use super::shelf::is_of_definitions;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::source::OpenTexts;
+
+/// The endings of files that hold no names that others could import, or of which they are known.
+const USUAL: &[&str] = &["composite", "componentType", "xsd", "wsdl", "csv", "txt", "md", "properties"];
+/// Files of a contribution that are looked at.
+const MOST_ENTRIES: usize = 10_000;
+
+impl Finder {
+    /// Warns of exported namespaces of which the contribution in `root` has nothing, and of imported ones that the contributions around it do not
+    /// give. These may be elsewhere: so what nobody has is told only where the name is nearly that of another.
+    pub(super) fn exchange(
+        &mut self,
+        description: &Description,
+        root: &Path,
+        (max_size, open): (u64, &OpenTexts),
+        diagnostics: &mut Diagnostics,
+    ) {
+        if description.exports.is_empty() && description.imports.is_empty() {
+            return;
+        }
+        let composites = self.shelf.namespaces(root);
+        let declaring = self.shelf.declaring_in(root);
+        let mut own = composites.clone();
+        own.extend(declaring.iter().filter_map(|path| head::target(path, open)));
+        let named = |entries: &[Entry]| -> BTreeSet<String> {
+            entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
+        };
+        let imported = named(&description.imports);
+        for entry in &description.exports {
+            let Some(namespace) = entry.namespace() else { continue };
+            // What is imported can be given on.
+            if composites.is_empty() || own.contains(namespace) || imported.contains(namespace) {
+                continue;
+            }
+            let is_near = nearest(namespace, own.iter().map(String::as_str)).is_some();
+            if !is_near && holds_others(root) {
+                continue;
+            }
+            let message = format!("the contribution has nothing of the namespace {}", quoted(namespace));
+            diagnostics.push(near(entry, message, namespace, own.iter().map(String::as_str)));
+        }
+        let around = self.around.get_or_insert_with(|| Imports::untold(max_size));
+        for entry in &description.imports {
+            let Some(namespace) = entry.namespace().filter(|one| !own.contains(*one)) else { continue };
+            let others = around.around(root, namespace);
+            if others.iter().any(|(_, exports)| exports.iter().any(|one| one == namespace)) {
+                continue;
+            }
+            let shown = quoted(namespace);
+            let mut all = others.iter();
+            let holder = all.find(|(other, _)| {
+                self.candidates.admit(1) && self.shelf.namespaces(other).contains(namespace)
+            });
+            if let Some((holder, _)) = holder {
+                let holder = quoted(&holder.display().to_string());
+                let message =
+                    format!("the contribution in {holder} has the namespace {shown}, and does not export it");
+                let help = format!("write `<export namespace=\"{namespace}\"/>` in its description");
+                diagnostics.push(Diagnostic::new(&codes::EXCHANGE, entry.at, message).help(help));
+                continue;
+            }
+            let exported = || others.iter().flat_map(|(_, exports)| exports.iter().map(String::as_str));
+            if nearest(namespace, exported()).is_some() {
+                let message = format!("no contribution around this one exports the namespace {shown}");
+                diagnostics.push(near(entry, message, namespace, exported()));
+            }
+        }
+    }
+}
+
+/// Whether there are files in a contribution, beside the usual ones, of which nobody here knows what they hold.
+fn holds_others(root: &Path) -> bool {
+    let root = if root.as_os_str().is_empty() { Path::new(".") } else { root };
+    let mut waiting = vec![root.to_owned()];
+    let mut left = MOST_ENTRIES;
+    while let Some(next) = waiting.pop() {
+        for entry in fs::read_dir(next).into_iter().flatten().flatten() {
+            left = left.saturating_sub(1);
+            let (path, is_folder) = (entry.path(), entry.file_type().is_ok_and(|kind| kind.is_dir()));
+            let ending = path.extension().map(|ending| ending.to_string_lossy().into_owned());
+            let is_usual = ending.is_some_and(|ending| USUAL.contains(&ending.as_str()))
+                || path
+                    .file_name()
+                    .is_some_and(|name| name.to_string_lossy().starts_with("sca-contribution"));
+            match is_folder {
+                true => waiting.push(path),
+                false if left == 0 || !is_usual && !is_of_definitions(&path) => return true,
+                false => {}
+            }
+        }
+    }
+    false
+}
+
+fn near<'a>(
+    entry: &Entry,
+    message: String,
+    namespace: &str,
+    all: impl Iterator<Item = &'a str> + Clone,
+) -> Diagnostic {
+    let one = Diagnostic::new(&codes::EXCHANGE, entry.at, message);
+    match nearest(namespace, all.clone()) {
+        Some(near) if !namespace.is_empty() => {
+            let what = format!("replace {} with {}", quoted(namespace), quoted(near));
+            one.suggest(what, entry.at, near)
+        }
+        _ => {
+            let names: Vec<String> = all.take(5).map(quoted).collect();
+            one.help(format!("it has {}", names.join(", ")))
+        }
+    }
+}
