@@ -23,8 +23,17 @@ pub(super) fn unknown(
     let is_task =
         slots.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
     let message = format!("{} {of} has no property {}", slots.what, quoted(name));
-    let known = ("its properties are", slots.names());
-    let one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
+    // What is given already is not meant a second time.
+    let given =
+        nearest(name, slots.names()).filter(|meant| giver.properties.iter().any(|one| one.name == *meant));
+    let one = match given {
+        Some(given) => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message)
+            .help(format!("{} is given already: remove one of the two", quoted(given))),
+        None => {
+            let known = ("its properties are", slots.names());
+            report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known)
+        }
+    };
     let one = match stands_for(giver, slots) {
         Some(lacking) => one.help(format!("{} is lacking: it may be what is meant", quoted(lacking))),
         None => one,

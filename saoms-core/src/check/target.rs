@@ -115,9 +115,13 @@ impl<'t> Uri<'t> {
                 let message = format!("the component {} is not there", quoted(self.component));
                 let at = report.part(text, 0..self.component.len());
                 let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
-                report.push(
-                    one.label(*condition, "this is false").help("give what names it the same condition"),
-                );
+                // Promotions are written in services and references of composites, and have a rule of their own.
+                report.push(one.label(*condition, "this is false").help(match rule {
+                    None => "give what names it the same condition",
+                    Some(_) => {
+                        "what a composite promotes has no condition: put both into a composite that is included with this one"
+                    }
+                }));
                 return None;
             }
             let at = report.part(text, 0..self.component.len());

@@ -289,6 +289,10 @@ impl<'a> Values<'a> {
         report: &mut Report<'_>,
     ) {
         if let Some(source) = used.source {
+            // That it is not of the type of the composite's property is told.
+            if report.has_told(&codes::COMPOSITE_VALUE_TYPE, one.location) {
+                return;
+            }
             if !self.shared.insert((one.location, one.code.id, path.to_string())) {
                 return;
             }

@@ -94,7 +94,7 @@ pub(super) fn paths(component: &Component, composite: &Composite) -> Vec<PathBuf
         ImplementationKind::Composite { .. } => Vec::new(),
         ImplementationKind::Other { kind, .. } => {
             let names: &[&str] = match kind.as_str() {
-                "script" => &["script"],
+                "script" | "python" => &["script"],
                 "osgi" => &["bundle", "bundleSymbolicName"],
                 "xquery" | "spring" | "widget" => &["location"],
                 _ => &[],

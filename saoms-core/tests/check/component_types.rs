@@ -221,6 +221,17 @@ fn what_a_class_has_is_narrowed_by_its_file() {
 }
 
 #[test]
+fn a_script_of_python_has_a_description_beside_it() {
+    let types = [("run.componentType", "<property name='speed' type='xsd:int'/>")];
+    let inside = "<component name='P'><t:implementation.python script='run.py'/><property name='speed'>fast</property></component>";
+    expect![[r#"
+        2:86-90 error S3007: the property `speed` is of the type `xsd:int`: found `fast`, expected a whole number of 32 bits
+          run.componentType:2:30-37 the type
+          help: change the value, or the type
+    "#]].assert_eq(&found(inside, &types, true));
+}
+
+#[test]
 fn references_that_the_file_says_need_a_target_are_told() {
     expect![[r#"
         2:18-19 warning S2018: reference `clock` of component `S` leads to no service

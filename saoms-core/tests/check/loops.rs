@@ -225,7 +225,7 @@ fn properties_of_loops_are_checked_as_those_of_components() {
         "3:58-59 error S3008: property `patience`: `0` is out of range: expected a whole number from 1 to 100 [executions]
   help: `patience`: How long to wait for others; the default is `3`
 3:86-94 error S3004: loop `example.CollisionMS` has no property `patiance`
-  fix: replace `patiance` with `patience` [3:86-94 \"patience\"]
+  help: `patience` is given already: remove one of the two
 4:19-24 error S3006: loop `Saver` lacks the property `threshold`
   help: add `<property name=\"threshold\">...</property>`: a number from 0.0 to 100.0 [%]
 "

@@ -64,6 +64,21 @@ fn autowire_of_an_included_composite_is_its_own_or_else_that_around_it() {
 }
 
 #[test]
+fn what_is_promoted_and_absent_is_told_with_what_can_be_done() {
+    let fleet = part(
+        "fleet",
+        r#"xmlns:saoms="urn:saoms:1""#,
+        r#"<property name="site">north</property><service name="at" promote="A"/>
+<component name="A" saoms:if="site == 'south'"><implementation.java class="example.Gps"/></component>"#,
+    );
+    expect![[r#"
+        2:67-68 error S2011: the component `A` is not there
+          3:31-46 this is false
+          help: what a composite promotes has no condition: put both into a composite that is included with this one
+    "#]].assert_eq(&outcome(&[&fleet], &[]));
+}
+
+#[test]
 fn includes_that_cannot_be_say_so() {
     let fleet = part(
         "fleet",
@@ -172,6 +187,26 @@ fn faults_of_an_inner_composite_are_told_once_and_those_of_its_users_where_they_
 }
 
 /// Promotion through two composites; several components behind one reference; several targets of one reference.
+#[test]
+fn a_value_that_is_not_of_the_type_of_an_inner_property_is_told_there_alone() {
+    let fleet = part(
+        "fleet",
+        "",
+        r#"<component name="A"><implementation.composite name="t:inner"/><property name="rank">first</property></component>"#,
+    );
+    let inner = part(
+        "inner",
+        r#"xmlns:xs="http://www.w3.org/2001/XMLSchema""#,
+        r#"<property name="rank" type="xs:int"/>
+<component name="R"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1s</property><property name="number" source="$rank"/></component>"#,
+    );
+    expect![[r#"
+        2:85-90 error S2042: the property `rank` is of the type `xs:int`: found `first`, expected a whole number of 32 bits
+          inner:2:29-35 the type
+          help: change the value, or the type
+    "#]].assert_eq(&outcome(&[&fleet, &inner], &[]));
+}
+
 #[test]
 fn references_are_wired_from_outside_through_every_level() {
     let fleet = part(

@@ -100,7 +100,7 @@ fn what_cannot_run_says_so() {
 fn unknown_and_repeated_properties() {
     expect![[r#"
         3:17-21 error S3004: class `example.Robot001` has no property `sped`
-          fix: replace `sped` with `speed` [3:17-21 "speed"]
+          help: `speed` is given already: remove one of the two
         5:17-22 error S3005: the property `speed` is given twice
           4:17-22 first here
           help: keep one of them
