@@ -6,8 +6,8 @@ use std::path::Path;
 use saoms_core::assembly::Assembly;
 use saoms_core::check::Options;
 use saoms_core::diagnostic::Severity;
-use serde::ser::{Serialize, SerializeMap, Serializer};
-use serde_json::Value;
+use serde::Serialize;
+use serde::ser::Serializer;
 
 use crate::Exit;
 use crate::arguments::{CheckArguments, CheckFormat};
@@ -40,17 +40,10 @@ fn tell<T>(
     let Several { checked: outcome, made, fleets } = several;
     let wired: Vec<(&Path, Wiring<'_>)> =
         made.iter().filter_map(|(path, made)| Some((path.as_path(), Wiring(assembly(made)?)))).collect();
-    let wiring = Wired { of: &wired, is_one: *fleets == 1 };
+    let wiring = (!wired.is_empty()).then_some(Wired { of: &wired, is_one: *fleets == 1 });
     match format {
-        CheckFormat::Json if wired.is_empty() => print_json(&outcome.json()),
-        CheckFormat::Json => print_json(&With(&outcome.json(), "wiring", wiring)),
-        CheckFormat::Sarif if wired.is_empty() => print_json(&outcome.sarif()),
-        CheckFormat::Sarif => {
-            let mut log = outcome.sarif();
-            let run = log["runs"][0].take();
-            let properties = With(&Value::Null, "wiring", wiring);
-            print_json(&With(&log, "runs", [With(&run, "properties", properties)]));
-        }
+        CheckFormat::Json => print_json(&outcome.json(wiring)),
+        CheckFormat::Sarif => print_json(&outcome.sarif(wiring.map(|wiring| Properties { wiring }))),
         CheckFormat::Human => {
             eprint(&outcome.human(Severity::Note));
             for (path, wiring) in &wired {
@@ -73,19 +66,10 @@ fn tell<T>(
     if outcome.count(Severity::Error) == 0 { Exit::Done } else { Exit::WrongInput }
 }
 
-/// An object in which one entry is another one.
-struct With<'a, T>(&'a Value, &'static str, T);
-
-impl<T: Serialize> Serialize for With<'_, T> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let With(object, name, value) = self;
-        let mut all = to.serialize_map(None)?;
-        for (key, value) in object.as_object().into_iter().flatten().filter(|(key, _)| key != name) {
-            all.serialize_entry(key, value)?;
-        }
-        all.serialize_entry(name, value)?;
-        all.end()
-    }
+/// What the log of `--format sarif` has besides.
+#[derive(Serialize)]
+struct Properties<'a> {
+    wiring: Wired<'a>,
 }
 
 /// The wiring of several fleets, each by its first file; that of one alone.

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use saoms_core::assembly::Assembly;
 use saoms_core::check::{Options, Setting, SeveritySetting, Variable};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Human, Severity, json, sarif};
+use saoms_core::diagnostic::{Diagnostic, Diagnostics, Human, Json, Sarif, Severity};
 use saoms_core::load::{Finder, STANDARD_INPUT, load_file, read, read_from, read_values};
 use saoms_core::model::{Composite, Contribution};
 use saoms_core::plugin::{Search, open_named};
 use saoms_core::registry::Registry;
 use saoms_core::source::{FileId, Sources};
-use serde_json::Value;
+use serde::Serialize;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
@@ -37,6 +37,14 @@ pub(crate) struct Checked<T = Assembly> {
     pub(crate) sources: Sources,
     /// Those that are kept for the record alone among them.
     pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+/// What is told as JSON.
+#[derive(Serialize)]
+pub(crate) struct Found<'a, W> {
+    diagnostics: Json<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wiring: Option<W>,
 }
 
 /// Which files are to be loaded, and how they are to be checked.
@@ -150,14 +158,15 @@ impl<T> Checked<T> {
         Human::of(shown, &self.sources, std::io::stderr().is_terminal())
     }
 
-    /// All diagnostics as one JSON object.
-    pub(crate) fn json(&self) -> Value {
-        json(&self.diagnostics, &self.sources)
+    /// All diagnostics as JSON, with the wiring where it is asked for.
+    pub(crate) fn json<W>(&self, wiring: Option<W>) -> Found<'_, W> {
+        Found { diagnostics: Json { diagnostics: &self.diagnostics, sources: &self.sources }, wiring }
     }
 
-    /// All diagnostics as a SARIF log.
-    pub(crate) fn sarif(&self) -> Value {
-        sarif(&self.diagnostics, &self.sources, env!("CARGO_PKG_VERSION"))
+    /// All diagnostics as a SARIF log, with properties of the run.
+    pub(crate) fn sarif<P>(&self, properties: Option<P>) -> Sarif<'_, P> {
+        let version = env!("CARGO_PKG_VERSION");
+        Sarif { diagnostics: &self.diagnostics, sources: &self.sources, version, properties }
     }
 
     /// How many diagnostics are of this severity.

@@ -18,11 +18,19 @@ pub(crate) fn try_print(shown: &(impl Display + ?Sized)) -> io::Result<()> {
 
 /// Writes data to standard output as JSON, piece by piece.
 pub(crate) fn print_json(value: &impl Serialize) {
-    let mut output = BufWriter::new(io::stdout().lock());
-    // Nothing fails but writing.
-    if serde_json::to_writer_pretty(&mut output, value).is_ok() {
-        let _ = output.write_all(b"\n").and_then(|()| output.flush());
-    }
+    write_json(io::stdout().lock(), value);
+}
+
+/// Writes data to standard error as JSON, piece by piece.
+pub(crate) fn eprint_json(value: &impl Serialize) {
+    write_json(io::stderr().lock(), value);
+}
+
+fn write_json(to: impl Write, value: &impl Serialize) {
+    let mut output = BufWriter::new(to);
+    // Nothing fails but writing, and nobody is left to be told of that.
+    let written = serde_json::to_writer_pretty(&mut output, value).map_err(io::Error::from);
+    let _ = written.and_then(|()| output.write_all(b"\n")).and_then(|()| output.flush());
 }
 
 /// What came of writing, where it is no fault that nobody reads on.

@@ -17,7 +17,7 @@ use crate::Exit;
 use crate::arguments::{FleetArguments, Format, RunArguments};
 use crate::console::Console;
 use crate::fleet::{INPUT, checked};
-use crate::output::{counted, eprint, print};
+use crate::output::{counted, eprint, eprint_json, print, print_json};
 use crate::paths::Paths;
 use crate::reload::{Reload, Watched};
 use crate::results;
@@ -69,8 +69,8 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly
     let outcome = checked(check, files, Options::default()).ok()?;
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &outcome.made) {
-        (Format::Json, None) => print(&format!("{:#}\n", outcome.json())),
-        (Format::Json, Some(_)) => eprint(&format!("{:#}\n", outcome.json())),
+        (Format::Json, None) => print_json(&outcome.json(None::<()>)),
+        (Format::Json, Some(_)) => eprint_json(&outcome.json(None::<()>)),
         (Format::Human, _) => {
             eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
         }

@@ -87,7 +87,9 @@ fn walled() -> String {
 
 #[test]
 fn commands_by_the_size_of_their_file() {
-    let cases: [(&str, &[&[&str]], String); 4] = [
+    let many = |count: usize, part: &str| composite((0..count).map(|_| part.to_owned()));
+    let formats: &[&[&str]] = &[&["check"], &["check", "--format=json"], &["check", "--format=sarif"]];
+    let cases: [(&str, &[&[&str]], String); 5] = [
         (
             "topics",
             &[
@@ -98,6 +100,7 @@ fn commands_by_the_size_of_their_file() {
             apart(1000),
         ),
         ("worlds", &[&["check"]], worlds(60)),
+        ("components of one name", formats, many(20_000, "<component name='x'/>")),
         ("a wall", &[&["check"]], walled()),
         ("deep elements", &[&["fmt"], &["fmt", "--check"]], "<a>".repeat(60_000) + &"</a>".repeat(60_000)),
     ];

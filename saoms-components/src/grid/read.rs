@@ -4,6 +4,9 @@ use std::ops::Range;
 use super::{Block, Map};
 use crate::text::{TextFault, bytes};
 
+/// Lines that do not fit; behind so many nothing is read.
+const MOST_WRONG: usize = 1000;
+
 /// The header of a map file, as far as it was read: the sides, and where they are.
 #[derive(Default)]
 struct Header<'a> {
@@ -31,11 +34,14 @@ impl Map {
     /// ```
     ///
     /// # Errors
-    /// Every line that does not fit.
+    /// Every line that does not fit, the first thousand of them.
     pub fn read(text: &str) -> Result<Map, Vec<TextFault>> {
         let (mut header, mut faults) = (Header::default(), Vec::new());
         let mut rows: Vec<&str> = Vec::new();
         for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            if faults.len() >= MOST_WRONG {
+                break;
+            }
             match header.take(line) {
                 _ if !rows.is_empty() => rows.push(line),
                 Ok(true) => {}
@@ -66,6 +72,9 @@ impl Map {
         let mut map = Map::new(width as u32, height as u32);
         let width_said = header.width.map(|(width, _)| width);
         for (y, row) in (0..).zip(rows) {
+            if faults.len() >= MOST_WRONG {
+                break;
+            }
             if let Err((part, message)) = map.read_row(y, row, width, width_said) {
                 faults.push(TextFault::of(text, part, message));
             }

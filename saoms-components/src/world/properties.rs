@@ -29,8 +29,11 @@ pub struct WorldProperties {
 /// What to do with several blocks in one text.
 const SEVERAL: &str = "write several blocks as `many=\"true\"` and a `<value>` for each: `<value>(3,1)</value><value>(0,2)</value>`";
 
+/// How many wrong blocks are told.
+const MOST_WRONG: usize = 1000;
+
 impl WorldProperties {
-    /// The map with all blocked blocks, or everything that is wrong with it.
+    /// The map with all blocked blocks, or what is wrong with it.
     pub(crate) fn map(&self) -> Result<Map, Vec<Finding>> {
         let (mut map, mut findings) =
             match self.map.as_deref().map_or(Ok(Map::new(self.width, self.height)), Map::read) {
@@ -38,6 +41,9 @@ impl WorldProperties {
                 Err(faults) => (None, faults.into_iter().map(|fault| fault.finding("map", 0)).collect()),
             };
         for (value, text) in self.blocked.iter().enumerate() {
+            if findings.len() >= MOST_WRONG {
+                break;
+            }
             let problem = match (text.parse(), &mut map) {
                 (Err(problem), _) => Some(problem),
                 (Ok(block), Some(map)) => (!map.set_blocked(block)).then(|| outside(map, block)),

@@ -24,11 +24,12 @@ struct Services<'c> {
 }
 
 impl<'c> Autowire<'c> {
-    /// The services with an interface in a scope, each with the component of the scope that offers it; and whether there may be
-    /// more.
+    /// The services with an interface in a scope, at most so many, each with the component of the scope that offers it, which is another one
+    /// than the one that asks; and whether there may be more.
     pub(super) fn offers(
         &mut self,
-        scope: usize,
+        (scope, asking): (usize, usize),
+        most: usize,
         interface: &InterfaceDeclaration,
         fleet: &'c Fleet<'_>,
         classes: &'c [ClassIndex<'_>],
@@ -36,7 +37,9 @@ impl<'c> Autowire<'c> {
         let services = self.scopes.entry(scope).or_insert_with(|| Services::of(scope, fleet, classes));
         let named = services.by_interface.get(interface.name.as_str()).map_or(&[][..], Vec::as_slice);
         let fits = |provider: Provider| fleet.interface_of(provider, classes) == Some(interface);
-        (named.iter().filter(|(_, provider)| fits(*provider)).copied().collect(), services.is_open)
+        let others = named.iter().filter(|(offering, _)| *offering != asking);
+        let fitting = others.filter(|(_, provider)| fits(*provider)).copied();
+        (fitting.take(most).collect(), services.is_open)
     }
 }
 

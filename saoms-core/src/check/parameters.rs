@@ -26,6 +26,8 @@ pub(super) struct Parameters<'a> {
     units: Vec<Declared<'a>>,
     /// How many more values sources with several can lead to.
     left: usize,
+    /// How many more bytes of text sources can lead to.
+    bytes_left: usize,
     /// What sources that are more than a path came to, by their units, and where the first of each stands.
     found: HashMap<(usize, String), (Location, Raw<'a>)>,
     /// How many more parts of values these can look at.
@@ -42,6 +44,9 @@ const MOST_VALUES: usize = 4_000_000;
 
 /// Names that a composite does not have which are looked at for one that it has: where a component is full of them they mean nothing by each.
 const MOST_MISSPELT: usize = 100;
+
+/// Bytes of text that sources can lead to: each component that takes a text has it.
+const MOST_BYTES: usize = 64 << 20;
 
 /// The properties of one composite, those of what it includes among them.
 #[derive(Default)]
@@ -112,7 +117,14 @@ impl<'a> Parameters<'a> {
         let with_owner = |unit| Declared { owner: owner(unit), ..declared(unit, report) };
         let units = fleet.units.iter().map(with_owner).collect();
         let (found, parts_left) = (HashMap::new(), Cell::new(MOST_PARTS));
-        let mut parameters = Self { units, left: MOST_VALUES, found, parts_left, keeps_elements: false };
+        let mut parameters = Self {
+            units,
+            left: MOST_VALUES,
+            bytes_left: MOST_BYTES,
+            found,
+            parts_left,
+            keeps_elements: false,
+        };
         for (place, unit) in fleet.units.iter().enumerate() {
             let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];
@@ -344,6 +356,16 @@ impl<'a> Parameters<'a> {
                 }
                 return Err(());
             }
+        }
+        let left = self.bytes_left.saturating_sub(raw.bytes());
+        let before = std::mem::replace(&mut self.bytes_left, left);
+        if self.bytes_left == 0 {
+            if before > 0 {
+                let message = format!("sources come to more than {} MB of text", MOST_BYTES >> 20);
+                let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message);
+                report.push(one.help("each component that takes a long text has it: is this what is meant?"));
+            }
+            return Err(());
         }
         Ok(raw)
     }

@@ -30,6 +30,16 @@ impl<'a> Raw<'a> {
         Self(vec![Piece::Text(Cow::Borrowed(text))])
     }
 
+    /// How long its texts are.
+    pub(super) fn bytes(&self) -> usize {
+        let length = |piece: &Piece<'_>| match piece {
+            Piece::Text(text) => text.len(),
+            Piece::Elements(..) => 0,
+            Piece::Whole(text, ..) => text.len(),
+        };
+        self.0.iter().map(length).sum()
+    }
+
     /// With the texts that are at one place at another one: those that a `source` makes itself are where it is.
     pub(super) fn moved(mut self, from: Location, to: Location) -> Self {
         for piece in &mut self.0 {

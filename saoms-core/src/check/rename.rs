@@ -113,10 +113,16 @@ fn trimmed<'a>(text: &'a str, range: &Range<usize>) -> Name<'a> {
     Name { text: piece, at: start..start + piece.len() }
 }
 
+/// Behind so many faults in one text no more contradictions are looked for.
+const MOST_FAULTS: usize = 1000;
+
 /// Names renamed twice, chains, and names that are renamed to themselves.
 fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<Fault>) {
     let mut first: HashMap<&str, &Pair<'_>> = HashMap::with_capacity(pairs.len());
     for pair in pairs {
+        if faults.len() >= MOST_FAULTS {
+            return;
+        }
         if let Some(earlier) = first.get(pair.old.text) {
             faults.push(Fault {
                 at: pair.old.at.clone(),
@@ -128,6 +134,9 @@ fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<Fault>) {
         }
     }
     for pair in pairs {
+        if faults.len() >= MOST_FAULTS {
+            return;
+        }
         let Some(next) = first.get(pair.new.text) else { continue };
         if pair.old.text == pair.new.text {
             faults.push(Fault {

@@ -1,6 +1,7 @@
 //! Lists of topics with new names, which components may share: a name that none of them uses is a mistake.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use super::fleet::Fleet;
 use super::report::Report;
@@ -18,7 +19,7 @@ pub(super) struct Listed<'a> {
 pub(super) struct Unused<'a> {
     pub(super) class: &'a str,
     /// Its topics that the list says nothing of.
-    pub(super) others: Vec<&'a str>,
+    pub(super) others: Rc<[&'a str]>,
 }
 
 /// What the components of a fleet list.
@@ -50,7 +51,13 @@ impl<'a> Renames<'a> {
                     one.is_used = true;
                     one.users = Vec::new();
                 }
-                Some(unused) if !one.is_used => one.users.push((member, unused)),
+                Some(unused) if !one.is_used => {
+                    // As a rule a list is of one component.
+                    if one.users.is_empty() {
+                        one.users.reserve_exact(1);
+                    }
+                    one.users.push((member, unused));
+                }
                 Some(_) => {}
             }
         }

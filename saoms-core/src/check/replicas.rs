@@ -19,6 +19,9 @@ use crate::xml::{Document, escaped};
 /// Replicas of a fleet in all: a slip of the finger must not take all memory.
 pub(super) const MOST_REPLICAS: u64 = 100_000;
 
+/// Bytes that a replica may be written with and count as one; longer ones count as several.
+const BYTES: u64 = 2560;
+
 /// The replicas of a component that are still to be made.
 pub(super) struct Plan<'a> {
     pub(super) component: &'a Component,
@@ -26,6 +29,8 @@ pub(super) struct Plan<'a> {
     next: i64,
     /// How many there are in all, and still to come.
     pub(super) count: u64,
+    /// As how many they count.
+    pub(super) cost: u64,
     left: u64,
     /// By index, the line of the table.
     rows: HashMap<i64, usize>,
@@ -85,12 +90,22 @@ impl<'a> Plan<'a> {
             fault(message, &format!("a fleet has at most {MOST_REPLICAS} replicas"), report);
             return None;
         }
+        let span = component.origin.element(document).span();
+        let cost = count.saturating_mul(1 + u64::from(span.end - span.start) / BYTES);
+        if cost > left {
+            let message = format!("{count} replicas are more than a fleet can have of one that is so long");
+            let help = format!(
+                "a replica of more than {BYTES} bytes counts as several, and a fleet has at most {MOST_REPLICAS}: put long values into a property that all take as `source`"
+            );
+            fault(message, &help, report);
+            return None;
+        }
         if from.checked_add_unsigned(count).is_none() {
             fault("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`", report);
             return None;
         }
         let names = Rc::clone(names);
-        let mut plan = Self { component, names, next: from, count, left: count, rows: HashMap::new() };
+        let mut plan = Self { component, names, next: from, count, cost, left: count, rows: HashMap::new() };
         // With faults in its lines all others count.
         replicas.table.iter().for_each(|table| plan.rows(table, report));
         (is_readable && is_named).then_some(plan)

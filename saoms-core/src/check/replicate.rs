@@ -45,7 +45,7 @@ impl<'a> Unfolding<'a> {
                 self.replicas.add(Replica { component: made, instance });
             return self.member(component, made, Some(instance), Presence::Absent, report);
         }
-        self.replicas_left -= plan.count;
+        self.replicas_left -= plan.cost;
         if let Some(open) = self.open.last_mut() {
             open.plan = Some(plan);
         }

@@ -227,13 +227,14 @@ fn renames<'a>(
         report.push(one);
     }
     let renamed: HashSet<&str> = pairs.iter().map(|pair| pair.old.text).collect();
+    let mut others: Option<Rc<[&str]>> = None;
     let listed = pairs.iter().map(|pair| {
         let name = pair.old.text;
         let is_used = topics(class).any(|topic| topic.name == name);
         let unused = || {
             let names = topics(class).map(|topic| topic.name.as_str());
-            let others = names.filter(|name| !renamed.contains(name)).collect();
-            Unused { class: class.class.name(), others }
+            let others = others.get_or_insert_with(|| names.filter(|name| !renamed.contains(name)).collect());
+            Unused { class: class.class.name(), others: Rc::clone(others) }
         };
         let at = parts.part(pair.old.at.clone());
         Listed { name: name.to_owned(), at, unused: (!is_used).then(unused) }

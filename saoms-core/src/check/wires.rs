@@ -395,9 +395,6 @@ impl<'f, 'a> Wires<'f, 'a> {
         let (fleet, classes) = (self.fleet, self.classes);
         let (member, name) = place;
         let own = &fleet.members[member];
-        let (all, is_open) = self.autowire.offers(own.scope, interface, fleet, classes);
-        let found: Vec<Provider> =
-            all.iter().filter(|(offering, _)| *offering != member).map(|(_, provider)| *provider).collect();
         let at = reference.map_or(own.component.name.location, |reference| reference.name.location);
         let is_many = match fleet.class_of(member, classes) {
             Some(class) => {
@@ -406,19 +403,25 @@ impl<'f, 'a> Wires<'f, 'a> {
             }
             None => fleet.multiplicity_of(place).is_many(),
         };
+        // Of those that a reference with one target cannot have together, some are named.
+        let most = if is_many { usize::MAX } else { 50 };
+        let (found, is_open) = self.autowire.offers((own.scope, member), most, interface, fleet, classes);
         if found.len() > 1 && !is_many {
-            let others = all.iter().filter(|(offering, _)| *offering != member).take(50);
-            let names: Vec<String> = others.map(|one| uri(*one, fleet, classes)).collect();
+            let code = &codes::AUTOWIRE_AMBIGUOUS;
+            if report.skip(code, code.severity, at) {
+                return Ends { all: Vec::new(), is_unknown: true };
+            }
+            let names: Vec<String> = found.iter().map(|one| uri(*one, fleet, classes)).collect();
             let message = format!(
                 "autowire finds several services for reference {} of component {}",
                 quoted(name),
                 quoted(&own.component.name)
             );
             let help = format!("name one as its `target`: {}", list(names.iter().map(String::as_str)));
-            report.push(Diagnostic::new(&codes::AUTOWIRE_AMBIGUOUS, at, message).help(help));
+            report.push(Diagnostic::new(code, at, message).help(help));
             return Ends { all: Vec::new(), is_unknown: true };
         }
-        let all = found.into_iter().map(|provider| End { provider, place: at });
+        let all = found.into_iter().map(|(_, provider)| End { provider, place: at });
         Ends { all: all.collect(), is_unknown: is_open }
     }
 

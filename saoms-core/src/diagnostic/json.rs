@@ -1,5 +1,6 @@
 //! Diagnostics for machines.
 
+use serde::ser::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::Diagnostic;
@@ -11,8 +12,22 @@ use crate::source::{Location, Sources};
 /// the picture, the descriptions of suggestions included, a line each; it is null when there is nothing. Where the severity was set, `set` says
 /// to what, where and why; what is allowed is there with the severity that it would have.
 pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
-    let all: Vec<Value> = diagnostics.iter().map(|one| diagnostic(one, sources)).collect();
-    json!({ "diagnostics": all })
+    json!({ "diagnostics": Json { diagnostics, sources } })
+}
+
+/// The list that [`json`] has, each made while it is written: of thousands each takes many times what it is about.
+#[derive(Clone, Copy, Debug)]
+pub struct Json<'d> {
+    /// The diagnostics.
+    pub diagnostics: &'d [Diagnostic],
+    /// What they are about.
+    pub sources: &'d Sources,
+}
+
+impl Serialize for Json<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(self.diagnostics.iter().map(|one| diagnostic(one, self.sources)))
+    }
 }
 
 fn diagnostic(one: &Diagnostic, sources: &Sources) -> Value {

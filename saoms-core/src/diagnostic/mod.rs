@@ -21,11 +21,11 @@ pub(crate) use candidates::Candidates;
 pub use codes::Code;
 pub use collector::Diagnostics;
 pub use human::{Human, human};
-pub use json::json;
+pub use json::{Json, json};
 pub use level::{Level, SetBy};
 pub use quoted::quoted;
 pub use saoms_api::{Severity, nearest, nearest_few};
-pub use sarif::sarif;
+pub use sarif::{Sarif, sarif};
 
 use crate::source::Location;
 

@@ -29,6 +29,8 @@ pub struct Finder {
     pub(super) around: Option<Imports>,
     /// How many right names are still looked at for wrong ones.
     pub(super) candidates: Candidates,
+    /// Of how many more names that lead nowhere it is kept where they were looked for.
+    pub(super) explained: usize,
     /// Whether folders may hold component types.
     folders: HashMap<PathBuf, bool>,
     /// Which of the component types that were looked for are there.
@@ -36,6 +38,9 @@ pub struct Finder {
     /// The files of folders that are called as composites and are none, with the reason.
     unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,
 }
+
+/// More that lead nowhere are counted, and few of those are shown.
+const MOST_EXPLAINED: usize = 1000;
 
 impl Finder {
     /// Nothing is known yet but the texts that count in place of files.
@@ -46,6 +51,7 @@ impl Finder {
             declared: Declared::default(),
             around: None,
             candidates: Candidates::default(),
+            explained: MOST_EXPLAINED,
             folders: HashMap::new(),
             side_files: HashMap::new(),
             unread: HashMap::new(),

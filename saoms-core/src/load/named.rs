@@ -167,6 +167,8 @@ impl Finder {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) -> Missing {
+        let Some(left) = self.explained.checked_sub(1) else { return Missing::default() };
+        self.explained = left;
         let seen = self.shelf.seen(folder);
         let is_meant = |namespace: &str| {
             wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace))

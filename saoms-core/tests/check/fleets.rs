@@ -130,6 +130,20 @@ fn composites_are_replicated_with_all_that_is_in_them() {
     ));
 }
 
+/// Each of them has its texts.
+#[test]
+fn long_replicas_count_as_several() {
+    let long = "x".repeat(1_000_000);
+    let found = of(
+        &format!(
+            r#"<component name="A${{index}}" saoms:count="1000"><implementation.java class="example.Robot"/><property name="name">{long}</property></component>"#
+        ),
+        &[],
+    );
+    let told = "error S2046: 1000 replicas are more than a fleet can have of one that is so long";
+    assert_eq!(found.matches(told).count(), 1, "{}", found.len());
+}
+
 #[test]
 fn what_is_wrong_with_replicas_is_found_at_its_place() {
     expect![[r#"

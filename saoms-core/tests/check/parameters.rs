@@ -405,6 +405,19 @@ fn sources_of_many_values_have_a_limit() {
     assert_eq!(found.matches(limit).count(), 1, "{found}");
 }
 
+/// Each of many that takes a long text has it.
+#[test]
+fn sources_of_long_texts_have_a_limit() {
+    let inside = format!(
+        r#"<property name="long">{}</property>
+<component name="Robot${{index}}" saoms:count="100" xmlns:saoms="urn:saoms:1"><implementation.java class="example.Robot"/><property name="charger" source="$long"/></component>"#,
+        "1".repeat(1_000_000)
+    );
+    let found = faults(&inside);
+    let limit = "error S2035: sources come to more than 64 MB of text";
+    assert_eq!(found.matches(limit).count(), 1, "{}", found.len());
+}
+
 #[test]
 fn paths_lead_to_any_depth_and_to_what_a_part_says() {
     let of = |source: &str, assume_classes: bool| {
