@@ -127,12 +127,14 @@ impl<'m> Ways<'m> {
         let mut unreached = self.map.clone();
         unreached.set_blocked(to);
         let (mut open, mut next, mut count) = (vec![to], Vec::new(), 0);
-        while !open.is_empty() {
+        let mut left = self.starts.iter().filter(|start| self.map.is_free(**start)).count();
+        while !open.is_empty() && left > 0 {
             for block in open.drain(..) {
                 if !self.marked.is_free(block)
                     && let Ok(start) = self.starts.binary_search(&block)
                 {
                     moves[start] = count;
+                    left -= 1;
                 }
                 for beside in block.neighbours() {
                     if unreached.is_free(beside) {
