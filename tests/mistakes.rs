@@ -119,3 +119,10 @@ fn in_composites_of_composites() {
     let mistakes = include_str!("mistakes/terminal/mistakes.txt");
     hold(&files, mistakes, &expect_file!["mistakes/terminal/mistakes.txt"]);
 }
+
+#[test]
+fn in_policies_beside_a_composite() {
+    let files = files!("guarded": "guarded.composite" "definitions.xml");
+    let mistakes = include_str!("mistakes/guarded/mistakes.txt");
+    hold(&files, mistakes, &expect_file!["mistakes/guarded/mistakes.txt"]);
+}

@@ -86,7 +86,7 @@ fn wrong_namespace(root: Element<'_>) -> Diagnostic {
 }
 
 /// The version whose namespace is meant, when what is written is near enough.
-fn meant(namespace: &str) -> Option<Version> {
+pub(super) fn meant(namespace: &str) -> Option<Version> {
     let near = nearest(namespace, Version::ALL.map(Version::namespace));
     near.and_then(Version::from_namespace)
 }

@@ -8,7 +8,7 @@ mod judge;
 
 use std::path::{Path, PathBuf};
 
-use super::root::of_another_kind;
+use super::root::{meant, of_another_kind};
 use super::vocabulary::DEFINITIONS;
 use super::{Loader, read};
 use crate::diagnostic::Diagnostics;
@@ -131,7 +131,8 @@ fn one(
     let document = document?;
     let root = document.root();
     if !is_of_policies(root) {
-        if is_asked_for {
+        let is_slip = root.local_name() == DEFINITIONS.name && meant(root.namespace()).is_some();
+        if is_asked_for || is_slip {
             let fault = fault.unwrap_or_else(|| {
                 of_another_kind(root, DEFINITIONS.name, "a file of this name holds intents and policy sets")
             });
