@@ -228,9 +228,7 @@ impl Loader<'_> {
         }
         let shown = element.name();
         let message = format!("{} needs the attribute {}", quoted(shown), quoted(name));
-        let text = &element.document().text()[..element.start_tag_span().end as usize];
-        let end = if text.ends_with("/>") { "/>" } else { ">" };
-        let help = format!("write {}", quoted(&format!("<{shown} {name}=\"...\"{end}")));
+        let help = format!("add {} to it", quoted(&format!("{name}=\"...\"")));
         self.report(Diagnostic::new(&codes::MISSING_ATTRIBUTE, location, message).help(help));
     }
 

@@ -101,7 +101,7 @@ impl Finder {
     }
 }
 
-/// The composites in a folder and in those below it, other contributions among them, in the order of their paths; hidden folders and what tools made
+/// The composites in a folder and in those below it, other contributions among them, in the order of their paths; what is hidden and what tools made
 /// are passed over. Reported is that there are none, or more files than are looked at.
 pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Vec<PathBuf> {
     let mut shelf = Shelf::new(sources.open().clone());

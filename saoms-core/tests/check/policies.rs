@@ -28,11 +28,11 @@ fn elements_of_policies_say_what_they_are_about() {
     );
     expect![[r#"
         2:2-10 error S1008: `requires` needs the attribute `intents`
-          help: write `<requires intents="..."/>`
+          help: add `intents="..."` to it
         2:73-79 error S1007: `requires` has no attribute `intent`
           fix: replace `intent` with `intents` [2:73-79 "intents"]
         3:2-21 error S1008: `policySetAttachment` needs the attribute `name`
-          help: write `<policySetAttachment name="..."/>`
+          help: add `name="..."` to it
         3:77-84 error S1011: the attribute `name` is empty
         4:25-29 error S1012: text in `requires`, which holds no text
           help: remove it; comments stand between `<!--` and `-->`
@@ -87,7 +87,7 @@ fn operations_and_bindings_of_sca_1_0_have_their_names() {
 <component name="C"><implementation.java class="a.C"/><service name="S"><operation/><operation name="b">text</operation><binding.ws name="x:y"/></service></component></composite>"#;
     expect![[r#"
         2:74-83 error S1008: `operation` needs the attribute `name`
-          help: write `<operation name="..."/>`
+          help: add `name="..."` to it
         2:105-109 error S1012: text in `operation`, which holds no text
           help: remove it; comments stand between `<!--` and `-->`
     "#]]

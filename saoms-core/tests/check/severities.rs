@@ -248,9 +248,9 @@ fn what_is_wrong_with_severities_is_found() {
         2:101-105 error S1011: `level` is `deny` and has to be `allow`, `note`, `warning` or `error`
           fix: replace it with `error` [2:101-105 "error"]
         3:2-16 error S1008: `saoms:severity` needs the attribute `reason`
-          help: write `<saoms:severity reason="..."/>`
+          help: add `reason="..."` to it
         3:46-60 error S1008: `saoms:severity` needs the attribute `code`
-          help: write `<saoms:severity code="..."/>`
+          help: add `code="..."` to it
         3:75-84 error S1011: the attribute `reason` is empty
         4:118-126 error S1004: `severity` is an element of SAOMS: it has to be in the namespace `urn:saoms:1`
           help: write `<saoms:severity .../>`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag

@@ -404,7 +404,7 @@ fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
         3:80-83 error S1007: `property` has no attribute `nam`
           fix: replace `nam` with `name` [3:80-83 "name"]
         3:90-98 error S1008: `property` needs the attribute `name`
-          help: write `<property name="..."/>`
+          help: add `name="..."` to it
     "#]]
     .assert_eq(&of(&text));
     expect![[r#"
@@ -415,7 +415,7 @@ fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
         3:80-83 error S1007: `property` has no attribute `nam`
           fix: replace `nam` with `name` [3:80-83 "name"]
         3:90-98 error S1008: `property` needs the attribute `name`
-          help: write `<property name="..."/>`
+          help: add `name="..."` to it
     "#]]
     .assert_eq(&faults_of(&[&fleet_1_0(&text)], &[]));
 }

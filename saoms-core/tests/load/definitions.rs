@@ -138,7 +138,7 @@ fn what_the_schema_of_1_1_forbids_is_told_where_it_stands() {
         definitions.xml:4:57 [qualifer] error S1004 SCA 1.1 has no element `qualifer`
           replace `qualifer` with `qualifier`
         definitions.xml:4:77 [qualifier] error S1008 `qualifier` needs the attribute `name`
-          write `<qualifier name="..."/>`
+          add `name="..."` to it
         definitions.xml:4:89 [component] error S1005 `component` cannot stand in `intent`
           `intent` can hold `description`, `qualifier`
         definitions.xml:5:29 [provide] error S1007 `policySet` has no attribute `provide`
@@ -146,35 +146,35 @@ fn what_the_schema_of_1_1_forbids_is_told_where_it_stands() {
         definitions.xml:5:43 [text] error S1012 text in `policySet`, which holds no text
           remove it; comments stand between `<!--` and `-->`
         definitions.xml:5:48 [intentMap] error S1008 `intentMap` needs the attribute `provides`
-          write `<intentMap provides="...">`
+          add `provides="..."` to it
         definitions.xml:5:58 [default] warning S1007 `default` is an attribute of SCA 1.0, and this file is of SCA 1.1
           the intent says which of its qualifiers is the default
         definitions.xml:5:81 [name=''] error S1011 the attribute `name` is empty
         definitions.xml:5:103 [policySetReference] error S1008 `policySetReference` needs the attribute `name`
-          write `<policySetReference name="..."/>`
+          add `name="..."` to it
         definitions.xml:5:124 [allow] error S1004 SCA 1.1 has no element `allow`
           `policySet` can hold `policySetReference`, `intentMap`
         definitions.xml:6:10 [intentMap] error S1005 `intentMap` cannot stand in `definitions`
           `definitions` can hold `intent`, `policySet`, `bindingType`, `implementationType`, `externalAttachment`, `documentation`
         definitions.xml:6:37 [bindingType] error S1008 `bindingType` needs the attribute `type`
-          write `<bindingType type="..."/>`
+          add `type="..."` to it
         definitions.xml:6:69 [sca:implementation.java] error S1011 `sca:implementation.java` is no binding
           it names the element of the binding: `sca:binding.NAME`
         definitions.xml:7:81 [mayProvides] error S1007 `implementationType` has no attribute `mayProvides`
           replace `mayProvides` with `mayProvide`
         definitions.xml:8:10 [externalAttachment] error S1008 `externalAttachment` needs the attribute `attachTo`
-          write `<externalAttachment attachTo="..."/>`
+          add `attachTo="..."` to it
         definitions.xml:8:48 [externalAttachment] warning S1008 `externalAttachment` attaches nothing
           name `intents` or `policySets`
         definitions.xml:8:84 [binding.http] error S1004 SCA 1.1 has no element `binding.http`
           replace `binding.http` with `bindingType`
         definitions.xml:8:84 [binding.http] error S1008 `binding.http` needs the attribute `type`
-          write `<binding.http type="..."/>`
+          add `type="..."` to it
     "#]].assert_eq(&alone("definitions.xml", definitions(OASIS, inside)));
     let bare = format!("<definitions xmlns='{OASIS}'/>");
     expect![[r#"
         definitions.xml:1:2 [definitions] error S1008 `definitions` needs the attribute `targetNamespace`
-          write `<definitions targetNamespace="..."/>`
+          add `targetNamespace="..."` to it
     "#]]
     .assert_eq(&alone("definitions.xml", bare));
 }
@@ -191,15 +191,15 @@ fn what_1_0_does_not_have_is_told_there() {
         definitions.xml:3:52 [qualifier] error S1004 SCA 1.0 has no element `qualifier`
           `intent` can hold `description`
         definitions.xml:4:10 [policySet] error S1008 `policySet` needs the attribute `appliesTo`
-          write `<policySet appliesTo="..."/>`
+          add `appliesTo="..."` to it
         definitions.xml:4:29 [attachTo] warning S1007 `policySet` has no attribute `attachTo`
           `policySet` has the attributes `name`, `provides`, `appliesTo`
         definitions.xml:4:80 [allow] error S1008 `allow` needs the attribute `roles`
-          write `<allow roles="..."/>`
+          add `roles="..."` to it
         definitions.xml:4:88 [runAs] error S1008 `runAs` needs the attribute `role`
-          write `<runAs role="..."/>`
+          add `role="..."` to it
         definitions.xml:4:111 [allow] error S1008 `allow` needs the attribute `roles`
-          write `<allow roles="..."/>`
+          add `roles="..."` to it
         definitions.xml:5:10 [externalAttachment] warning S1004 `externalAttachment` is an element of SCA 1.1, and this file is of SCA 1.0
           other programs refuse it
         definitions.xml:5:60 [documentation] warning S1004 `documentation` is an element of SCA 1.1, and this file is of SCA 1.0
@@ -318,7 +318,7 @@ fn files_of_one_contribution_belong_together() {
     expect!["no file beside composites"].assert_eq(&alone("definitions.xml", "<definitions".to_owned()));
     expect![[r#"
         my.xml:2:2 [intent] error S1008 `intent` needs the attribute `name`
-          write `<intent name="..."/>`
+          add `name="..."` to it
     "#]]
     .assert_eq(&alone("my.xml", definitions(OASIS, "<intent/>")));
 }

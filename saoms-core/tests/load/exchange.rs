@@ -44,11 +44,11 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
         sca-contribution.xml:2:32 [component] error S1005 `component` cannot stand in `deployable`
           `deployable` can hold `documentation`, `extensions`
         sca-contribution.xml:2:57 [import] error S1008 `import` needs the attribute `namespace`
-          write `<import namespace="..."/>`
+          add `namespace="..."` to it
         sca-contribution.xml:2:66 [import.c] error S1008 `import.c` needs the attribute `location`
-          write `<import.c location="..."/>`
+          add `location="..."` to it
         sca-contribution.xml:2:88 [export.cpp] error S1008 `export.cpp` needs the attribute `name`
-          write `<export.cpp name="..."/>`
+          add `name="..."` to it
         sca-contribution.xml:2:122 [pakage] error S1007 `export.java` has no attribute `pakage`
           replace `pakage` with `package`
         sca-contribution.xml:3:15 [extensions] error S1006 `contribution` has a second `extensions`

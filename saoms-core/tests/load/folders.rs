@@ -107,7 +107,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         sca-contribution.xml:4:24 [x:hall] error S2051 the contribution has no composite `x:hall`
           it has `hall` in the namespace `urn:b`
         sca-contribution.xml:5:2 [deployable] error S1008 `deployable` needs the attribute `composite`
-          write `<deployable composite="..."/>`
+          add `composite="..."` to it
         sca-contribution.xml:6:13 [composit] error S1007 `deployable` has no attribute `composit`
           replace `composit` with `composite`
         sca-contribution.xml:8:27 [locaton] error S1007 `export` has no attribute `locaton`
@@ -117,7 +117,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         sca-contribution.xml:10:1 [text] error S1012 text in `contribution`, which holds no text
           remove it; comments stand between `<!--` and `-->`
         sca-contribution.xml:10:6 [import.resource] error S1008 `import.resource` needs the attribute `uri`
-          write `<import.resource uri="..."/>`
+          add `uri="..."` to it
         sca-contribution.xml:11:43 [component] error S1005 `component` cannot stand in `contribution`
           `contribution` can hold `deployable`, `import`, `import.java`, `import.resource`, `import.c`, `import.cpp`, `export`, `export.java`, `export.resource`, `export.c`, `export.cpp`, `documentation`, `extensions`
     "#]].assert_eq(&one(
