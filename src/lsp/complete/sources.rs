@@ -51,7 +51,8 @@ fn is_name(letter: char) -> bool {
 
 /// The paths that are not at their end yet in a part of an XPath: the innermost last, which the others choose by a predicate. `None` within quotes.
 fn paths(typed: &str) -> Option<Vec<&str>> {
-    let (mut open, mut quote) = (vec![0..0], None);
+    let mut open: Vec<Range<usize>> = std::iter::once(0..0).collect();
+    let mut quote = None;
     for (at, letter) in typed.char_indices() {
         let next = at + letter.len_utf8();
         match letter {
