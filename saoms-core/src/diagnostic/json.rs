@@ -15,7 +15,7 @@ pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
     json!({ "diagnostics": Json { diagnostics, sources } })
 }
 
-/// The list that [`json`] has, each made while it is written: of thousands each takes many times what it is about.
+/// The list that [`json()`] has, each made while it is written: of thousands each takes many times what it is about.
 #[derive(Clone, Copy, Debug)]
 pub struct Json<'d> {
     /// The diagnostics.

@@ -42,7 +42,7 @@ pub fn format(document: &Document, width: usize) -> String {
     Formatted { document, width }.to_string()
 }
 
-/// What [`format`] gives, made while it is shown: of a file with deep elements it is many times as long.
+/// What [`format()`] gives, made while it is shown: of a file with deep elements it is many times as long.
 #[derive(Clone, Copy, Debug)]
 pub struct Formatted<'d> {
     /// The document.
