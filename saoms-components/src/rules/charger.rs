@@ -1,11 +1,9 @@
 //! Chargers where no robot can be.
 
-use std::collections::HashMap;
-
 use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
 
 use super::map::areas;
-use super::robots::{Known, robots};
+use super::robots::{by_world, robots};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -22,18 +20,15 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
-    let mut by_world: HashMap<usize, Vec<&Known>> = HashMap::new();
-    for robot in robots.iter() {
-        if let Some(world) = robot.world {
-            by_world.entry(world).or_default().push(robot);
-        }
-    }
+    let by_world = by_world(&robots);
     let mut findings = Vec::new();
     if by_world.is_empty() {
         return findings;
     }
     for area in areas(fleet) {
-        for robot in by_world.get(&area.index).into_iter().flatten() {
+        let first = by_world.partition_point(|(world, _)| *world < area.index);
+        let inside = by_world[first..].iter().take_while(|(world, _)| *world == area.index);
+        for (_, robot) in inside {
             let Some(problem) = area.problem(robot.charger) else { continue };
             let message = format!("the charger of robot {} is at {}, {problem}", robot.number, robot.charger);
             let in_columns = u32::try_from(robot.charger.x).is_ok_and(|column| column < area.map.width());

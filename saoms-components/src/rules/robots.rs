@@ -82,6 +82,14 @@ pub(super) fn sharing<K: Ord>(robots: &[Known], key: impl Fn(&Known) -> K) -> Ve
     sharing.into_iter().map(|(later, first)| (&robots[later], &robots[first])).collect()
 }
 
+/// The robots that are wired to a world, with that: by their worlds, and in their order.
+pub(super) fn by_world(robots: &[Known]) -> Vec<(usize, &Known)> {
+    let mut wired: Vec<(usize, &Known)> =
+        robots.iter().filter_map(|robot| Some((robot.world?, robot))).collect();
+    wired.sort_by_key(|(world, _)| *world);
+    wired
+}
+
 impl Known {
     /// Where the composite says where its charger is, as far as it does.
     pub(super) fn charger_place(&self, fleet: &FleetView<'_>) -> Place {

@@ -1,5 +1,6 @@
 //! Breakdowns of robots that do not exist.
 
+use std::cell::LazyCell;
 use std::collections::HashMap;
 
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity, nearest};
@@ -27,7 +28,8 @@ const NAME: usize = 50;
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let severity = if may_be_others(fleet) { Severity::Warning } else { Severity::Error };
-    let names = Names::of(fleet, &robots);
+    // Most fleets have no breakdowns.
+    let names = LazyCell::new(|| Names::of(fleet, &robots));
     let mut looks = Looks::default();
     let mut findings = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {

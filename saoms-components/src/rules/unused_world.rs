@@ -1,11 +1,11 @@
 //! Worlds that no robot is in.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
 
 use super::map::{Area, areas};
-use super::robots::{Known, may_be_others, robots};
+use super::robots::{Known, by_world, may_be_others, robots};
 use crate::robot::Robot;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -28,22 +28,20 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     // The robot that is wired first to each world, and what else is wired to.
-    let mut first: HashMap<usize, &Known> = HashMap::new();
-    for robot in robots.iter() {
-        if let Some(world) = robot.world {
-            first.entry(world).or_insert(robot);
-        }
-    }
-    let used: HashSet<usize> =
-        fleet.components().iter().flat_map(|one| one.wires.iter().map(|(_, target)| *target)).collect();
+    let mut first = by_world(&robots);
+    first.dedup_by_key(|(world, _)| *world);
+    let wires = fleet.components().iter().flat_map(|one| one.wires.iter().map(|(_, target)| *target));
+    let mut used: Vec<usize> = wires.collect();
+    used.sort_unstable();
     let mut findings = Vec::new();
     // The last world that robots are wired to in each composite, by what paths there start with.
     let mut around: HashMap<&str, (usize, &Known)> = HashMap::new();
     for area in areas(fleet) {
         let index = area.index;
-        if !used.contains(&index) {
+        if used.binary_search(&index).is_err() {
             findings.push(without_robots(fleet, &area));
-        } else if let Some(robot) = first.get(&index) {
+        } else if let Ok(place) = first.binary_search_by_key(&index, |(world, _)| *world) {
+            let (_, robot) = first[place];
             around.insert(composite(fleet.components()[index].path), (index, robot));
         }
     }

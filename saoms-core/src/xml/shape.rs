@@ -105,6 +105,7 @@ impl Known {
 
     /// The shape of the tag whose `<` is at `start`, and where the tag ends, when it is like one that was met in this scope; its values are
     /// appended to `values` then.
+    #[inline]
     pub(super) fn find(
         &mut self,
         input: Input<'_>,
