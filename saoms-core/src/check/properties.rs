@@ -1,5 +1,6 @@
 //! The properties of each component: known, given once, right, and all that have to be there.
 
+use std::cell::LazyCell;
 use std::collections::HashMap;
 
 use saoms_api::PropertyValue;
@@ -13,12 +14,13 @@ use super::report::Report;
 use super::slots::{Slot, Slots};
 use super::value_type::{self, Match, Typed};
 use super::values::{Path, Use, Values};
-use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::expression::has_expression;
+use crate::hash::Map;
 use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::Document;
+use crate::xml::{Document, escaped};
 
 /// What a component gives for one property of its class.
 pub(super) struct Given<'r> {
@@ -352,8 +354,20 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
         let composites = inner.composites.iter();
         composites.flat_map(|one| one.properties.iter().map(|property| (property, &*one.document)))
     };
-    for property in member.component.properties.iter().filter(|property| !property.name.is_empty()) {
-        if let Some((declared, document)) = declared().find(|(one, _)| one.name == *property.name.value) {
+    let given = &member.component.properties;
+    // The first of each name.
+    let mut by_name: Map<&str, (&Property, &Document)> = Map::default();
+    if given.len() > FEW {
+        declared().for_each(|(one, document)| _ = by_name.entry(&one.name).or_insert((one, document)));
+    }
+    let find = |name: &str| match given.len() > FEW {
+        true => by_name.get(name).copied(),
+        false => declared().find(|(one, _)| one.name == *name),
+    };
+    let known: LazyCell<Vec<&str>, _> =
+        LazyCell::new(|| declared().map(|(one, _)| one.name.as_str()).collect());
+    for property in given.iter().filter(|property| !property.name.is_empty()) {
+        if let Some((declared, document)) = find(&property.name) {
             let own = Typed { property, document: &member.composite.document };
             let is_many = declared.many().is_some_and(|many| many.value);
             if let (false, [first, second, ..]) = (is_many, property.values()) {
@@ -366,14 +380,16 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
         let (name, at) = (&property.name, property.name.location);
         let of = quoted(&inner.main().name);
         let message = format!("composite {of} has no property {}", quoted(name));
-        let known: Vec<&str> = declared().map(|(one, _)| one.name.as_str()).collect();
         if known.contains(&"") {
             // It is the one without a name, which is reported.
             continue;
         }
+        if report.skip(&codes::UNKNOWN_PROPERTY, Severity::Error, at) {
+            continue;
+        }
         if let Some(source) = lacking::taken_inside(name, inner) {
             let one = Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message).label(source, "taken here");
-            let help = format!("declare it in the composite: `<property name=\"{name}\"/>`");
+            let help = format!("declare it in the composite: `<property name=\"{}\"/>`", escaped(name));
             report.push(one.help(help));
             continue;
         }

@@ -17,6 +17,7 @@ use crate::hash::{Map, Seeded};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
+use crate::xml::escaped;
 
 /// Collects values that components must not share. A large fleet has many, so that what is kept of each is small.
 #[derive(Default)]
@@ -174,7 +175,7 @@ impl<'a> Unique<'a> {
                     Canonical::Integer(_) => "${index}".to_owned(),
                     Canonical::Text(text) => with_index(text),
                 };
-                one.suggest(replacing(&value.to_string(), &meant), seen.place, meant)
+                one.suggest(replacing(&value.to_string(), &meant), seen.place, escaped(&meant))
             }
             // In a composite that is there several times.
             true => one

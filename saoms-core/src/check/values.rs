@@ -341,7 +341,9 @@ fn wrong(
     let is_counter = text.trim() == INDEX || has_index && COUNTERS.contains(&text.trim());
     let by_index = if is_counter { Some(format!("${{{INDEX}}}")) } else { as_index(text.trim()) };
     match by_index.filter(|meant| meant != text.trim()) {
-        Some(meant) if has_index => return one.suggest(replacing(text, &meant), text.location, meant),
+        Some(meant) if has_index => {
+            return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
+        }
         Some(meant) => {
             return one
                 .help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant)));
