@@ -16,9 +16,10 @@ use libmimalloc_sys::{
 /// What is at least so large, in bytes, comes from the system.
 const LARGE: usize = 1 << 20;
 
-/// The first list that is at least so large, in bytes, is asked for in huge pages: what they round up to is little of it then.
+/// The first list that is at least so large, in bytes, is asked for in huge pages, as the text of a file of some 100 MB: what all lists are
+/// rounded up to is little of such a file, and much of what a small one may take that comes to many components.
 #[cfg(target_os = "linux")]
-const HUGE: usize = 32 << 20;
+const HUGE: usize = 92 << 20;
 
 /// Each later one that is at least so large is, too.
 #[cfg(target_os = "linux")]
@@ -160,7 +161,8 @@ mod tests {
     #[test]
     fn what_is_in_memory_survives_every_change_of_its_size() {
         const ALIGNMENT: usize = 64;
-        let sizes = [3, 4096, LARGE - 1, LARGE, 3 * LARGE, 40 * LARGE, 70 * LARGE, 35 * LARGE, LARGE, 900, 5];
+        let sizes =
+            [3, 4096, LARGE - 1, LARGE, 3 * LARGE, 40 * LARGE, 100 * LARGE, 35 * LARGE, LARGE, 900, 5];
         let layout = |size| Layout::from_size_align(size, ALIGNMENT).unwrap();
         // SAFETY: each layout is that of the memory at that time, and no byte beyond it is touched.
         unsafe {
@@ -180,7 +182,7 @@ mod tests {
 
     #[test]
     fn memory_that_is_asked_for_empty_is_empty() {
-        for size in [16, LARGE - 1, LARGE, 64 * LARGE] {
+        for size in [16, LARGE - 1, LARGE, 96 * LARGE] {
             let layout = Layout::from_size_align(size, 8).unwrap();
             // SAFETY: the layout is that of the memory, and no byte beyond it is read.
             unsafe {
