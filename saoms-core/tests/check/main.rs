@@ -5,6 +5,7 @@
 mod assemblies;
 mod classes;
 mod component_types;
+mod conditions;
 mod corpus;
 mod environment;
 mod escapes;

@@ -64,21 +64,6 @@ fn autowire_of_an_included_composite_is_its_own_or_else_that_around_it() {
 }
 
 #[test]
-fn what_is_promoted_and_absent_is_told_with_what_can_be_done() {
-    let fleet = part(
-        "fleet",
-        r#"xmlns:saoms="urn:saoms:1""#,
-        r#"<property name="site">north</property><service name="at" promote="A"/>
-<component name="A" saoms:if="site == 'south'"><implementation.java class="example.Gps"/></component>"#,
-    );
-    expect![[r#"
-        2:67-68 error S2011: the component `A` is not there
-          3:31-46 this is false
-          help: what a composite promotes has no condition: put both into a composite that is included with this one
-    "#]].assert_eq(&outcome(&[&fleet], &[]));
-}
-
-#[test]
 fn includes_that_cannot_be_say_so() {
     let fleet = part(
         "fleet",

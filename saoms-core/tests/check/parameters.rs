@@ -481,23 +481,3 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
     "#]]
     .assert_eq(&all);
 }
-
-/// Values that are written beside each other are several, as those in `value` are.
-#[test]
-fn one_of_several_elements_is_asked_for_by_its_place() {
-    let place = |x: u8| format!("<p:place xmlns=\"\"><x>{x}</x><y>4</y></p:place>");
-    let beside = place(1) + &place(2);
-    let listed = format!("<value>{}</value><value>{}</value>", place(1), place(2));
-    for values in [beside, listed] {
-        let all = format!(
-            "<property name=\"places\" element=\"p:place\" many=\"true\" xmlns:p=\"urn:x\">{values}</property>{}",
-            robot(
-                "<property name=\"charger\" source=\"$places[2]\"/><property name=\"number\" source=\"$places[1]/x\"/><property name=\"speed\" source=\"$places[2]/x\"/>"
-            )
-        );
-        expect![[r#"
-            R (example.Robot001) ID=Text("R") number=Text("1") speed=Text("2") charger=Complex([("x", Text("2")), ("y", Text("4"))]) gps->
-        "#]]
-        .assert_eq(&outcome(&[&fleet(&all)], &[]));
-    }
-}

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use expect_test::expect;
 
-use crate::support::{nested, outcome, part, shown};
+use crate::properties::robot;
+use crate::support::{fleet, nested, outcome, part, shown};
 
 const BAYS: &str = r#"<property name="b"><bays xmlns="urn:x" unit="m"><bay id="a"><x>3</x><y>4</y></bay><bay id="b/c"><x>5</x></bay><bay> 7 <x> 8  9 </x></bay></bays></property>
 <property name="many" many="true"><value>1</value><value>2</value><value>20</value></property>
@@ -271,4 +272,24 @@ fn an_expression_has_an_end() {
     let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
     let found = outcome(&texts, &[]);
     assert!(found.contains("S2023: it looks at more parts of values than a check can"), "{found}");
+}
+
+/// Values that are written beside each other are several, as those in `value` are.
+#[test]
+fn one_of_several_elements_is_asked_for_by_its_place() {
+    let place = |x: u8| format!("<p:place xmlns=\"\"><x>{x}</x><y>4</y></p:place>");
+    let beside = place(1) + &place(2);
+    let listed = format!("<value>{}</value><value>{}</value>", place(1), place(2));
+    for values in [beside, listed] {
+        let all = format!(
+            "<property name=\"places\" element=\"p:place\" many=\"true\" xmlns:p=\"urn:x\">{values}</property>{}",
+            robot(
+                "<property name=\"charger\" source=\"$places[2]\"/><property name=\"number\" source=\"$places[1]/x\"/><property name=\"speed\" source=\"$places[2]/x\"/>"
+            )
+        );
+        expect![[r#"
+            R (example.Robot001) ID=Text("R") number=Text("1") speed=Text("2") charger=Complex([("x", Text("2")), ("y", Text("4"))]) gps->
+        "#]]
+        .assert_eq(&outcome(&[&fleet(&all)], &[]));
+    }
 }
