@@ -399,7 +399,7 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
     }
 }
 
-/// Up to here each property is compared with those before it.
+/// Up to here names are compared one by one.
 const FEW: usize = 16;
 
 /// Says that a property that its declaration says takes one value is given several.

@@ -10,15 +10,11 @@ use saoms_core::source::Sources;
 
 use crate::imports::description;
 use crate::named::composite;
+use crate::support::{shown, written};
 
 /// The fleets in a folder of these files, and what is wrong with it.
 fn fleets(files: &[(&str, String)]) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        let path = folder.path().join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, text).unwrap();
-    }
+    let folder = written(files);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let fleets = load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
     let mut out = String::new();
@@ -26,24 +22,8 @@ fn fleets(files: &[(&str, String)]) -> String {
         let files: Vec<String> = fleet.files.iter().map(|path| path.display().to_string()).collect();
         let _ = writeln!(out, "{}{}", files.join(" + "), if fleet.is_deployable { " runs" } else { "" });
     }
-    for one in &diagnostics.into_sorted() {
-        let file = sources.get(one.location.file);
-        let at = file.line_column(one.location.span.start);
-        let (severity, code) = (one.severity.name(), one.code.id);
-        let shown = sources.snippet(one.location);
-        let _ = writeln!(
-            out,
-            "{}:{}:{} [{shown}] {severity} {code} {}",
-            file.path(),
-            at.line,
-            at.column,
-            one.message
-        );
-        one.help.iter().for_each(|help| _ = writeln!(out, "  {help}"));
-        one.suggestions.iter().for_each(|one| _ = writeln!(out, "  {}", one.description));
-    }
+    out.push_str(&shown(folder.path(), &sources, diagnostics));
     out.replace(&format!("{}/", folder.path().display()), "")
-        .replace(&folder.path().display().to_string(), "FOLDER")
 }
 
 fn deployables(names: &[&str]) -> String {

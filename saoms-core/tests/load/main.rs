@@ -15,4 +15,5 @@ mod intents;
 mod named;
 mod oracle;
 mod places;
+mod support;
 mod wellformed;
