@@ -1,3 +1,5 @@
+//! A bound on the work of rules over fleets.
+
 /// How many things a rule looks at that it looks at again and again, robots for each line of a scenario or rows of blocks for each area: a check
 /// must take time that grows with its files, and not with their square.
 #[derive(Debug)]
