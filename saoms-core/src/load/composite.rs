@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Loader;
 use super::children::Family;
+use super::plan::Plans;
 use super::vocabulary::{
     COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INCLUDE, WIRE,
 };
@@ -41,9 +42,22 @@ impl Loader<'_> {
             policy: self.policy(root),
             name,
         };
+        let mut alike = document.alike().iter().peekable();
+        let mut plans = Plans::default();
         for child in root.children() {
+            let alike = alike.next_if(|one| one.element == child.id());
+            if let Some(made) = alike.and_then(|one| plans.make(*one, document, &composite)) {
+                composite.components.push(made);
+                continue;
+            }
             let (family, name) = self.meaning(child);
+            let (count, told) = (composite.components.len(), self.told());
             self.part(child, family, name, &mut composite);
+            if let (Some(alike), Some(read)) = (alike, composite.components.get(count))
+                && told == self.told()
+            {
+                self.plan(&mut plans, alike.form, count, (child, read));
+            }
         }
         composite.severities = std::mem::take(&mut self.severities);
         composite.outside = std::mem::take(&mut self.outside);

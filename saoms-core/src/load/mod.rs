@@ -26,6 +26,7 @@ mod looping;
 mod missing;
 mod named;
 mod near;
+mod plan;
 mod policy;
 mod property;
 mod read;

@@ -165,4 +165,12 @@ impl Loader<'_> {
         let allowed = names.iter().filter_map(|name| usual(name)).fold(0, |all, usual| all | 1 << usual);
         self.tag(element).has & !allowed == 0
     }
+
+    /// The place of a usual attribute among those of an element that has it and no others but these.
+    pub(super) fn only_of(&mut self, element: Element<'_>, names: &[&str], name: &str) -> Option<usize> {
+        let place = usual(name)?;
+        let has_only = self.has_only(element, names);
+        let tag = self.tag(element);
+        (has_only && tag.has & 1 << place != 0).then(|| tag.places[place].into())
+    }
 }

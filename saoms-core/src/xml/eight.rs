@@ -74,6 +74,22 @@ pub(super) fn same(one: &[u8], other: &[u8]) -> bool {
     }
 }
 
+/// How many bytes at the start of both are the same.
+#[inline]
+pub(super) fn same_start(one: &[u8], other: &[u8]) -> usize {
+    let pairs = one.as_chunks::<8>().0.iter().zip(other.as_chunks::<8>().0);
+    let mut at = 0;
+    for (one, other) in pairs {
+        let differs = u64::from_le_bytes(*one) ^ u64::from_le_bytes(*other);
+        if differs != 0 {
+            return at + differs.trailing_zeros() as usize / 8;
+        }
+        at += 8;
+    }
+    let rest = one[at..].iter().zip(&other[at..]);
+    at + rest.take_while(|(one, other)| one == other).count()
+}
+
 /// Where the first of three bytes is.
 #[inline]
 pub(super) fn first_of(bytes: &[u8], wanted: [u8; 3]) -> Option<usize> {
@@ -136,6 +152,8 @@ mod tests {
         for one in &all {
             for other in all.iter().step_by(5).chain([one]) {
                 assert_eq!(same(one, other), one == other, "{one:?} {other:?}");
+                let start = one.iter().zip(other).take_while(|(one, other)| one == other).count();
+                assert_eq!(same_start(one, other), start, "{one:?} {other:?}");
             }
         }
     }

@@ -152,6 +152,11 @@ impl<'a> Element<'a> {
         self.node().shape as usize
     }
 
+    /// How many values of attributes there are from the start of another element, which starts before it, to its own.
+    pub(crate) fn values_behind(self, other: Self) -> u32 {
+        self.node().values - other.node().values
+    }
+
     pub(super) fn count_of_attributes(self) -> usize {
         self.document.shapes.parts(self.node().shape).len()
     }
@@ -392,15 +397,26 @@ impl<'a> Attribute<'a> {
     /// A value that means itself, and where it is.
     #[inline]
     pub(crate) fn as_it_is(self, value: &str) -> Text {
-        Located::new(value.into(), self.value.in_file(self.document.file))
+        Located::new(value.into(), self.value_location())
     }
 
-    /// The value and where it is, when it is one word as most are, without white space or references.
+    /// Where the value is, without its quotes.
+    #[inline]
+    pub(crate) fn value_location(self) -> Location {
+        self.value.in_file(self.document.file)
+    }
+
+    /// The value, when it is one word as most are, without white space or references.
+    #[inline]
+    pub(crate) fn plain_word(self) -> Option<&'a str> {
+        let word = self.raw_value();
+        (!word.is_empty() && value::is_plain(word.as_bytes())).then_some(word)
+    }
+
+    /// The same, and where it is.
     #[inline]
     pub(crate) fn only_word(self) -> Option<Text> {
-        let word = self.raw_value();
-        let is_word = !word.is_empty() && value::is_plain(word.as_bytes());
-        is_word.then(|| self.as_it_is(word))
+        self.plain_word().map(|word| self.as_it_is(word))
     }
 
     /// The value and where it is, white space at its ends left out.

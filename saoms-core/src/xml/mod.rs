@@ -9,6 +9,7 @@ mod eight;
 mod element;
 mod escape;
 mod fault;
+mod form;
 mod names;
 mod namespaces;
 mod node;
@@ -29,6 +30,7 @@ pub use element::{Attribute, Element};
 pub use escape::escaped;
 pub(crate) use node::Node;
 pub use parse::{Parsed, Tangle, parse};
+pub(crate) use tree::Alike;
 pub use tree::{Document, ElementId};
 pub(crate) use value::Writing;
 

@@ -8,10 +8,11 @@ use quick_xml::events::Event;
 use super::characters::{first_forbidden, forbidden, is_blank};
 use super::eight::{blanks, first_of, same};
 use super::fault::{Checked, Fault, Input};
+use super::form::{Forms, Read};
 use super::namespaces::{Namespaces, refusal};
 use super::shape::Known;
 use super::tag::RawAttribute;
-use super::tree::{Declared, Document, ElementId, NO_NAMESPACE, NONE, Node, XMLNS};
+use super::tree::{Alike, Declared, Document, ElementId, NO_NAMESPACE, NONE, Node, XMLNS};
 use super::{prolog, reference, tag, unbound, value};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{FileId, Span};
@@ -95,6 +96,9 @@ pub(super) struct Parser<'a> {
     pub(super) nodes: Vec<Node>,
     values: Vec<Span>,
     shapes: Known,
+    forms: Forms,
+    /// The children of the root that have a form.
+    alike: Vec<Alike>,
     /// Those of the tag at hand, when it is read name by name.
     attributes: Vec<RawAttribute>,
     namespaces: Namespaces<'a>,
@@ -110,6 +114,8 @@ impl<'a> Parser<'a> {
             nodes: Vec::with_capacity(elements(input.text)),
             values: Vec::new(),
             shapes: Known::new(),
+            forms: Forms::new(),
+            alike: Vec::new(),
             attributes: Vec::new(),
             namespaces: Namespaces::new(),
             open: Vec::new(),
@@ -155,6 +161,11 @@ impl<'a> Parser<'a> {
 
     /// Gives where it ends.
     fn start_tag(&mut self, start: u32) -> Checked<u32> {
+        if self.open.len() == 1
+            && let Some(end) = self.like_before(start)
+        {
+            return Ok(end);
+        }
         let outside = self.namespaces.depth();
         let values = self.values.len() as u32;
         let known = self.shapes.find(self.input, start, self.namespaces.scope(), &mut self.values);
@@ -167,14 +178,7 @@ impl<'a> Parser<'a> {
         };
         let is_empty = self.shapes.shapes.get(shape).is_empty;
         let id = self.nodes.len() as u32;
-        let mut parent = NONE;
-        if let Some(open) = self.open.last_mut() {
-            parent = open.node;
-            if open.last_child != NONE {
-                self.nodes[open.last_child as usize].next = id;
-            }
-            open.last_child = id;
-        }
+        let parent = self.link(id);
         self.nodes.push(Node {
             start,
             end,
@@ -192,6 +196,26 @@ impl<'a> Parser<'a> {
             self.open.push(Open { node: id, last_child: NONE, outside });
         }
         Ok(end)
+    }
+
+    /// Makes an element, which comes next, the last child of the one that is open; gives that.
+    fn link(&mut self, id: u32) -> u32 {
+        let Some(open) = self.open.last_mut() else { return NONE };
+        if open.last_child != NONE {
+            self.nodes[open.last_child as usize].next = id;
+        }
+        open.last_child = id;
+        open.node
+    }
+
+    /// Reads a child of the root as a whole, where it is like one before; gives where it ends.
+    fn like_before(&mut self, start: u32) -> Option<u32> {
+        let id = self.nodes.len() as u32;
+        let mut read = Read { nodes: &mut self.nodes, values: &mut self.values };
+        let (one, end) = self.forms.read(self.input, start, &mut read)?;
+        self.link(id);
+        self.alike.push(one);
+        Some(end)
     }
 
     /// Reads a start tag name by name; gives its shape, and where it ends.
@@ -302,6 +326,10 @@ impl<'a> Parser<'a> {
             node.end = end;
             node.is_closed = true;
             self.namespaces.leave(open.outside);
+            if self.open.len() == 1 {
+                let read = Read { nodes: &mut self.nodes, values: &mut self.values };
+                self.alike.extend(self.forms.take(self.input, open.node, &self.shapes.shapes, &read));
+            }
         }
         end
     }
@@ -427,6 +455,7 @@ impl<'a> Parser<'a> {
             nodes: self.nodes,
             values: self.values,
             shapes: self.shapes.shapes,
+            alike: self.alike,
             namespaces: self.namespaces.into_names(),
             declared: Declared::default(),
         })

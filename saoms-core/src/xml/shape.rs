@@ -33,7 +33,7 @@ pub(super) struct Shape {
     /// `<a/>`
     pub(super) is_empty: bool,
     /// Whether it declares namespaces: such a tag is always read.
-    declares: bool,
+    pub(super) declares: bool,
 }
 
 /// An attribute of a shape.

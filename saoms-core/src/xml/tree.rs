@@ -24,7 +24,7 @@ pub(super) const NO_NAMESPACE: u32 = 0;
 pub(super) const XMLNS: u32 = 2;
 
 /// 32 bytes: a file of nothing but `<a/>` costs eight times its size.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     /// At the `<` of the start tag.
     pub(super) start: u32,
@@ -44,6 +44,16 @@ pub(super) struct Node {
     pub(super) is_closed: bool,
 }
 
+/// A child of the root that is written as others are, but for the values of attributes and for texts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Alike {
+    pub(crate) element: ElementId,
+    /// A number that it has in common with those.
+    pub(crate) form: u32,
+    /// A bit for each of its first 64 values of attributes, those of inner elements included, that is the same as in the last one before.
+    pub(crate) same: u64,
+}
+
 /// A well-formed XML text with its elements.
 #[derive(Debug)]
 pub struct Document {
@@ -53,6 +63,8 @@ pub struct Document {
     /// The values of all attributes, declarations of namespaces included, without their quotes.
     pub(super) values: Vec<Span>,
     pub(super) shapes: Shapes,
+    /// The children of the root that have a form, in order.
+    pub(super) alike: Vec<Alike>,
     pub(super) namespaces: Vec<Box<str>>,
     pub(super) declared: Declared,
 }
@@ -84,6 +96,11 @@ impl Document {
     /// How many shapes of start tags there are.
     pub(crate) fn shapes(&self) -> usize {
         self.shapes.len()
+    }
+
+    /// Children of the root in order.
+    pub(crate) fn alike(&self) -> &[Alike] {
+        &self.alike
     }
 
     /// The one element that holds all others.

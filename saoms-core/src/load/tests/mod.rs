@@ -1,5 +1,6 @@
 mod extension;
 mod finder;
+mod forms;
 mod large;
 mod many;
 mod reading;

@@ -1,0 +1,333 @@
+//! Forms: how whole elements are written, but for the values of their attributes and the texts in them.
+//!
+//! Most components of a large file are written as one before them, which differs in names and numbers. So such an element is not read tag by
+//! tag: its bytes are compared with those of the last of its form, and the elements in it are those of that, moved.
+
+use std::hash::{BuildHasher, Hasher};
+
+use super::eight::{blanks, first_of, same_start};
+use super::fault::Input;
+use super::shape::Shapes;
+use super::tree::{Alike, ElementId, NONE, Node};
+use crate::hash::{Map, Seeded};
+use crate::source::Span;
+
+/// How many elements one of a form has at most.
+const MOST_NODES: usize = 256;
+/// How many forms are kept of a document.
+const MOST_FORMS: usize = 4096;
+/// How many forms are at hand where another one stands than the one that came behind the last one before.
+const AT_HAND: usize = 1024;
+/// How many bytes inside an element are looked at to find what is at hand.
+const MOST_OF_KEY: usize = 160;
+
+/// An element as it is written, told by the last of the form.
+#[derive(Clone, Copy, Debug)]
+struct Form {
+    /// Where that is, with its elements and its values.
+    span: Span,
+    node: u32,
+    nodes: u32,
+    value: u32,
+    /// The first of its holes, and of its marks: there is one for each of its elements.
+    hole: u32,
+    holes: u32,
+    mark: u32,
+    /// The form that came behind the last of this one.
+    next: u32,
+}
+
+/// What differs from one element of a form to another.
+#[derive(Clone, Copy, Debug)]
+struct Hole {
+    /// In the last of the form.
+    span: Span,
+    /// Whether it is a text, and no value of an attribute.
+    is_text: bool,
+}
+
+/// How many holes come before places of an element.
+#[derive(Clone, Copy, Debug)]
+struct Mark {
+    start: u16,
+    tag_end: u16,
+    end: u16,
+}
+
+/// Finds the forms of elements.
+#[derive(Debug)]
+pub(super) struct Forms {
+    all: Vec<Form>,
+    holes: Vec<Hole>,
+    marks: Vec<Mark>,
+    /// The form of the element before.
+    last: u32,
+    /// By some bytes at its start, the form of the last element that has them there.
+    at_hand: Box<[u32; AT_HAND]>,
+    /// By a hash of all that makes a form.
+    numbers: Map<u64, u32>,
+    hasher: Seeded,
+    /// The holes of the element at hand, and how far what comes behind each of them is moved from where it is in the last of the form.
+    found: Vec<Hole>,
+    moved: Vec<u32>,
+}
+
+/// What a parser has read so far.
+pub(super) struct Read<'r> {
+    pub(super) nodes: &'r mut Vec<Node>,
+    pub(super) values: &'r mut Vec<Span>,
+}
+
+impl Forms {
+    pub(super) fn new() -> Self {
+        Self {
+            all: Vec::new(),
+            holes: Vec::new(),
+            marks: Vec::new(),
+            last: NONE,
+            at_hand: Box::new([NONE; AT_HAND]),
+            numbers: Map::default(),
+            hasher: Seeded::default(),
+            found: Vec::new(),
+            moved: Vec::new(),
+        }
+    }
+
+    /// Reads the element whose `<` is at `start`, as a child of the root, when it is like one that was read; gives it, and where it ends.
+    #[inline]
+    pub(super) fn read(&mut self, input: Input<'_>, start: u32, read: &mut Read<'_>) -> Option<(Alike, u32)> {
+        let expected = self.all.get(self.last as usize)?.next;
+        let mut form = expected;
+        let mut found = self.matched(expected, input, start);
+        if found.is_none() {
+            form = self.at_hand[key(input, start)];
+            found = if form == expected { None } else { self.matched(form, input, start) };
+        }
+        let (end, same) = found?;
+        let element = read.nodes.len() as u32;
+        self.make(form, Span::new(start, end), read);
+        self.follow(form, input, start);
+        Some((Alike { element: ElementId(element), form, same }, end))
+    }
+
+    /// Remembers which form came behind the one before.
+    fn follow(&mut self, form: u32, input: Input<'_>, start: u32) {
+        if let Some(last) = self.all.get_mut(self.last as usize)
+            && last.next != form
+        {
+            last.next = form;
+            self.at_hand[key(input, start)] = form;
+        }
+        self.last = form;
+    }
+
+    /// Where the element ends whose `<` is at `start`, when it is of this form, and which of its values are as in the last one; what is found
+    /// of it is kept.
+    ///
+    /// It is compared with the last one of the form up to where they differ, which is right in holes alone, and on behind that.
+    fn matched(&mut self, form: u32, input: Input<'_>, start: u32) -> Option<(u32, u64)> {
+        let form = self.all.get(form as usize)?;
+        let bytes = input.bytes();
+        let holes = &self.holes[form.hole as usize..(form.hole + form.holes) as usize];
+        self.found.clear();
+        self.moved.clear();
+        let mut holes = holes.iter().peekable();
+        let (mut same, mut value) = (0, 1_u64);
+        let (mut last, mut at) = (form.span.start, start);
+        loop {
+            let moved = at.wrapping_sub(last);
+            let length =
+                same_start(&bytes[last as usize..form.span.end as usize], &bytes[at as usize..]) as u32;
+            let differs = last + length;
+            while let Some(hole) = holes.next_if(|hole| hole.span.end < differs) {
+                let span = Span::new(hole.span.start.wrapping_add(moved), hole.span.end.wrapping_add(moved));
+                self.found.push(Hole { span, ..*hole });
+                self.moved.push(moved);
+                if !hole.is_text {
+                    same |= value;
+                    value <<= 1;
+                }
+            }
+            self.moved.push(moved);
+            if differs == form.span.end {
+                return Some((at + length, same));
+            }
+            let hole = holes.next_if(|hole| hole.span.start <= differs)?;
+            let start = hole.span.start.wrapping_add(moved);
+            let bytes = &bytes[start as usize - 1..];
+            let length = if hole.is_text { text_end(&bytes[1..])? } else { value_end(bytes)? } as u32;
+            self.found.push(Hole { span: Span::new(start, start + length), ..*hole });
+            if !hole.is_text {
+                value <<= 1;
+            }
+            (last, at) = (hole.span.end, start + length);
+        }
+    }
+
+    /// Appends the elements and values of the element that was found to be of a form, which is the last of it now. The first of the elements
+    /// is not linked with others.
+    fn make(&mut self, form: u32, span: Span, read: &mut Read<'_>) {
+        let Form { node, nodes, value, mark, .. } = self.all[form as usize];
+        let first = read.nodes.len();
+        let further = first as u32 - node;
+        let values = read.values.len() as u32;
+        let values_further = values - value;
+        read.nodes.extend_from_within(node as usize..(node + nodes) as usize);
+        let made = &mut read.nodes[first..];
+        let moved = |at: u32, holes: u16| at.wrapping_add(self.moved[usize::from(holes)]);
+        for (made, mark) in made.iter_mut().zip(&self.marks[mark as usize..]) {
+            made.start = moved(made.start, mark.start);
+            made.tag_end = moved(made.tag_end, mark.tag_end);
+            made.end = moved(made.end, mark.end);
+            made.parent += further;
+            // None stays what it is.
+            made.next = if made.next == NONE { NONE } else { made.next + further };
+            made.values += values_further;
+        }
+        made[0].parent -= further;
+        made[0].next = NONE;
+        read.values.extend(self.found.iter().filter(|hole| !hole.is_text).map(|hole| hole.span));
+        let form = &mut self.all[form as usize];
+        self.holes[form.hole as usize..(form.hole + form.holes) as usize].copy_from_slice(&self.found);
+        (form.span, form.node, form.value) = (span, first as u32, values);
+    }
+}
+
+impl Forms {
+    /// Takes an element that was read tag by tag, the last of all so far, for the last of its form. `None` for one of which those like it are to be
+    /// read so as well.
+    pub(super) fn take(
+        &mut self,
+        input: Input<'_>,
+        node: u32,
+        shapes: &Shapes,
+        read: &Read<'_>,
+    ) -> Option<Alike> {
+        let all = &read.nodes[node as usize..];
+        if all.len() < 2 || all.len() > MOST_NODES || all.iter().any(|one| shapes.get(one.shape).declares) {
+            return None;
+        }
+        let span = Span::new(all[0].start, all[0].end);
+        let (hole, mark) = (self.holes.len(), self.marks.len());
+        for one in all {
+            let count = shapes.parts(one.shape).len();
+            let start = self.holes.len() - hole;
+            let values = &read.values[one.values as usize..one.values as usize + count];
+            self.holes.extend(values.iter().map(|span| Hole { span: *span, is_text: false }));
+            let tag_end = self.holes.len() - hole;
+            self.holes.extend(text(input, one).map(|span| Hole { span, is_text: true }));
+            // More than there can be of them are not kept.
+            let [start, tag_end] = [start, tag_end].map(|count| u16::try_from(count).unwrap_or(u16::MAX));
+            self.marks.push(Mark { start, tag_end, end: 0 });
+        }
+        let holes = &self.holes[hole..];
+        for (mark, one) in self.marks[mark..].iter_mut().zip(all) {
+            let count = holes.partition_point(|hole| hole.span.start < one.end);
+            mark.end = u16::try_from(count).unwrap_or(u16::MAX);
+        }
+        let made = Form {
+            span,
+            node,
+            nodes: all.len() as u32,
+            value: all[0].values,
+            hole: hole as u32,
+            holes: holes.len() as u32,
+            mark: mark as u32,
+            next: NONE,
+        };
+        let is_small = holes.len() < usize::from(u16::MAX);
+        let hash = self.hash(input, &made);
+        let known = self.numbers.get(&hash).copied().filter(|form| self.is_same(*form, input, &made));
+        let form = match known {
+            None if is_small && self.all.len() < MOST_FORMS => {
+                let form = self.all.len() as u32;
+                self.all.push(made);
+                self.numbers.insert(hash, form);
+                form
+            }
+            None => {
+                self.holes.truncate(hole);
+                self.marks.truncate(mark);
+                return None;
+            }
+            Some(number) => {
+                // It is the last of the form now.
+                let form = &mut self.all[number as usize];
+                self.holes.copy_within(hole.., form.hole as usize);
+                (form.span, form.node, form.value) = (made.span, made.node, made.value);
+                self.holes.truncate(hole);
+                self.marks.truncate(mark);
+                number
+            }
+        };
+        self.follow(form, input, span.start);
+        Some(Alike { element: ElementId(node), form, same: 0 })
+    }
+
+    /// What stands around the holes of a form, in its first, each with whether the hole behind it is a text.
+    fn around<'a>(&self, input: Input<'a>, form: &Form) -> impl Iterator<Item = (&'a [u8], bool)> {
+        let holes = &self.holes[form.hole as usize..(form.hole + form.holes) as usize];
+        let ends = holes.iter().map(|hole| (hole.span.start, hole.is_text)).chain([(form.span.end, false)]);
+        let starts = std::iter::once(form.span.start).chain(holes.iter().map(|hole| hole.span.end));
+        starts
+            .zip(ends)
+            .map(move |(start, (end, is_text))| (&input.bytes()[start as usize..end as usize], is_text))
+    }
+
+    fn hash(&self, input: Input<'_>, form: &Form) -> u64 {
+        let mut hasher = self.hasher.build_hasher();
+        for (bytes, is_text) in self.around(input, form) {
+            hasher.write(bytes);
+            hasher.write_u8(u8::from(is_text));
+        }
+        hasher.finish()
+    }
+
+    fn is_same(&self, form: u32, input: Input<'_>, other: &Form) -> bool {
+        let form = &self.all[form as usize];
+        form.holes == other.holes && self.around(input, form).eq(self.around(input, other))
+    }
+}
+
+/// The text of an element with nothing else in it, from its first character that is no white space on; `None` where it has references.
+fn text(input: Input<'_>, node: &Node) -> Option<Span> {
+    if !node.has_text {
+        return None;
+    }
+    let start = node.tag_end as usize;
+    let content = &input.bytes()[start..node.end as usize];
+    let start = start + blanks(content);
+    let end = start + text_end(&input.bytes()[start..])?;
+    // The first tag behind the text is that which ends the element.
+    let closes = memchr::memchr(b'>', &input.bytes()[end..node.end as usize])?;
+    let is_end = end + closes + 1 == node.end as usize && input.bytes().get(end + 1) == Some(&b'/');
+    is_end.then(|| Span::new(start as u32, end as u32))
+}
+
+/// A place among the forms at hand for what stands at `start`: found by its name, and by what is behind its start tag, where components
+/// name their implementation.
+fn key(input: Input<'_>, start: u32) -> usize {
+    let rest = &input.bytes()[start as usize..];
+    let end_of = |tag: &[u8]| memchr::memchr(b'>', tag).map_or(tag.len(), |end| end + 1);
+    let (outer, inside) = rest.split_at(end_of(rest));
+    let inside = &inside[..inside.len().min(end_of(inside) + 24).min(MOST_OF_KEY)];
+    let words = outer.as_chunks::<8>().0.iter().take(1).chain(inside.as_chunks::<8>().0);
+    // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4).
+    let fold = |key: u64, word: &[u8; 8]| {
+        (key.rotate_left(5) ^ u64::from_le_bytes(*word)).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    };
+    (words.fold(0, fold) >> 48) as usize % AT_HAND
+}
+
+/// How long a value is whose quote is the first of these bytes, without its quotes, when nothing in it has to be looked at more closely.
+fn value_end(bytes: &[u8]) -> Option<usize> {
+    let (quote, value) = bytes.split_first()?;
+    let end = first_of(value, [*quote, b'<', b'&'])?;
+    (value[end] == *quote).then_some(end)
+}
+
+/// How long a text is that starts with no white space, when nothing in it has to be looked at more closely.
+fn text_end(bytes: &[u8]) -> Option<usize> {
+    let end = first_of(bytes, [b'<', b'&', b']'])?;
+    (bytes[0] > b' ' && end > 0 && bytes[end] == b'<').then_some(end)
+}
