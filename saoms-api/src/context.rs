@@ -3,8 +3,8 @@ use std::time::Duration;
 
 use crate::{
     CallError, Cause, Chance, DynLoop, Failure, Header, Loops, Message, Messages, NamedLoops, Phase,
-    PropertyValue, Publisher, Record, Reference, ReportValue, ServiceCall, SharedMessage, Subscription, Time,
-    Topic, TopicDeclaration, Value, Work,
+    PropertyValue, Publisher, Record, Reference, ReportValue, ServiceCall, SharedMessage, SmolStr,
+    Subscription, Time, Topic, TopicDeclaration, Value, Work,
 };
 
 /// How much a log line matters.
@@ -303,7 +303,7 @@ impl<'a> Context<'a> {
 pub const TARGET_SHIFT: u32 = 16;
 
 /// Sees the loops of a component: name, class and values of each.
-pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(String, PropertyValue)]) + 'a;
+pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(SmolStr, PropertyValue)]) + 'a;
 
 /// What a host gives to a component: the scheduler in a run, a stand-in in a test, a function table behind a plugin's boundary.
 /// Component authors use [`Context`].

@@ -107,6 +107,9 @@ pub use task::{TaskInterface, TaskInterfaceReference};
 pub use time::{Time, format_duration, parse_duration};
 pub use topic::{Publisher, Subscription, Topic, TopicDeclaration, TopicKind};
 
+/// The text of a property, or its name: one that is short, or shared, is copied without a copy of its letters.
+pub use smol_str::SmolStr;
+
 pub use saoms_derive::{
     Class, Entries, Field, Knowledge, LoopClass, Message, Properties, PropertyField, interface,
 };
@@ -117,8 +120,8 @@ pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::message::Key;
     pub use crate::property::{
-        Preset, PropertyShape, all_names, are_distinct, bounds_fit, chosen, complex, contains, continued,
-        count, default_fits, equal, flat, list, only_known, property,
+        Preset, PropertyShape, Values, all_names, are_distinct, bounds_fit, chosen, complex, contains,
+        continued, count, default_fits, equal, flat, list, property, read,
     };
     pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};

@@ -1,7 +1,7 @@
-use crate::{Class, DynComponent, Failure, LoopRegistration, Properties, PropertyValue};
+use crate::{Class, DynComponent, Failure, LoopRegistration, Properties, PropertyValue, SmolStr};
 
 /// Makes a component from the values of its properties.
-type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
+type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
 
 /// What a registry needs of a class: its declaration as text, and how to construct it. `#[derive(Class)]` submits one for every class that
 /// is linked in; a registry value collects them with [`Registration::linked`].
@@ -31,7 +31,7 @@ impl Registration {
     ///
     /// # Errors
     /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit together.
-    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         (self.construct)(values)
     }
 

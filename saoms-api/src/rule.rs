@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use crate::property::values_of;
-use crate::{Class, Finding, Properties, PropertyValue};
+use crate::{Class, Finding, Properties, PropertyValue, SmolStr};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -227,7 +227,7 @@ pub struct ComponentView<'a> {
     /// The declarations of the classes that its class extends, the nearest first.
     pub extends: Rc<[&'a str]>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
-    pub values: &'a [(String, PropertyValue)],
+    pub values: &'a [(SmolStr, PropertyValue)],
     /// From one execution to the next, where it is periodic.
     pub period: Option<Duration>,
     /// Whether its messages go to a broker, where others may be that this fleet does not know.

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use saoms_api::{
     Class, Component, Context, Failure, Field, Interface, Message, Properties, PropertyField, PropertyValue,
-    Registration, Topic, interface,
+    Registration, SmolStr, Topic, interface,
 };
 
 /// Where a robot is.
@@ -219,12 +219,12 @@ fn linked_classes_register_themselves() {
     assert_eq!(linked, [Passive::DECLARATION, Robot::DECLARATION]);
 }
 
-fn text(name: &str, value: &str) -> (String, PropertyValue) {
-    (name.to_owned(), value.into())
+fn text(name: &str, value: &str) -> (SmolStr, PropertyValue) {
+    (name.into(), value.into())
 }
 
 /// The least that a robot needs, and these.
-fn robot(more: &[(String, PropertyValue)]) -> Result<RobotProperties, String> {
+fn robot(more: &[(SmolStr, PropertyValue)]) -> Result<RobotProperties, String> {
     let mut values = vec![text("number", "7"), text("title", "seven")];
     values.retain(|(name, _)| more.iter().all(|(other, _)| other != name));
     values.extend_from_slice(more);
@@ -256,8 +256,8 @@ fn given_properties_are_read() {
         text("late", "ask-me"),
         text("waitTime", "2 min"),
         text("color", "blue"),
-        ("chargeAt".to_owned(), charger),
-        ("stops".to_owned(), stops),
+        ("chargeAt".into(), charger),
+        ("stops".into(), stops),
         text("isAwake", "0"),
     ])
     .unwrap();
@@ -269,7 +269,7 @@ fn given_properties_are_read() {
 #[test]
 fn wrong_properties_say_what_was_found_and_expected() {
     let many = |name: &str, values: &[&str]| {
-        (name.to_owned(), PropertyValue::Many(values.iter().map(|value| (*value).into()).collect()))
+        (name.into(), PropertyValue::Many(values.iter().map(|value| (*value).into()).collect()))
     };
     let cases = [
         (text("number", "0"), "property `number`: `0` is out of range: expected a whole number from 1 to 99"),
@@ -306,7 +306,7 @@ fn wrong_properties_say_what_was_found_and_expected() {
         (text("title", ""), "property `title`: the value is empty: expected a text that is not empty"),
         (text("chargeAt", "3"), "property `chargeAt`: found `3`: expected the properties x, y"),
         (
-            ("chargeAt".to_owned(), PropertyValue::Complex(vec![text("y", "1")])),
+            ("chargeAt".into(), PropertyValue::Complex(vec![text("y", "1")])),
             "property `chargeAt`: property `x` is missing: expected a whole number from -2147483648 to 2147483647",
         ),
         (

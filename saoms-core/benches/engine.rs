@@ -226,7 +226,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
     let count = if shape.all { shape.senders } else { shape.senders + shape.receivers };
     for number in 0..count {
         let task = [("ID", "load"), ("period", "1s"), ("queue", "100000")];
-        let task = task.map(|(name, value)| (name.to_owned(), PropertyValue::from(value)));
+        let task = task.map(|(name, value)| (name.into(), PropertyValue::from(value)));
         let sends = if number < shape.senders { shape.sends } else { 0 };
         let receives = (shape.all && shape.receivers > 0) || number >= shape.senders;
         let values = [
@@ -239,9 +239,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
         components.push(ComponentSpec {
             path: format!("Robot{number}"),
             class: Arc::clone(class),
-            values: values
-                .map(|(name, value)| (name.to_owned(), PropertyValue::from(value.as_str())))
-                .to_vec(),
+            values: values.map(|(name, value)| (name.into(), PropertyValue::from(value.as_str()))).to_vec(),
             task: Some(TaskSettings::from_values(&task, Vec::new())?),
             library: None,
             references: Vec::new(),

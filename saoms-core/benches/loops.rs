@@ -202,11 +202,11 @@ fn start(changes: Option<&str>) -> Result<Fleet, Box<dyn std::error::Error>> {
     registry.add(Registration::of::<Robot>())?;
     let class = registry.get("load.Robot").ok_or("the class is registered")?;
     let busy = registry.get_loop("load.Busy").ok_or("the loop is registered")?;
-    let task = [("ID", "load"), ("period", "1s")].map(|(name, value)| (name.to_owned(), value.into()));
+    let task = [("ID", "load"), ("period", "1s")].map(|(name, value)| (name.into(), value.into()));
     let of = |changes: &str| LoopSpec {
         name: "Busy".to_owned(),
         class: Arc::clone(busy),
-        values: vec![("changes".to_owned(), changes.into())],
+        values: vec![("changes".into(), changes.into())],
     };
     let components = vec![ComponentSpec {
         path: "Robot".to_owned(),

@@ -81,13 +81,16 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
             };
 
             fn from_values(
-                values: &[(::std::string::String, ::saoms_api::PropertyValue)],
+                values: &[(::saoms_api::SmolStr, ::saoms_api::PropertyValue)],
             ) -> ::core::result::Result<Self, ::saoms_api::Failure> {
-                let given =
-                    &mut ::saoms_api::generated::only_known(values, <Self as ::saoms_api::Properties>::NAMES)?;
-                // Of a struct without properties none is taken.
-                let _ = &given;
-                ::core::result::Result::Ok(#ident { #(#reads),* })
+                fn make(
+                    given: &mut ::saoms_api::generated::Values<'_>,
+                ) -> ::core::result::Result<#ident, ::std::boxed::Box<::saoms_api::Failure>> {
+                    // Of a struct without properties none is taken.
+                    let _ = &given;
+                    ::core::result::Result::Ok(#ident { #(#reads),* })
+                }
+                ::saoms_api::generated::read(values, <Self as ::saoms_api::Properties>::NAMES, make)
             }
         }
 
@@ -350,7 +353,9 @@ impl<'a> Property<'a> {
         quote! {
             #field: {
                 const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
-                ::saoms_api::generated::property(given, #name, #default, &RULE)?
+                const BOUNDS: ::core::option::Option<::saoms_api::declaration::PlainBounds> =
+                    ::saoms_api::declaration::PlainBounds::of(&RULE);
+                ::saoms_api::generated::property(given, #name, #default, (&RULE, BOUNDS))?
             }
         }
     }

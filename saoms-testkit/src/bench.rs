@@ -5,7 +5,7 @@ use std::time::Duration;
 use saoms_api::contain::{contained, install_hook};
 use saoms_api::{
     CallError, Cause, Class, Context, DynComponent, Failure, Header, Invocation, Message, PropertyValue,
-    Registration, ReportValue, ServiceCall, SharedMessage, Topic, Work,
+    Registration, ReportValue, ServiceCall, SharedMessage, SmolStr, Topic, Work,
 };
 use saoms_core::plugin::Plugin;
 use saoms_core::registry::{LoopClass, Registry};
@@ -86,8 +86,8 @@ impl Bench {
         install_hook();
         let found =
             registry.get(class).ok_or_else(|| Failure::new(format!("there is no class `{class}`")))?;
-        let given = values.iter().map(|(name, value)| ((*name).to_owned(), PropertyValue::from(*value)));
-        let mut values: Vec<(String, PropertyValue)> = given.collect();
+        let given = values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value)));
+        let mut values: Vec<_> = given.collect();
         let absent =
             found.presets().iter().filter(|(name, _)| !values.iter().any(|(given, _)| given == name));
         let absent: Vec<_> = absent.cloned().collect();

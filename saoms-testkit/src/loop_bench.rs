@@ -7,7 +7,7 @@ use std::time::Duration;
 use saoms_api::contain::{contained, install_hook};
 use saoms_api::{
     CallError, Context, DynComponent, Failure, Invocation, Knowledge, KnowledgeClass, LoopClass,
-    LoopRegistration, Loops, PropertyValue, Saved, Value,
+    LoopRegistration, Loops, PropertyValue, Saved, SmolStr, Value,
 };
 use saoms_core::plugin::Plugin;
 use saoms_core::registry::Registry;
@@ -129,7 +129,7 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
         install_hook();
         let class =
             registry.get_loop(name).ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))?;
-        let given = values.iter().map(|(name, value)| ((*name).to_owned(), PropertyValue::from(*value)));
+        let given = values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value)));
         let values: Vec<_> = given.collect();
         let instance = contained(|| class.construct(&values))??;
         let short = class.declaration().short_name().to_owned();

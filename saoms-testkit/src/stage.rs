@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use saoms_api::{
     CallError, Cause, Chance, Failure, Host, Level, LoopVisit, NamedLoops, Phase, PropertyValue, Record,
-    ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, Value, Work,
+    ReportValue, ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration, Value, Work,
 };
 use saoms_core::registry::{Class, LoopClass, Registry, TopicDeclaration as Declared};
 use saoms_core::schema::Schema;
@@ -57,7 +57,7 @@ impl Stage {
     pub(crate) fn new(
         registry: &Registry,
         class: &Arc<Class>,
-        values: &[(String, PropertyValue)],
+        values: &[(SmolStr, PropertyValue)],
     ) -> Result<Stage, Failure> {
         let declaration = class.declaration();
         let chosen = declaration.loops.property.as_ref().and_then(|property| {

@@ -103,7 +103,7 @@ fn a_panic_in_what_a_reload_calls_is_a_failure() {
     Plugin::open(&library("bad")).unwrap().register(&mut registry).unwrap();
     let made = |at: &str| {
         let values = [("at", at), ("does", "panic")];
-        let values = values.map(|(name, value)| (name.to_owned(), PropertyValue::from(value)));
+        let values = values.map(|(name, value)| (name.into(), PropertyValue::from(value)));
         registry.get("bad.Actor").unwrap().construct(&values).unwrap()
     };
     let failure = made("save").save().map(drop).unwrap_err();

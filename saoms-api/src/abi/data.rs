@@ -2,7 +2,7 @@ use std::ffi::c_void;
 use std::ptr;
 use std::slice;
 
-use crate::{Failure, PropertyValue, Record, Value};
+use crate::{Failure, PropertyValue, Record, SmolStr, Value};
 
 /// What the other side says to be longer than this is refused: no message, text or reply is.
 pub const MAX_BYTES: usize = 64 << 20;
@@ -197,7 +197,7 @@ pub(super) struct PropertyViews {
 }
 
 impl PropertyViews {
-    pub(super) fn of(values: &[(String, PropertyValue)]) -> PropertyViews {
+    pub(super) fn of(values: &[(SmolStr, PropertyValue)]) -> PropertyViews {
         PropertyViews::of_each(&mut values.iter().map(|(name, value)| (name.as_str(), value)))
     }
 
@@ -236,7 +236,7 @@ impl PropertyView {
     pub(super) unsafe fn read(
         list: *const PropertyView,
         count: usize,
-    ) -> Result<Vec<(String, PropertyValue)>, Failure> {
+    ) -> Result<Vec<(SmolStr, PropertyValue)>, Failure> {
         // SAFETY: as the caller promises.
         let views = unsafe { super::data::list(list, count) }?;
         let mut values = Vec::with_capacity(views.len());
@@ -250,7 +250,7 @@ impl PropertyView {
                 )
             };
             let value = match view.kind {
-                0 => PropertyValue::Text(text.to_owned()),
+                0 => text.into(),
                 1 => PropertyValue::Many(children.into_iter().map(|(_, value)| value).collect()),
                 2 => PropertyValue::Complex(children),
                 other => {
@@ -259,7 +259,7 @@ impl PropertyView {
                     )));
                 }
             };
-            values.push((name.to_owned(), value));
+            values.push((name.into(), value));
         }
         Ok(values)
     }

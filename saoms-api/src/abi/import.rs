@@ -1,7 +1,7 @@
 use std::ffi::c_void;
 use std::ptr;
 
-use crate::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue, Saved};
+use crate::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue, Saved, SmolStr};
 
 use super::class::Construct;
 use super::data::PropertyViews;
@@ -29,7 +29,7 @@ impl ImportedClass {
     ///
     /// # Errors
     /// The class refuses the values, or panics.
-    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         // SAFETY: `new`'s caller promised that the function keeps the rules.
         let instance = unsafe { construct(self.construct, values) }?;
         Ok(Box::new(ImportedComponent { table: self.component, instance, lent: Lent::default() }))
@@ -42,7 +42,7 @@ impl ImportedClass {
 /// The function keeps the rules of the boundary.
 pub(super) unsafe fn construct(
     construct: Construct,
-    values: &[(String, PropertyValue)],
+    values: &[(SmolStr, PropertyValue)],
 ) -> Result<*mut c_void, Failure> {
     let views = PropertyViews::of(values);
     let mut instance = ptr::null_mut();

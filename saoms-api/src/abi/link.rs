@@ -6,7 +6,8 @@ use std::time::Duration;
 use crate::contain::contained;
 use crate::{
     CallError, Cause, Chance, DynLoop, Failure, Host, Level, LoopRegistration, NamedLoops, Phase,
-    PropertyValue, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration, TopicKind, Work,
+    PropertyValue, Record, ReportValue, ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration,
+    TopicKind, Work,
 };
 
 use super::data::{Buffer, ValueView};
@@ -119,7 +120,7 @@ impl HostHandle {
 struct Chosen {
     name: String,
     class: String,
-    values: Vec<(String, PropertyValue)>,
+    values: Vec<(SmolStr, PropertyValue)>,
 }
 
 /// Takes down a loop for [`Link::loops`].

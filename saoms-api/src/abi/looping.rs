@@ -5,7 +5,8 @@ use std::sync::{Mutex, PoisonError};
 use crate::adaptation::Writable;
 use crate::contain::contained;
 use crate::{
-    Context, DynEntries, DynLoop, Failure, Knowledge, LoopClass, LoopRegistration, PropertyValue, Snapshot,
+    Context, DynEntries, DynLoop, Failure, Knowledge, LoopClass, LoopRegistration, PropertyValue, SmolStr,
+    Snapshot,
 };
 
 use super::class::Construct;
@@ -267,7 +268,7 @@ impl ImportedLoopClass {
     ///
     /// # Errors
     /// The loop refuses the values, or panics.
-    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         // SAFETY: `new`'s caller promised that the functions keep the rules; the loop is given away to this.
         unsafe { import_loop(import::construct(self.construct, values)?, self.looping) }
     }

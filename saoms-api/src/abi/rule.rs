@@ -169,7 +169,7 @@ impl MemberView {
     /// The view and what it leads to are readable for as long as the result is used.
     unsafe fn read<'a>(
         &self,
-        values: &'a [(String, crate::PropertyValue)],
+        values: &'a [(crate::SmolStr, crate::PropertyValue)],
         wires: &'a [(&'a str, usize)],
     ) -> Result<ComponentView<'a>, Failure> {
         // SAFETY: as the caller promises.

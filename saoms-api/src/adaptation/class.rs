@@ -1,5 +1,5 @@
 use crate::declaration::Text;
-use crate::{DynEntries, DynLoop, Failure, Loop, Properties, PropertyValue};
+use crate::{DynEntries, DynLoop, Failure, Loop, Properties, PropertyValue, SmolStr};
 
 /// The declaration of a loop, which `#[derive(LoopClass)]` writes.
 ///
@@ -102,7 +102,7 @@ pub const fn fits(knowledge: Option<&str>, of: &str) -> bool {
 }
 
 /// Makes a loop from the values of its properties.
-type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
+type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
 
 /// What a registry needs of a loop: its declaration as text, and how to construct it. `#[derive(LoopClass)]` submits one for every loop
 /// that is linked in, and each class brings those of its own loops.
@@ -137,7 +137,7 @@ impl LoopRegistration {
     ///
     /// # Errors
     /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit together.
-    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         (self.construct)(values)
     }
 

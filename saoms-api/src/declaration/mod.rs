@@ -112,5 +112,5 @@ pub const fn optional_topic(is_optional: bool) -> Text {
 
 pub use crate::property::PropertyShape;
 pub(crate) use rule::trim;
-pub use rule::{PropertyKind, Rule, Scalar, parse_scalar};
+pub use rule::{PlainBounds, PropertyKind, Rule, Scalar, parse_scalar};
 pub use text::{Text, text};

@@ -116,7 +116,8 @@ impl<'a> Rule<'a> {
             PropertyKind::String => self.text(text).map(|()| Scalar::Text(text.to_owned())),
             PropertyKind::Enumeration => self.text(text).map(|()| Scalar::Text(text.trim().to_owned())),
             PropertyKind::Integer => {
-                let plain = self.plain_integer(text).map(Ok);
+                let plain = PlainBounds::of(self).and_then(|bounds| bounds.read(text));
+                let plain = plain.map(|number| Ok(i128::from(number)));
                 plain.unwrap_or_else(|| self.within(text, integer, is_far)).map(Scalar::Integer)
             }
             PropertyKind::Float => self.within(text, float, |_, _, _| false).map(Scalar::Float),
@@ -136,28 +137,16 @@ impl<'a> Rule<'a> {
     pub fn allows(&self, text: &str) -> Result<(), String> {
         match self.kind {
             PropertyKind::String | PropertyKind::Enumeration => self.text(text),
-            PropertyKind::Integer if self.plain_integer(text).is_some() => Ok(()),
+            PropertyKind::Integer
+                if PlainBounds::of(self).is_some_and(|bounds| bounds.read(text).is_some()) =>
+            {
+                Ok(())
+            }
             PropertyKind::Integer => self.within(text, integer, is_far).map(drop),
             PropertyKind::Float => self.within(text, float, |_, _, _| false).map(drop),
             PropertyKind::Duration => self.within(text, duration, |_, _, _| false).map(drop),
             _ => self.check(text).map(drop),
         }
-    }
-
-    /// The value of a text of a few digits that is within whole bounds of a few digits; `None` where that takes a closer look.
-    #[inline]
-    fn plain_integer(&self, text: &str) -> Option<i128> {
-        let number = few_digits(text)?;
-        let is_within = |bound: Option<&str>, is_least| {
-            bound.is_none_or(|bound| match few_digits(bound) {
-                Some(bound) if is_least => bound <= number,
-                Some(bound) => number <= bound,
-                None => is_far(&i128::from(number), bound, is_least),
-            })
-        };
-        let is_plain =
-            self.exclusive_max.is_none() && is_within(self.min, true) && is_within(self.max, false);
-        is_plain.then_some(i128::from(number))
     }
 
     fn text(&self, text: &str) -> Result<(), String> {
@@ -206,6 +195,57 @@ impl<'a> Rule<'a> {
     }
 }
 
+/// The whole numbers that a rule allows, as far as they are nothing but a few digits, as most are. The bounds of a rule are texts, which need not be
+/// read again for each value.
+///
+/// ```
+/// use saoms_api::declaration::{PlainBounds, PropertyKind, Rule};
+///
+/// const RULE: Rule<'static> = Rule { min: Some("1"), max: Some("99"), ..Rule::of(PropertyKind::Integer) };
+/// const BOUNDS: Option<PlainBounds> = PlainBounds::of(&RULE);
+/// let bounds = BOUNDS.unwrap();
+/// assert_eq!((bounds.read("35"), bounds.read("0"), bounds.read(" 35 ")), (Some(35), None, None));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlainBounds {
+    least: u32,
+    most: u32,
+}
+
+impl PlainBounds {
+    /// Those of a rule for whole numbers; `None` for any other one, and where no such text is certainly allowed.
+    pub const fn of(rule: &Rule<'_>) -> Option<PlainBounds> {
+        if !matches!(rule.kind, PropertyKind::Integer) || rule.exclusive_max.is_some() {
+            return None;
+        }
+        let least = match rule.min {
+            None => Some(0),
+            Some(min) => match min.as_bytes() {
+                [b'-', digits @ ..] if few_digits(digits).is_some() || is_large(digits) => Some(0),
+                digits => few_digits(digits),
+            },
+        };
+        let most = match rule.max {
+            None => Some(MOST_DIGITS),
+            Some(max) if is_large(max.as_bytes()) => Some(MOST_DIGITS),
+            Some(max) => few_digits(max.as_bytes()),
+        };
+        match (least, most) {
+            (Some(least), Some(most)) => Some(PlainBounds { least, most }),
+            _ => None,
+        }
+    }
+
+    /// The number; `None` where [`Rule::check`] has to look at the text.
+    #[inline]
+    pub const fn read(self, text: &str) -> Option<u32> {
+        match few_digits(text.as_bytes()) {
+            Some(number) if self.least <= number && number <= self.most => Some(number),
+            _ => None,
+        }
+    }
+}
+
 /// Reads a value of a scalar type. `None` when the text is no such value; [`Rule::check`] says why.
 pub fn parse_scalar(kind: PropertyKind, text: &str) -> Option<Scalar> {
     let trimmed = trim(text);
@@ -248,29 +288,38 @@ fn duration(text: &str) -> Option<Duration> {
 
 /// A whole number; those of ordinary size are read much faster than 128 bits are.
 fn integer(text: &str) -> Option<i128> {
-    match few_digits(text) {
+    match few_digits(text.as_bytes()) {
         Some(number) => Some(i128::from(number)),
         None => text.parse::<i64>().map(i128::from).ok().or_else(|| text.parse().ok()),
     }
 }
 
+/// So many digits fit into 32 bits.
+const FEW: usize = 9;
+/// The largest number of so many digits.
+const MOST_DIGITS: u32 = 999_999_999;
+
 /// The number that nothing but a few digits make.
 #[inline]
-fn few_digits(text: &str) -> Option<u32> {
-    /// So many digits fit into 32 bits.
-    const FEW: usize = 9;
-    if !(1..=FEW).contains(&text.len()) {
+const fn few_digits(text: &[u8]) -> Option<u32> {
+    if text.is_empty() || text.len() > FEW {
         return None;
     }
-    let mut number = 0;
-    for byte in text.bytes() {
-        let digit = byte.wrapping_sub(b'0');
+    let (mut number, mut at) = (0, 0);
+    while at < text.len() {
+        let digit = text[at].wrapping_sub(b'0');
         if digit > 9 {
             return None;
         }
-        number = number * 10 + u32::from(digit);
+        number = number * 10 + digit as u32;
+        at += 1;
     }
     Some(number)
+}
+
+/// Whether digits make a number beyond all of a few digits.
+const fn is_large(digits: &[u8]) -> bool {
+    digits.len() > FEW && matches!(digits, [b'1'..=b'9', ..])
 }
 
 /// Whether a whole number is certainly above this least, or below this greatest value: most of these are the ends of a type, far away, and
@@ -279,8 +328,7 @@ fn is_far(number: &i128, bound: &str, is_least: bool) -> bool {
     /// Numbers of more digits are at least so large.
     const NEAR: std::ops::Range<i128> = -999_999_999..1_000_000_000;
     let digits = if is_least { bound.strip_prefix('-') } else { Some(bound) };
-    digits.is_some_and(|digits| digits.len() > 9 && matches!(digits.as_bytes(), [b'1'..=b'9', ..]))
-        && NEAR.contains(number)
+    digits.is_some_and(|digits| is_large(digits.as_bytes())) && NEAR.contains(number)
 }
 
 /// What keeps a text from being a value of the type.
@@ -363,6 +411,39 @@ fn list(allowed: &[&str], formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn plain_bounds_allow_what_the_rule_allows() {
+        let bounds = [
+            None,
+            Some("0"),
+            Some("7"),
+            Some("-7"),
+            Some("07"),
+            Some(" 7"),
+            Some("+7"),
+            Some("999999999"),
+            Some("1000000000"),
+            Some("-1000000000"),
+            Some("x"),
+        ];
+        let texts =
+            ["0", "6", "7", "007", "8", "999999998", "999999999", "1000000000", "-7", "+7", " 7", "", "x"];
+        let mut plain = 0;
+        for (min, max) in bounds.iter().flat_map(|min| bounds.iter().map(|max| (*min, *max))) {
+            let rule = Rule { min, max, ..Rule::of(PropertyKind::Integer) };
+            for text in texts {
+                let read = PlainBounds::of(&rule).and_then(|bounds| bounds.read(text));
+                let by_rule = rule.within(text, integer, |_, _, _| false);
+                assert!(read.is_none_or(|read| by_rule == Ok(i128::from(read))), "{rule:?}: {text}");
+                plain += usize::from(read.is_some());
+            }
+        }
+        assert_eq!(plain, 161, "texts that are plain numbers within plain bounds");
+        let rule = Rule { exclusive_max: Some("7"), ..Rule::of(PropertyKind::Integer) };
+        assert_eq!(PlainBounds::of(&rule), None);
+        assert_eq!(PlainBounds::of(&Rule::of(PropertyKind::Float)), None);
+    }
 
     #[test]
     fn bounds_that_are_not_read_are_beyond_the_number() {

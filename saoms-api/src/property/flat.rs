@@ -1,7 +1,7 @@
 //! Property structs in the place of a field of another one.
 
-use crate::PropertyValue;
 use crate::declaration::Text;
+use crate::{PropertyValue, SmolStr};
 
 /// How many names there are in all lists.
 pub const fn count(parts: &[&[&str]]) -> usize {
@@ -53,6 +53,9 @@ pub const fn list(items: &'static str) -> [Text; 3] {
 }
 
 /// The values with these names.
-pub(crate) fn values_of(values: &[(String, PropertyValue)], names: &[&str]) -> Vec<(String, PropertyValue)> {
+pub(crate) fn values_of(
+    values: &[(SmolStr, PropertyValue)],
+    names: &[&str],
+) -> Vec<(SmolStr, PropertyValue)> {
     values.iter().filter(|(name, _)| names.contains(&name.as_str())).cloned().collect()
 }

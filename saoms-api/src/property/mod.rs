@@ -7,25 +7,36 @@ mod types;
 
 pub(crate) use flat::values_of;
 pub use flat::{all_names, are_distinct, continued, count, list};
-pub use read::{Preset, chosen, complex, flat, only_known, property};
+pub use read::{Preset, Values, chosen, complex, flat, property, read};
 pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits, equal};
 
-use crate::Failure;
+use crate::{Failure, SmolStr};
 
 /// A value as the composite gives it, once `source` and `file` are resolved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PropertyValue {
     /// The text of an attribute or element.
-    Text(String),
+    Text(SmolStr),
     /// The values of a property that takes many.
     Many(Vec<PropertyValue>),
     /// The named values of a complex property.
-    Complex(Vec<(String, PropertyValue)>),
+    Complex(Vec<(SmolStr, PropertyValue)>),
+}
+
+impl PropertyValue {
+    /// The text; `None` where it is not one.
+    #[inline]
+    pub fn as_text(&self) -> Option<&SmolStr> {
+        match self {
+            PropertyValue::Text(text) => Some(text),
+            _ => None,
+        }
+    }
 }
 
 impl From<&str> for PropertyValue {
     fn from(text: &str) -> PropertyValue {
-        PropertyValue::Text(text.to_owned())
+        PropertyValue::Text(text.into())
     }
 }
 
@@ -60,12 +71,12 @@ impl From<&str> for PropertyValue {
 ///     title: Option<String>,
 /// }
 ///
-/// let values = [("number".to_owned(), "7".into()), ("late".to_owned(), "dropSilently".into())];
+/// let values = [("number".into(), "7".into()), ("late".into(), "dropSilently".into())];
 /// let properties = GuardProperties::from_values(&values).unwrap();
 /// assert_eq!((properties.number, properties.wait_time), (7, Duration::from_millis(500)));
 /// assert_eq!((properties.late, properties.title), (Late::DropSilently, None));
 ///
-/// let failure = GuardProperties::from_values(&[("number".to_owned(), "100".into())]).err().unwrap();
+/// let failure = GuardProperties::from_values(&[("number".into(), "100".into())]).err().unwrap();
 /// assert_eq!(failure.message(), "property `number`: `100` is out of range: expected a whole number from 1 to 99");
 /// ```
 ///
@@ -104,7 +115,7 @@ pub trait Properties: Sized {
     ///
     /// # Errors
     /// A value is missing, unknown, given twice, or not what the declaration allows: its name, what was found, what was expected.
-    fn from_values(values: &[(String, PropertyValue)]) -> Result<Self, Failure>;
+    fn from_values(values: &[(SmolStr, PropertyValue)]) -> Result<Self, Failure>;
 }
 
 /// No properties.
@@ -112,7 +123,7 @@ impl Properties for () {
     const DECLARATION: &'static str = "[]";
     const NAMES: &'static [&'static str] = &[];
 
-    fn from_values(values: &[(String, PropertyValue)]) -> Result<Self, Failure> {
-        only_known(values, Self::NAMES).map(drop)
+    fn from_values(values: &[(SmolStr, PropertyValue)]) -> Result<Self, Failure> {
+        read::only_known(values, Self::NAMES)
     }
 }

@@ -1,7 +1,7 @@
 use super::{PropertyField, equal, values_of};
-use crate::declaration::{PropertyKind, Rule, Scalar, parse_scalar, trim};
+use crate::declaration::{PlainBounds, PropertyKind, Rule, Scalar, parse_scalar, trim};
 use crate::time::read_duration;
-use crate::{Failure, Finding, Place, Properties, PropertyValue};
+use crate::{Failure, Finding, Place, Properties, PropertyValue, SmolStr};
 
 /// The default of a property: as text, and as the compiler reads it, which it cannot where this is text or a choice.
 #[derive(Clone, Debug)]
@@ -30,10 +30,11 @@ impl Preset {
     }
 
     /// That the rule allows it was seen to when it was compiled and registered.
+    #[inline(always)]
     fn read<T: PropertyField>(self, kind: PropertyKind) -> Result<T, String> {
         let known = T::from_choice(self.text).map(Ok);
         let scalar = || self.scalar.or_else(|| parse_scalar(kind, self.text)).and_then(T::from_scalar);
-        let otherwise = || T::from_value(&PropertyValue::Text(self.text.to_owned()));
+        let otherwise = || T::from_value(&PropertyValue::from(self.text));
         known.or_else(scalar).unwrap_or_else(otherwise)
     }
 }
@@ -42,33 +43,39 @@ impl Preset {
 ///
 /// # Errors
 /// It is missing or not what the rule allows.
-// What is called for each property of each component is inlined, so that names are compared by their known lengths, and defaults are there
-// without being read.
-#[inline]
+// What is called for each property of each component is inlined, so that names are compared by their known lengths, and defaults and bounds
+// are there without being read. Failures are few and large, so that they are boxed.
+#[inline(always)]
 pub fn property<T: PropertyField>(
     values: &mut Values<'_>,
     name: &str,
     default: Option<Preset>,
-    rule: &Rule<'_>,
-) -> Result<T, Failure> {
-    match (values.take(name), default) {
-        (Some(value), _) => given(value, name, rule),
-        (None, Some(default)) => default.read(rule.kind).map_err(|message| failure(name, message)),
-        (None, None) => T::absent().ok_or_else(|| missing(name, rule)),
+    (rule, bounds): (&Rule<'_>, Option<PlainBounds>),
+) -> Result<T, Box<Failure>> {
+    let Some(value) = values.take(name) else {
+        return match default {
+            Some(default) => default.read(rule.kind).map_err(|message| failure(name, message)),
+            None => T::absent().ok_or_else(|| missing(name, rule)),
+        };
+    };
+    let plain = bounds.and_then(|bounds| bounds.read(value.as_text()?));
+    match plain.and_then(|number| T::from_scalar(Scalar::Integer(i128::from(number)))) {
+        Some(Ok(read)) => Ok(read),
+        _ => given(value, name, rule),
     }
 }
 
 #[cold]
-fn missing(name: &str, rule: &Rule<'_>) -> Failure {
-    Failure::new(format!("property `{name}` is missing: expected {}", rule.expected()))
+fn missing(name: &str, rule: &Rule<'_>) -> Box<Failure> {
+    Box::new(Failure::new(format!("property `{name}` is missing: expected {}", rule.expected())))
 }
 
 #[cold]
-fn failure(name: &str, message: String) -> Failure {
-    Finding::new(Place::property(name), message).into()
+fn failure(name: &str, message: String) -> Box<Failure> {
+    Box::new(Finding::new(Place::property(name), message).into())
 }
 
-fn given<T: PropertyField>(value: &PropertyValue, name: &str, rule: &Rule<'_>) -> Result<T, Failure> {
+fn given<T: PropertyField>(value: &PropertyValue, name: &str, rule: &Rule<'_>) -> Result<T, Box<Failure>> {
     let failure = |message| failure(name, message);
     if let (PropertyValue::Text(text), true) = (value, rule.kind.is_scalar())
         && let Some(read) = T::from_scalar(rule.check(text).map_err(failure)?)
@@ -93,31 +100,36 @@ fn accept(value: &PropertyValue, rule: &Rule<'_>) -> Result<(), String> {
 /// The values that a composite gives, to be taken in the order of the declaration.
 #[derive(Debug)]
 pub struct Values<'v> {
-    all: &'v [(String, PropertyValue)],
-    /// How many were taken; `None` where they are not in that order.
-    taken: Option<usize>,
+    all: &'v [(SmolStr, PropertyValue)],
+    /// Those that were not taken yet; `None` where they are not in that order.
+    rest: Option<&'v [(SmolStr, PropertyValue)]>,
 }
 
 impl<'v> Values<'v> {
     /// The value of this name.
-    #[inline]
+    #[inline(always)]
     fn take(&mut self, name: &str) -> Option<&'v PropertyValue> {
-        let Some(taken) = &mut self.taken else {
-            return self.all.iter().find(|(given, _)| given == name).map(|(_, value)| value);
-        };
-        let (given, value) = self.all.get(*taken)?;
-        if given != name {
-            return None;
+        match self.rest {
+            Some([(given, value), rest @ ..]) if given == name => {
+                self.rest = Some(rest);
+                Some(value)
+            }
+            Some(_) => None,
+            None => self.find(name),
         }
-        *taken += 1;
-        Some(value)
+    }
+
+    #[cold]
+    fn find(&self, name: &str) -> Option<&'v PropertyValue> {
+        self.all.iter().find(|(given, _)| given == name).map(|(_, value)| value)
     }
 
     /// Passes over those with these names.
     fn pass(&mut self, names: &[&str]) {
-        if let Some(taken) = &mut self.taken {
-            let rest = self.all[*taken..].iter();
-            *taken += rest.take_while(|(name, _)| names.contains(&name.as_str())).count();
+        while let Some([(name, _), rest @ ..]) = self.rest
+            && names.contains(&name.as_str())
+        {
+            self.rest = Some(rest);
         }
     }
 }
@@ -126,22 +138,36 @@ impl<'v> Values<'v> {
 ///
 /// # Errors
 /// As [`Properties::from_values`].
-pub fn flat<P: Properties>(values: &mut Values<'_>) -> Result<P, Failure> {
+pub fn flat<P: Properties>(values: &mut Values<'_>) -> Result<P, Box<Failure>> {
     let inner = values_of(values.all, P::NAMES);
     values.pass(P::NAMES);
-    P::from_values(&inner)
+    P::from_values(&inner).map_err(Box::new)
 }
 
-/// Refuses names that are not declared, and names that are given twice; `names` are those of the declaration, in order.
+/// Makes a property struct of values; `names` are those of its declaration, in order.
+///
+/// # Errors
+/// As [`Properties::from_values`].
+pub fn read<P>(
+    all: &[(SmolStr, PropertyValue)],
+    names: &[&str],
+    make: fn(&mut Values<'_>) -> Result<P, Box<Failure>>,
+) -> Result<P, Failure> {
+    // In the order of the declaration, as hosts give them, all are taken, and so each is known and there once.
+    let mut in_order = Values { all, rest: Some(all) };
+    let mut made = make(&mut in_order);
+    if in_order.rest != Some(&[]) {
+        only_known(all, names)?;
+        made = make(&mut Values { all, rest: None });
+    }
+    made.map_err(|failure| *failure)
+}
+
+/// Refuses names that are not declared, and names that are given twice.
 ///
 /// # Errors
 /// The first such name.
-pub fn only_known<'v>(all: &'v [(String, PropertyValue)], names: &[&str]) -> Result<Values<'v>, Failure> {
-    // In the order of the declaration, as hosts give them, each is there once.
-    let mut rest = names.iter();
-    if all.iter().all(|(name, _)| rest.any(|known| known == name)) {
-        return Ok(Values { all, taken: Some(0) });
-    }
+pub(super) fn only_known(all: &[(SmolStr, PropertyValue)], names: &[&str]) -> Result<(), Failure> {
     for (place, (name, _)) in all.iter().enumerate() {
         if !names.contains(&name.as_str()) {
             let known = if names.is_empty() { "no property".to_owned() } else { names.join(", ") };
@@ -151,7 +177,7 @@ pub fn only_known<'v>(all: &'v [(String, PropertyValue)], names: &[&str]) -> Res
             return Err(Failure::new(format!("property `{name}` is given twice")));
         }
     }
-    Ok(Values { all, taken: None })
+    Ok(())
 }
 
 /// Reads a complex value.

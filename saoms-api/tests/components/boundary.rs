@@ -5,8 +5,8 @@ use saoms_api::{
     CallError, Cause, Class, Code, Component, ComponentView, Context, DynComponent, DynLoop, Effector,
     Entries, Entry, Extras, Failure, Field, Finding, FleetRule, FleetView, Header, Invocation, Knowledge,
     Level, Loop, LoopClass, LoopRegistration, Loops, Message, Place, Properties, PropertyValue, Publisher,
-    Record, Registration, ReportValue, Severity, SharedMessage, Subscription, Time, Topic, TypedCall, Work,
-    interface, record,
+    Record, Registration, ReportValue, Severity, SharedMessage, SmolStr, Subscription, Time, Topic,
+    TypedCall, Work, interface, record,
 };
 
 use std::time::Duration;
@@ -135,26 +135,26 @@ impl Adder for Busy {
     }
 }
 
-fn linked(values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+fn linked(values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
     Registration::of::<Busy>().construct(values)
 }
 
-fn imported(values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+fn imported(values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
     // SAFETY: the functions of the tables are this crate's own.
     unsafe { ImportedClass::new(&ClassTable::of::<Busy>()) }.construct(values)
 }
 
-type Construct = fn(&[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
+type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
 
-fn values(panics: &str) -> Vec<(String, PropertyValue)> {
-    let text = |text: &str| PropertyValue::Text(text.to_owned());
+fn values(panics: &str) -> Vec<(SmolStr, PropertyValue)> {
+    let text = |text: &str| PropertyValue::from(text);
     let part = |name, weight| {
-        PropertyValue::Complex(vec![("name".to_owned(), text(name)), ("weight".to_owned(), text(weight))])
+        PropertyValue::Complex(vec![("name".into(), text(name)), ("weight".into(), text(weight))])
     };
     vec![
-        ("panics".to_owned(), text(panics)),
-        ("parts".to_owned(), PropertyValue::Many(vec![part("arm", "1.5"), part("leg", "2")])),
-        ("names".to_owned(), PropertyValue::Many(vec![text(""), text("ü")])),
+        ("panics".into(), text(panics)),
+        ("parts".into(), PropertyValue::Many(vec![part("arm", "1.5"), part("leg", "2")])),
+        ("names".into(), PropertyValue::Many(vec![text(""), text("ü")])),
     ]
 }
 
@@ -390,7 +390,7 @@ fn a_loop_does_the_same_behind_the_boundary() {
     // SAFETY: the functions of the tables are this crate's own.
     let imported = unsafe { ImportedLoopClass::new(&LoopClassTable::of::<Dimmer>()) };
     assert_eq!(dimmed(imported.construct(&[]).unwrap()), expected);
-    let panics = [("panics".to_owned(), PropertyValue::Text("true".to_owned()))];
+    let panics = [("panics".into(), "true".into())];
     let text = dimmed(imported.construct(&panics).unwrap());
     assert!(text.contains("too bright"), "{text}");
 }

@@ -101,7 +101,7 @@ fn properties_are_flattened() {
     let json: serde_json::Value = serde_json::from_str(LoudCarProperties::DECLARATION).unwrap();
     let names: Vec<_> = json.as_array().unwrap().iter().map(|property| property["name"].clone()).collect();
     assert_eq!(names, ["volume", "number", "canHonk"]);
-    let value = |name: &str, text: &str| (name.to_owned(), PropertyValue::from(text));
+    let value = |name: &str, text: &str| (name.into(), PropertyValue::from(text));
     let read = LoudCarProperties::from_values(&[value("number", "7"), value("canHonk", "false")]).unwrap();
     let expected = LoudCarProperties {
         volume: 5,
@@ -119,7 +119,7 @@ fn a_class_declares_what_it_extends_and_serves_its_services() {
     let json: serde_json::Value = serde_json::from_str(LoudCar::DECLARATION).unwrap();
     assert_eq!(json["extends"], serde_json::from_str::<serde_json::Value>(Car::DECLARATION).unwrap());
     assert_eq!(json["services"].as_array().unwrap().len(), 1, "its own alone");
-    let properties = LoudCarProperties::from_values(&[("number".to_owned(), "7".into())]).unwrap();
+    let properties = LoudCarProperties::from_values(&[("number".into(), "7".into())]).unwrap();
     let mut car = LoudCar::new(properties).unwrap();
     assert_eq!((call(&mut car, "horn"), call(&mut car, "number")), (Ok(5), Ok(7)));
     let CallError::Mismatch { message } = call(&mut car, "wings").unwrap_err() else {

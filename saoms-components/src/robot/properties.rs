@@ -59,6 +59,14 @@ impl RobotProperties {
         }
     }
 
+    /// What the robot is called: its ID without blanks around it.
+    pub(crate) fn into_name(mut self) -> String {
+        self.id.truncate(self.id.trim_end().len());
+        let blanks = self.id.len() - self.id.trim_start().len();
+        self.id.drain(..blanks);
+        self.id
+    }
+
     pub(crate) fn charge_block(&self, number: u32) -> Result<Block, Failure> {
         let row = self.charge_y.map_or_else(|| i32::try_from(number), Ok);
         row.map(|y| Block::new(self.charge_x, y)).map_err(|_| {

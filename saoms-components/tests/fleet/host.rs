@@ -8,7 +8,7 @@ use std::time::Duration;
 use saoms_api::{
     CallError, Cause, Chance, Class, Context, DynComponent, Failure, Host, Invocation, Level,
     LoopRegistration, NamedLoops, Phase, PropertyValue, Record, Registration, ReportValue, ServiceCall,
-    SharedMessage, Time, TopicDeclaration, TopicKind, Work,
+    SharedMessage, SmolStr, Time, TopicDeclaration, TopicKind, Work,
 };
 
 /// A fleet in virtual time.
@@ -86,13 +86,11 @@ impl Fleet {
         values: &[(&str, &str)],
         references: &[(&str, usize, &str)],
     ) -> usize {
-        let values: Vec<_> = values
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), PropertyValue::Text((*value).to_owned())))
-            .collect();
+        let values: Vec<_> =
+            values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value))).collect();
         let registration = Registration::of::<C>();
         let component = registration.construct(&values).unwrap();
-        let is_classic = values.contains(&("policy".to_owned(), "classic".into()));
+        let is_classic = values.contains(&("policy".into(), "classic".into()));
         let index = self.components.len();
         self.components.push(Some(component));
         let references = references

@@ -99,7 +99,7 @@ fn differences(
     let missing_after = before.values.iter().filter(|(name, _)| value(after, name).is_none());
     for (name, _) in after.values.iter().chain(missing_after) {
         if value(before, name) != value(after, name) {
-            differences.push(Difference::Value(name.clone()));
+            differences.push(Difference::Value(name.to_string()));
         }
     }
     if before.task != after.task {

@@ -48,7 +48,7 @@ fn assembly(text: &str) -> Assembly {
             path: words[0].to_owned(),
             task: class.declaration().is_periodic().then(|| {
                 let values = [("ID", words[0]), ("period", "10")];
-                let values = values.map(|(name, value)| (name.to_owned(), PropertyValue::from(value)));
+                let values = values.map(|(name, value)| (name.into(), PropertyValue::from(value)));
                 TaskSettings::from_values(&values, Vec::new()).unwrap()
             }),
             class,
@@ -59,7 +59,7 @@ fn assembly(text: &str) -> Assembly {
         };
         for word in &words[2..] {
             match word.strip_prefix('>') {
-                None => spec.values.push(("size".to_owned(), PropertyValue::from(*word))),
+                None => spec.values.push(("size".into(), PropertyValue::from(*word))),
                 Some(target) => spec.references.push(Wire {
                     reference: format!("r{}", spec.references.len()),
                     interface: "i".to_owned(),

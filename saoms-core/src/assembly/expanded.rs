@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::HashSet;
 
 use saoms_api::{PropertyValue, format_duration};
+use smol_str::SmolStr;
 
 use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};
 use crate::diagnostic::{Diagnostic, Level, SetBy, Severity, codes};
@@ -168,7 +169,7 @@ pub(crate) fn valued(component: &ComponentSpec) -> Vec<Node> {
     let values = component.values.iter().filter(|value| !presets.contains(value));
     let settings = component.task.iter().flat_map(task);
     let settings =
-        settings.map(|(name, value)| (name, PropertyValue::Text(value))).filter(|(name, value)| {
+        settings.map(|(name, value)| (name, PropertyValue::Text(value.into()))).filter(|(name, value)| {
             let is_known = component.values.iter().any(|(known, _)| known == name);
             !is_known && !presets.iter().any(|(preset, given)| preset == name && given == value)
         });
@@ -206,7 +207,7 @@ pub(crate) fn text_of(property: Node, text: &str) -> Node {
 }
 
 /// The named values of a complex property, in no namespace.
-fn inside(parts: &[(String, PropertyValue)]) -> impl Iterator<Item = Node> {
+fn inside(parts: &[(SmolStr, PropertyValue)]) -> impl Iterator<Item = Node> {
     parts.iter().flat_map(|(name, value)| part(name, value, true))
 }
 
@@ -231,7 +232,7 @@ struct Said<'a> {
     class: Option<&'a str>,
     after: Option<&'a str>,
     is_removed: bool,
-    values: &'a [(String, PropertyValue)],
+    values: &'a [(SmolStr, PropertyValue)],
 }
 
 /// How the loops of a component differ from those that its class gives it.

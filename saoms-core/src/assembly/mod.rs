@@ -10,6 +10,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::{PropertyField, PropertyValue};
+use smol_str::SmolStr;
 
 pub use expanded::{Expansion, expanded};
 pub(crate) use expanded::{implementation, looped, names, start, text_of, valued};
@@ -36,7 +37,7 @@ pub struct ComponentSpec {
     /// none is named.
     pub library: Option<String>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
-    pub values: Vec<(String, PropertyValue)>,
+    pub values: Vec<(SmolStr, PropertyValue)>,
     /// How a periodic component runs; `None` for a passive one.
     pub task: Option<TaskSettings>,
     /// The class's references in the order of its declaration, with the services each leads to.
@@ -53,7 +54,7 @@ pub struct LoopSpec {
     /// What it is an instance of.
     pub class: Arc<LoopClass>,
     /// Its values; what is absent takes its default.
-    pub values: Vec<(String, PropertyValue)>,
+    pub values: Vec<(SmolStr, PropertyValue)>,
 }
 
 /// Where a reference leads.

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use saoms_api::{Failure, Properties, PropertyField, PropertyValue};
+use smol_str::SmolStr;
 
 use super::{Loss, Overrun, Restart, TaskSettings};
 use crate::registry::PropertyDeclaration;
@@ -94,7 +95,7 @@ impl TaskSettings {
     /// # Errors
     /// A value is missing or wrong.
     pub fn from_values(
-        values: &[(String, PropertyValue)],
+        values: &[(SmolStr, PropertyValue)],
         topic_rename: Vec<(String, String)>,
     ) -> Result<Self, Failure> {
         let task = TaskProperties::from_values(values)?;

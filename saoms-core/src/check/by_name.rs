@@ -139,6 +139,9 @@ pub(super) fn warm_targets(member: usize, fleet: &Fleet<'_>) {
         next.flat_map(|one| one.component.references.iter().map(|reference| (one.scope, reference)));
     let targets =
         references.flat_map(|(scope, one)| one.targets.iter().map(move |text| (scope, text.as_str())));
+    // Components that stand together mostly have the same one.
+    let mut before = None;
+    let targets = targets.filter(|target| before.replace(*target) != Some(*target));
     fleet.by_name.warm(targets, &fleet.members);
 }
 

@@ -28,7 +28,8 @@ struct Wire<'f> {
 }
 
 impl<'f> Circles<'f> {
-    /// Adds a wire. What the host serves for a component does not disturb the component.
+    /// Adds a wire, unless no circle can go through it: what the host serves for a component does not disturb the component, and one without
+    /// references calls nobody.
     pub(super) fn add(
         &mut self,
         member: usize,
@@ -38,9 +39,10 @@ impl<'f> Circles<'f> {
         fleet: &Fleet<'_>,
         classes: &[ClassIndex<'_>],
     ) {
-        let is_of_host =
-            fleet.class_of(to.member, classes).is_some_and(|class| class.services[to.service].is_of_host());
-        if !is_of_host {
+        let ends = fleet
+            .class_of(to.member, classes)
+            .is_some_and(|class| class.references.is_empty() || class.services[to.service].is_of_host());
+        if !ends {
             self.wires.push(Wire { member, reference, to: to.member, place });
         }
     }

@@ -109,6 +109,8 @@ pub(super) fn resolve<'r>(
 ) -> Vec<ClassIndex<'r>> {
     let mut classes = Vec::new();
     let mut known: Map<&str, usize> = Map::default();
+    // The class of the component before, which this one mostly has as well.
+    let mut before: Option<(&str, usize)> = None;
     // What is near an unknown name, which a whole fleet may have.
     let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
     for place in 0..fleet.members.len() {
@@ -132,8 +134,9 @@ pub(super) fn resolve<'r>(
             }
             continue;
         }
-        let index = match known.get(class.as_str()) {
-            Some(&index) => index,
+        let same = before.filter(|(name, _)| *name == class.as_str()).map(|(_, index)| index);
+        let index = match same.or_else(|| known.get(class.as_str()).copied()) {
+            Some(index) => index,
             None => match registry.get(class) {
                 Some(found) => {
                     classes.push(ClassIndex::new(found));
@@ -152,6 +155,7 @@ pub(super) fn resolve<'r>(
                 }
             },
         };
+        before = Some((class, index));
         fleet.members[place].kind = Kind::Class(index);
     }
     report.about_all();

@@ -7,6 +7,7 @@ use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::{LoopClass, PropertyDeclaration};
 use saoms_api::declaration::PropertyKind;
 use saoms_api::{Failure, Finding, PropertyValue, contain::contained};
+use smol_str::SmolStr;
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
 pub(super) fn component(
@@ -58,10 +59,10 @@ pub(super) fn partly(
     let with = |end: usize| {
         let known = subject.values.iter().filter(|(name, _)| !is_unsure(name)).cloned();
         let assumed = unsure.iter().zip(&ends);
-        let assumed = assumed.map(|(one, ends)| (one.name.clone(), PropertyValue::Text(ends[end].clone())));
+        let assumed = assumed.map(|(one, ends)| (one.name.as_str().into(), PropertyValue::from(&*ends[end])));
         known.chain(assumed).collect()
     };
-    let mut tries: Vec<Vec<(String, PropertyValue)>> = vec![with(0), with(1)];
+    let mut tries: Vec<Vec<(SmolStr, PropertyValue)>> = vec![with(0), with(1)];
     if unsure.iter().all(|one| !one.required) {
         tries.push(subject.values.to_vec());
     }

@@ -82,12 +82,16 @@ fn services(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report
 }
 
 fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
-    let Some(whose) = whose(member, fleet, classes) else { return };
     let class = fleet.class_of(member, classes);
     for reference in &fleet.members[member].component.references {
         let name = &reference.name;
         let declared =
             class.and_then(|class| class.references.iter().find(|known| known.name == name.as_str()));
+        // Of most nothing is said but where they lead.
+        if declared.is_some() && reference.contract.is_none() && reference.details.is_none() {
+            continue;
+        }
+        let Some(whose) = whose(member, fleet, classes) else { return };
         let inner =
             fleet.inner(member).and_then(|inner| inner.references().find(|known| known.name == *name.value));
         if let Some(declared) = declared {

@@ -5,13 +5,14 @@ use std::collections::{HashMap, HashSet};
 
 use saoms_api::PropertyValue;
 
+use super::checked::Given;
 use super::classes::ClassIndex;
 use super::contracts::{narrows, of_class as of_class_reference};
 use super::fleet::{Fleet, Member};
 use super::given;
 use super::global;
 use super::parameters::{Found, is_misspelt};
-use super::properties::{Given, one_value};
+use super::properties::one_value;
 use super::report::Report;
 use super::value_type::{self, Typed};
 use super::written::type_and_element;
@@ -167,10 +168,10 @@ fn used(member: &Member<'_>, described: &ComponentType, class: &ClassIndex<'_>, 
 }
 
 /// Checks what a component gives for a property of its class against the type that the file says.
-pub(super) fn value(described: &ComponentType, name: &str, given: &Given<'_>, report: &mut Report<'_>) {
+pub(super) fn value(described: &ComponentType, name: &str, given: Given<'_>, report: &mut Report<'_>) {
     let Some(property) = described.properties.iter().find(|one| one.name == *name) else { return };
     let declared = Typed { property, document: &described.document };
-    let values = match &given.value {
+    let values = match given.value {
         PropertyValue::Many(values) => &values[..],
         one => std::slice::from_ref(one),
     };

@@ -1,9 +1,10 @@
 //! What components and rules say about values, as diagnostics at the very places.
 
 use saoms_api::{Finding, Place, PropertyValue};
+use smol_str::SmolStr;
 
+use super::checked::Elsewhere;
 use super::fleet::Member;
-use super::properties::Given;
 use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::model::{Component, Property};
@@ -18,11 +19,11 @@ pub(super) struct Subject<'a> {
     pub(super) name: &'a str,
     /// Where its name is.
     pub(super) at: Location,
-    pub(super) values: &'a [(String, PropertyValue)],
+    pub(super) values: &'a [(SmolStr, PropertyValue)],
     /// What the composite says of its properties.
     pub(super) properties: &'a [Property],
     /// The values that are not one text there, with their places.
-    pub(super) elsewhere: &'a [Given<'a>],
+    pub(super) elsewhere: &'a [Elsewhere],
 }
 
 /// Where the composite gives a property.
@@ -36,8 +37,8 @@ impl<'a> Subject<'a> {
     /// A component with its values.
     pub(super) fn of(
         member: &Member<'a>,
-        values: &'a [(String, PropertyValue)],
-        elsewhere: &'a [Given<'a>],
+        values: &'a [(SmolStr, PropertyValue)],
+        elsewhere: &'a [Elsewhere],
     ) -> Self {
         let Component { name, properties, .. } = member.component;
         Self { what: "component", name: name.as_str(), at: name.location, values, properties, elsewhere }
@@ -49,8 +50,8 @@ impl<'a> Subject<'a> {
     }
 
     fn written(&self, name: &str) -> Option<Written> {
-        if let Some(given) = self.elsewhere.iter().find(|given| given.name() == Some(name)) {
-            return Some(Written { places: given.places().collect(), source: given.source() });
+        if let Some(Elsewhere { places, source, .. }) = self.elsewhere.iter().find(|one| one.name == name) {
+            return Some(Written { places: places.clone(), source: *source });
         }
         let text = self.properties.iter().find(|one| one.name == *name)?.only_text()?;
         Some(Written { places: vec![text.location], source: None })

@@ -14,6 +14,7 @@ mod binding;
 mod bindings;
 mod by_name;
 mod census;
+mod checked;
 mod circle;
 mod classes;
 mod construct;
@@ -75,6 +76,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use saoms_api::PropertyValue;
+use smol_str::SmolStr;
 
 use crate::assembly::{Assembly, ComponentSpec, Expansion, LoopSpec, Target, Wire};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
@@ -84,17 +86,18 @@ use crate::source::{Location, Sources};
 
 use arena::Arena;
 pub use census::{Census, TopicUse};
+use checked::{Checked, Elsewhere};
 use classes::ClassIndex;
 use findings::Subject;
 use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
-use properties::{Checked, Given, Giver};
+use properties::Giver;
 use report::Report;
 pub use setting::Setting;
 use severities::Severities;
 pub use severities::SeveritySetting;
-use task::Settled;
+use task::{Settled, Task};
 use values::Values;
 pub use variable::Variable;
 use wires::Wiring;
@@ -257,9 +260,9 @@ fn elsewhere(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 /// What the properties of a component come to.
 struct Resolved<'r> {
     /// The values of the class's own properties.
-    values: Vec<(String, PropertyValue)>,
+    values: Vec<(SmolStr, PropertyValue)>,
     /// Those that are not one text in the composite, for their places.
-    elsewhere: Vec<Given<'r>>,
+    elsewhere: Vec<Elsewhere>,
     task: Option<Settled>,
     /// Where its topics got other names.
     renamed: Vec<(String, Location)>,
@@ -269,11 +272,11 @@ struct Resolved<'r> {
 }
 
 /// What is known of the properties of a component with a fault.
-struct Half<'r> {
+struct Half {
     /// The place of the component.
     member: usize,
-    values: Vec<(String, PropertyValue)>,
-    elsewhere: Vec<Given<'r>>,
+    values: Vec<(SmolStr, PropertyValue)>,
+    elsewhere: Vec<Elsewhere>,
     /// The places of the properties whose values are not known.
     unsure: Vec<usize>,
 }
@@ -290,7 +293,7 @@ fn properties<'a>(
     classes: &[ClassIndex<'a>],
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<Option<Box<Checked<'a>>>> {
+) -> Vec<Option<Box<Checked>>> {
     let mut values = Values::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
@@ -318,10 +321,10 @@ fn properties<'a>(
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
-    checked: Vec<Option<Box<Checked<'a>>>>,
+    checked: Vec<Option<Box<Checked>>>,
     loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
-) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half<'a>>) {
+) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half>) {
     let mut halves = Vec::new();
     let uniques = |place: usize| fleet.class_of(place, classes).map_or(0, |class| class.slots.unique.len());
     let mut unique = unique::Unique::with_capacity((0..fleet.members.len()).map(uniques).sum());
@@ -342,19 +345,16 @@ fn components<'f, 'a>(
             is_periodic.then(|| task::check(member.component, (index, class), &checked, &mut before, report));
         listed.add(place, task.as_mut().map(|task| std::mem::take(&mut task.listed)).unwrap_or_default());
         topics.add(member, index, class, task.as_ref(), report);
-        let renamed = task.as_ref().map(|task| {
-            task.renames.iter().map(|(_, new)| new.clone()).zip(task.renamed_at.iter().copied()).collect()
-        });
-        let renamed = renamed.unwrap_or_default();
-        let task = task.and_then(|task| task.settings);
+        let (task, renamed) = task.map_or_else(Default::default, Task::into_parts);
         let sound = checked.is_sound && is_periodic == task.is_some();
-        let presets = class.class.presets().iter();
-        let absent = presets.filter(|(name, _)| checked.get(&class.slots, name).is_none());
-        let absent: Vec<(String, PropertyValue)> = absent.cloned().collect();
-        let queue = checked.get(&class.slots, "queue").map(|given| given.place);
+        let queue = class.slots.queue.and_then(|queue| checked.at(queue)).map(|given| given.place);
         let unsure = std::mem::take(&mut checked.unsure);
         let (mut values, elsewhere) = checked.into_values();
-        values.extend(absent);
+        for preset in class.slots.presets {
+            if values.iter().all(|(name, _)| *name != preset.0) {
+                values.push(preset.clone());
+            }
+        }
         let resolved = match loops.filter(|_| sound) {
             Some(loops) => Some(Box::new(Resolved { values, elsewhere, task, renamed, queue, loops })),
             None if member.has_open_values() => None,
@@ -383,7 +383,7 @@ fn spec(
     path: &str,
     class: Arc<Class>,
     library: Option<String>,
-    (values, task): (Vec<(String, PropertyValue)>, Option<Settled>),
+    (values, task): (Vec<(SmolStr, PropertyValue)>, Option<Settled>),
     references: Vec<Wire>,
     loops: Arc<[LoopSpec]>,
 ) -> ComponentSpec {

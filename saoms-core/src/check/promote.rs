@@ -31,6 +31,13 @@ pub(super) struct Promoted<'f> {
     pub(super) astray: Astray<'f>,
 }
 
+impl Promoted<'_> {
+    /// Whether anything is promoted that has to do with this reference.
+    pub(super) fn concerns(&self, place: &Place<'_>) -> bool {
+        self.outermost.contains_key(place) || self.to.contains_key(place) || self.differing.contains(place)
+    }
+}
+
 /// Checks that what composites promote exists, and that their services and references have names of their own.
 pub(super) fn check<'f>(
     fleet: &'f Fleet<'_>,

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use saoms_api::PropertyValue;
 
+use super::checked::{Checked, Elsewhere};
 use super::described;
 use super::fleet::{Member, Unit};
 use super::lacking;
@@ -21,104 +22,6 @@ use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, Prope
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
 use crate::xml::{Document, escaped};
-
-/// What a component gives for one property of its class.
-pub(super) struct Given<'r> {
-    /// The place of the property in its class.
-    slot: usize,
-    /// The declaration of the class; `None` for a property of tasks alone.
-    own: Option<&'r PropertyDeclaration>,
-    pub(super) value: PropertyValue,
-    /// Where the value is, to point at.
-    pub(super) place: Location,
-    /// `None` for one text that stands in the property itself, as most do.
-    elsewhere: Option<Box<Elsewhere>>,
-}
-
-/// What is to be said of a value that is not one text in the property itself.
-struct Elsewhere {
-    /// Where further values are.
-    more: Vec<Location>,
-    /// The `source` that leads to it.
-    source: Option<Location>,
-}
-
-impl Given<'_> {
-    /// The name of the property, where it is one of the class.
-    pub(super) fn name(&self) -> Option<&str> {
-        self.own.map(|own| own.name.as_str())
-    }
-
-    /// Where its values are.
-    pub(super) fn places(&self) -> impl Iterator<Item = Location> {
-        let more = self.elsewhere.iter().flat_map(|elsewhere| &elsewhere.more);
-        std::iter::once(self.place).chain(more.copied())
-    }
-
-    /// The `source` that leads to the value.
-    pub(super) fn source(&self) -> Option<Location> {
-        self.elsewhere.as_ref()?.source
-    }
-
-    /// The value as a text with its place; `None` when it is not one text.
-    pub(super) fn text(&self) -> Option<Text> {
-        match &self.value {
-            PropertyValue::Text(text) => Some(Text::new(text.as_str().into(), self.place)),
-            _ => None,
-        }
-    }
-}
-
-/// What all properties of a component come to.
-pub(super) struct Checked<'r> {
-    /// In the order of the class's properties, of which most components give few.
-    given: Vec<Given<'r>>,
-    /// Whether there was no fault, so that the component can be constructed.
-    pub(super) is_sound: bool,
-    /// The places of the properties whose values cannot be known for such faults.
-    pub(super) unsure: Vec<usize>,
-}
-
-impl<'r> Checked<'r> {
-    /// What is given for the property of this name.
-    pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<&Given<'r>> {
-        self.at(slots.place(name)?)
-    }
-
-    /// What is given for the property of this place.
-    pub(super) fn at(&self, slot: usize) -> Option<&Given<'r>> {
-        self.given.iter().find(|given| given.slot == slot)
-    }
-
-    /// What is given for properties of tasks, with their places.
-    pub(super) fn of_task(&self, slots: &Slots<'_>) -> impl Iterator<Item = (usize, &PropertyValue)> {
-        let given = self.given.iter().filter(|given| slots.all[given.slot].task.is_some());
-        given.map(|given| (given.slot, &given.value))
-    }
-
-    /// The values of the class's own properties, and again those of them that are not one text in the property itself: for their places.
-    pub(super) fn into_values(self) -> (Vec<(String, PropertyValue)>, Vec<Given<'r>>) {
-        let mut values = Vec::with_capacity(self.given.len());
-        let mut elsewhere = Vec::new();
-        for mut given in self.given {
-            let Some(own) = given.own else { continue };
-            let value = std::mem::replace(&mut given.value, PropertyValue::Text(String::new()));
-            values.push((own.name.clone(), value));
-            if given.elsewhere.is_some() {
-                elsewhere.push(given);
-            }
-        }
-        (values, elsewhere)
-    }
-
-    /// The values of the properties of tasks.
-    pub(super) fn task_values(&self, slots: &Slots<'_>) -> Vec<(String, PropertyValue)> {
-        let given = self.given.iter();
-        let values =
-            given.filter_map(|given| Some((slots.all[given.slot].task?.name.clone(), given.value.clone())));
-        values.collect()
-    }
-}
 
 /// Who gives values to properties: a component, or what it says about one of its loops.
 pub(super) struct Giver<'m, 'a> {
@@ -163,31 +66,31 @@ pub(super) fn check<'a>(
     parameters: &mut Parameters<'a>,
     values: &mut Values<'a>,
     report: &mut Report<'_>,
-) -> Checked<'a> {
+) -> Checked {
     let member = giver.member;
-    let mut given: Vec<Given<'a>> = Vec::with_capacity(giver.properties.len());
+    let mut given = Checked::with_capacity(giver.properties.len());
     let mut first = values.first(slots.all.len());
     // Those whose `source` is right, and has no value.
     let mut unset: Vec<&Text> = Vec::new();
     let mut unsure: Vec<usize> = Vec::new();
     let mut unknown: Vec<&str> = Vec::new();
     let mut is_sound = true;
+    let has_open_names = member.instance.is_some_and(|one| one.partial.is_some());
     for (at, property) in giver.properties.iter().enumerate() {
-        let is_hidden =
-            member.instance.is_some_and(|one| one.partial.is_some() && has_expression(&property.name));
-        if property.name.is_empty() || is_hidden {
+        let name = property.name.as_str();
+        if name.is_empty() || has_open_names && has_expression(name) {
             is_sound = false;
             unknown.push("");
             continue;
         }
-        let Some(place) = values.expected(at, slots, &property.name).or_else(|| slots.place(&property.name))
+        let Some(place) = values.expected(at, slots, &property.name.value).or_else(|| slots.place(name))
         else {
             lacking::unknown(property, giver, slots, report);
             if let Some(source) = property.source() {
                 let _ = parameters.resolve(member.unit, source, report);
             }
             is_sound = false;
-            unknown.push(&property.name);
+            unknown.push(name);
             continue;
         };
         if let Some(first) = first[place] {
@@ -211,8 +114,8 @@ pub(super) fn check<'a>(
         match add(&mut given, member, (at, property), (place, slot), parameters, values, report) {
             Ok(false) => unset.push(&property.name),
             Ok(true) => {
-                if let (Some(described), Some(value)) = (giver.described, given.last()) {
-                    described::value(described, &property.name, value, report);
+                if let (Some(described), Some(value)) = (giver.described, given.at(place)) {
+                    described::value(described, name, value, report);
                 }
                 // What lacks the index as the name does, which is reported, can be anything.
                 if member.is_partial
@@ -238,21 +141,18 @@ pub(super) fn check<'a>(
         let found = raw(default, document, None, report);
         let used = Use { property: default.tag(), source: Some(giver.name.location) };
         let found = found.map(|found| found.inside_elements_of(default));
-        match found
-            .and_then(|found| converted(default, found, used, (place, &slots.all[place]), values, report))
-        {
-            Ok(value) => given.push(value),
-            Err(()) => {
-                is_sound = false;
-                unsure.push(place);
-            }
+        let slot = (place, &slots.all[place]);
+        let taken = found.and_then(|found| convert(&mut given, default, found, used, slot, values, report));
+        if taken.is_err() {
+            is_sound = false;
+            unsure.push(place);
         }
     }
-    given.sort_unstable_by_key(|given| given.slot);
     for &place in &slots.required {
         let slot = &slots.all[place];
         let Some(declaration) = slot.main() else { continue };
-        if given.iter().any(|given| given.slot == place) {
+        let is_given = is_sound && unset.is_empty() && first[place].is_some();
+        if is_given || given.at(place).is_some() {
             continue;
         }
         let name = declaration.name.as_str();
@@ -278,25 +178,29 @@ pub(super) fn check<'a>(
         }
     }
     values.keep(first);
-    unsure.extend(unknown.iter().flat_map(|name| meant(name, slots, &given)));
+    for name in unknown {
+        unsure.extend(meant(name, slots, &given));
+    }
     unsure.sort_unstable();
     unsure.dedup();
-    Checked { given, is_sound: is_sound && !member.is_partial, unsure }
+    given.is_sound = is_sound && !member.is_partial;
+    given.unsure = unsure;
+    given
 }
 
 /// The places of the properties that an unknown name may stand for: the one that is spelt alike, or else any number that is not given.
-fn meant(name: &str, slots: &Slots<'_>, given: &[Given<'_>]) -> Vec<usize> {
+fn meant(name: &str, slots: &Slots<'_>, given: &Checked) -> Vec<usize> {
     if let Some(place) = nearest(name, slots.names()).and_then(|near| slots.place(near)) {
         return vec![place];
     }
-    let open = slots.all.iter().enumerate().filter(|(place, _)| given.iter().all(|one| one.slot != *place));
+    let open = slots.all.iter().enumerate().filter(|(place, _)| given.at(*place).is_none());
     let numbers = open.filter(|(_, slot)| slot.own.is_some_and(PropertyDeclaration::is_number));
     numbers.map(|(place, _)| place).collect()
 }
 
 /// Adds the value of a property, which stands `at` this place of the component's own; `false` when its `source` has none.
 fn add<'a>(
-    given: &mut Vec<Given<'a>>,
+    given: &mut Checked,
     member: &Member<'a>,
     (at, property): (usize, &'a Property),
     slot: (usize, &Slot<'a>),
@@ -304,16 +208,16 @@ fn add<'a>(
     values: &mut Values<'a>,
     report: &mut Report<'_>,
 ) -> Result<bool, ()> {
-    if let Some(text) = property.only_text().filter(|_| slot.1.takes_text() && !member.is_partial) {
-        let used = Use { property: property.tag(), source: None };
-        let path = Path { outer: None, name: &property.name };
-        if !values.is_as_before(at, slot.1, text) {
-            values.text(text, path, slot.1.declarations(), used, report).ok_or(())?;
+    if let Some(text) = property.only_text().filter(|_| slot.1.takes_text && !member.is_partial) {
+        if !values.is_as_before(at, slot, text) {
+            if !slot.1.is_plain(text) {
+                let used = Use { property: property.tag(), source: None };
+                let path = Path { outer: None, name: &property.name };
+                values.text(text, path, slot.1.declarations(), used, report).ok_or(())?;
+            }
             values.accept(at, slot, text);
         }
-        let value = PropertyValue::Text(text.as_str().to_owned());
-        let place = text.location;
-        given.push(Given { slot: slot.0, own: slot.1.own, value, place, elsewhere: None });
+        given.add(slot, PropertyValue::Text(text.value.clone()), text.location, None);
         return Ok(true);
     }
     let place = Place { unit: member.unit, composite: member.composite, instance: member.instance };
@@ -322,30 +226,35 @@ fn add<'a>(
         return Ok(false);
     }
     let used = Use { property: source.unwrap_or(property.tag()), source };
-    given.push(converted(property, found, used, slot, values, report)?);
+    convert(given, property, found, used, slot, values, report)?;
     Ok(true)
 }
 
-/// What was found for a property, as the class takes it.
-fn converted<'r>(
+/// Adds what was found for a property, as the class takes it.
+fn convert(
+    given: &mut Checked,
     property: &Property,
     found: Raw<'_>,
     used: Use,
-    (slot, declared): (usize, &Slot<'r>),
+    slot: (usize, &Slot<'_>),
     values: &mut Values<'_>,
     report: &mut Report<'_>,
-) -> Result<Given<'r>, ()> {
+) -> Result<(), ()> {
     let path = Path { outer: None, name: &property.name };
-    let place = found.0.first().map_or(used.property, Piece::location);
-    let more = found.0.iter().skip(1).map(Piece::location).collect();
-    let both: [Option<&PropertyDeclaration>; 2] = [declared.own, declared.task];
+    let mut places: Vec<Location> = found.0.iter().map(Piece::location).collect();
+    if places.is_empty() {
+        places.push(used.property);
+    }
+    let place = places[0];
+    let both: [Option<&PropertyDeclaration>; 2] = [slot.1.own, slot.1.task];
     let value = match both {
         [Some(own), Some(task)] => values.convert(found, path, &[own, task], used, report),
         [Some(one), None] | [None, Some(one)] => values.convert(found, path, &[one], used, report),
         [None, None] => None,
     };
-    let elsewhere = Some(Box::new(Elsewhere { more, source: used.source }));
-    Ok(Given { slot, own: declared.own, value: value.ok_or(())?, place, elsewhere })
+    let elsewhere = Elsewhere { name: slot.1.name.clone(), places, source: used.source };
+    given.add(slot, value.ok_or(())?, place, Some(Box::new(elsewhere)));
+    Ok(())
 }
 
 /// Checks that what a component gives the composite that implements it are properties of that, of types that fit.

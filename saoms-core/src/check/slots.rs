@@ -1,7 +1,8 @@
 //! The properties that components of a class, or loops, can be given.
 
 use saoms_api::PropertyValue;
-use saoms_api::declaration::PropertyKind;
+use saoms_api::declaration::{PlainBounds, PropertyKind};
+use smol_str::SmolStr;
 
 use crate::assembly::TaskProperties;
 use crate::hash::Map;
@@ -20,11 +21,15 @@ pub(super) struct Slots<'r> {
     pub(super) all: Vec<Slot<'r>>,
     /// The places of those that no two components may share.
     pub(super) unique: Vec<usize>,
+    /// The place of that whose value chooses among the lists of loops of the class.
+    pub(super) choice: Option<usize>,
+    /// The place of that for the length of queues.
+    pub(super) queue: Option<usize>,
     /// The places of those that have to be given.
     pub(super) required: Vec<usize>,
     by_name: Map<&'r str, usize>,
     /// Values that count where the composite gives none.
-    pub(super) presets: &'r [(String, PropertyValue)],
+    pub(super) presets: &'r [(SmolStr, PropertyValue)],
     /// Whether it is never executed, so that it has no task properties.
     pub(super) is_passive: bool,
 }
@@ -34,27 +39,49 @@ pub(super) struct Slots<'r> {
 /// A class can declare a property that tasks have as well, as robots do with `ID`; then one value serves both and the
 /// stricter rule counts.
 pub(super) struct Slot<'r> {
+    pub(super) name: SmolStr,
     pub(super) own: Option<&'r PropertyDeclaration>,
     pub(super) task: Option<&'r PropertyDeclaration>,
+    /// What its only declaration allows without a closer look.
+    bounds: Option<PlainBounds>,
+    /// Whether its value is one text.
+    pub(super) takes_text: bool,
+    /// Whether any text that is not blank is allowed.
+    takes_any: bool,
+    /// Whether people know a task by it.
+    pub(super) is_task_id: bool,
 }
 
 impl<'r> Slot<'r> {
+    fn of(own: Option<&'r PropertyDeclaration>, task: Option<&'r PropertyDeclaration>) -> Self {
+        let (name, bounds) = match (own, task) {
+            (Some(only), None) | (None, Some(only)) => (only.name.as_str(), only.plain_bounds()),
+            _ => (own.map_or("", |own| &own.name), None),
+        };
+        let mut all = own.into_iter().chain(task);
+        let takes_any = all.all(|one| one.kind == PropertyKind::String && one.allowed.is_empty());
+        let is_task_id = task.is_some_and(|task| task.name == ID);
+        let takes_text = own.or(task).is_some_and(|main| !main.many && main.kind != PropertyKind::Complex);
+        Self { name: name.into(), own, task, bounds, takes_text, takes_any, is_task_id }
+    }
+
+    /// The number that a text of nothing but a few digits is, where it is allowed.
+    pub(super) fn number(&self, text: &str) -> Option<u32> {
+        self.bounds?.read(text)
+    }
+
+    /// Whether a text is certainly allowed.
+    pub(super) fn is_plain(&self, text: &str) -> bool {
+        let is_graphic = || text.bytes().next().is_some_and(|first| first.is_ascii_graphic());
+        self.takes_any && is_graphic() || self.number(text).is_some()
+    }
+
     pub(super) fn declarations(&self) -> impl Iterator<Item = &'r PropertyDeclaration> {
         self.own.into_iter().chain(self.task)
     }
 
     fn is_required(&self) -> bool {
         self.declarations().any(|declaration| declaration.required)
-    }
-
-    /// Whether its value is one text.
-    pub(super) fn takes_text(&self) -> bool {
-        self.main().is_some_and(|main| !main.many && main.kind != PropertyKind::Complex)
-    }
-
-    /// Whether people know a task by it.
-    pub(super) fn is_task_id(&self) -> bool {
-        self.task.is_some_and(|task| task.name == ID)
     }
 
     /// The declaration that people are told of.
@@ -76,15 +103,17 @@ impl<'r> Slots<'r> {
         let task = if slots.is_passive { &[] } else { TaskProperties::declarations() };
         for task in task {
             match slots.by_name.get(task.name.as_str()) {
-                Some(&place) => slots.all[place].task = Some(task),
+                Some(&place) => slots.all[place] = Slot::of(slots.all[place].own, Some(task)),
                 None => {
                     slots.by_name.insert(&task.name, slots.all.len());
-                    slots.all.push(Slot { own: None, task: Some(task) });
+                    slots.all.push(Slot::of(None, Some(task)));
                 }
             }
         }
+        slots.choice = declaration.loops.property.as_deref().and_then(|name| slots.place(name));
+        slots.queue = slots.place("queue");
         slots.unique =
-            slots.places(|slot| slot.is_task_id() || slot.main().is_some_and(|main| main.unique.is_some()));
+            slots.places(|slot| slot.is_task_id || slot.main().is_some_and(|main| main.unique.is_some()));
         slots.required = slots.places(Slot::is_required);
         slots
     }
@@ -99,9 +128,11 @@ impl<'r> Slots<'r> {
         Self {
             what: "",
             name: "",
-            all: properties.iter().map(|own| Slot { own: Some(own), task: None }).collect(),
+            all: properties.iter().map(|own| Slot::of(Some(own), None)).collect(),
             by_name: places.map(|(place, own)| (own.name.as_str(), place)).collect(),
             unique: Vec::new(),
+            choice: None,
+            queue: None,
             required: Vec::new(),
             presets: &[],
             is_passive: false,

@@ -7,8 +7,8 @@ use std::time::Duration;
 use saoms_api::{PropertyField, PropertyValue};
 use smol_str::SmolStr;
 
+use super::checked::Checked;
 use super::classes::ClassIndex;
-use super::properties::Checked;
 use super::renames::{Listed, Unused};
 use super::report::{Report, list, replacing};
 use super::{endpoint, rename};
@@ -29,6 +29,17 @@ pub(super) struct Task<'a> {
     pub(super) renamed_at: Vec<Location>,
     /// The old names, with those that the class does not have.
     pub(super) listed: Vec<Listed<'a>>,
+}
+
+impl Task<'_> {
+    /// The settings, and the new names of topics with their places.
+    pub(super) fn into_parts(self) -> (Option<Settled>, Vec<(String, Location)>) {
+        if self.renames.is_empty() {
+            return (self.settings, Vec::new());
+        }
+        let names = self.renames.into_iter().map(|(_, new)| new);
+        (self.settings, names.zip(self.renamed_at).collect())
+    }
 }
 
 /// How a component runs: mostly as others of its class do but for its ID, so that these share the rest.
@@ -76,12 +87,12 @@ struct Known {
 
 impl Before {
     /// The settings of the task before with the ID of this component, where all else is the same.
-    fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: &Checked<'_>) -> Option<Settled> {
+    fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: &Checked) -> Option<Settled> {
         let Known { others, settings, .. } = self.0.as_ref().filter(|known| known.index == index)?;
         let mut id = None;
         let mut others = others.iter();
         for (place, value) in checked.of_task(&class.slots) {
-            if class.slots.all[place].is_task_id() {
+            if class.slots.all[place].is_task_id {
                 id = Some(value);
             } else if !others.next().is_some_and(|(known, same)| *known == place && same == value) {
                 return None;
@@ -89,19 +100,18 @@ impl Before {
         }
         match (id, others.next()) {
             (Some(PropertyValue::Text(id)), None) => {
-                Some(Settled { id: id.into(), shared: Rc::clone(settings) })
+                Some(Settled { id: id.clone(), shared: Rc::clone(settings) })
             }
             _ => None,
         }
     }
 
-    fn keep(&mut self, index: usize, class: &ClassIndex<'_>, checked: &Checked<'_>, settings: &Settled) {
-        let name = |place: usize| class.slots.all[place].task.map_or("", |task| &task.name);
+    fn keep(&mut self, index: usize, class: &ClassIndex<'_>, checked: &Checked, settings: &Settled) {
         let values = || checked.of_task(&class.slots);
-        if !values().all(|(place, _)| ALONE.contains(&name(place))) {
+        if !values().all(|(place, _)| ALONE.contains(&class.slots.all[place].name.as_str())) {
             return;
         }
-        let others = values().filter(|(place, _)| !class.slots.all[*place].is_task_id());
+        let others = values().filter(|(place, _)| !class.slots.all[*place].is_task_id);
         let others = others.map(|(place, value)| (place, value.clone())).collect();
         self.0 = Some(Known { index, others, settings: Rc::clone(&settings.shared) });
     }
@@ -111,7 +121,7 @@ impl Before {
 pub(super) fn check<'a>(
     component: &Component,
     (index, class): (usize, &ClassIndex<'a>),
-    checked: &Checked<'_>,
+    checked: &Checked,
     before: &mut Before,
     report: &mut Report<'_>,
 ) -> Task<'a> {
@@ -144,11 +154,13 @@ pub(super) fn check<'a>(
 fn settings(
     component: &Component,
     class: &ClassIndex<'_>,
-    checked: &Checked<'_>,
+    checked: &Checked,
     renames: &[(String, String)],
     report: &mut Report<'_>,
 ) -> Option<TaskSettings> {
-    let mut values = checked.task_values(&class.slots);
+    let values = checked.of_task(&class.slots);
+    let values = values.map(|(place, value)| (class.slots.all[place].name.clone(), value.clone()));
+    let mut values: Vec<_> = values.collect();
     for (name, value) in class.slots.presets {
         if class
             .slots
@@ -246,9 +258,9 @@ fn renames<'a>(
 }
 
 /// Reports a component that has topics and must not use them.
-fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked<'_>, report: &mut Report<'_>) {
+fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, report: &mut Report<'_>) {
     let Some(given) = checked.get(&class.slots, "useJMS") else { return };
-    if !class.has_topics() || bool::from_value(&given.value) != Ok(false) {
+    if !class.has_topics() || bool::from_value(given.value) != Ok(false) {
         return;
     }
     let mut uses = Vec::new();
@@ -276,7 +288,7 @@ fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked<'_>,
 fn combinations(
     component: &Component,
     class: &ClassIndex<'_>,
-    checked: &Checked<'_>,
+    checked: &Checked,
     settings: &TaskSettings,
     report: &mut Report<'_>,
 ) {
@@ -309,15 +321,10 @@ fn combinations(
     credentials(checked, class, settings, report);
 }
 
-fn credentials(
-    checked: &Checked<'_>,
-    class: &ClassIndex<'_>,
-    settings: &TaskSettings,
-    report: &mut Report<'_>,
-) {
+fn credentials(checked: &Checked, class: &ClassIndex<'_>, settings: &TaskSettings, report: &mut Report<'_>) {
     let is_empty =
         |value: &PropertyValue| matches!(value, PropertyValue::Text(text) if text.trim().is_empty());
-    let given = |name: &str| checked.get(&class.slots, name).filter(|given| !is_empty(&given.value));
+    let given = |name: &str| checked.get(&class.slots, name).filter(|given| !is_empty(given.value));
     let (user, password) = (given("user"), given("password"));
     let fault = match (user, password) {
         (Some(user), None) => Some((user, "`user` is given without `password`", "give both, or neither")),

@@ -7,11 +7,12 @@ use saoms_api::PropertyValue;
 use saoms_api::declaration::{PropertyKind, Scalar, parse_scalar};
 use smol_str::SmolStr;
 
+use super::checked::Checked;
 use super::classes::ClassIndex;
 use super::fleet::Fleet;
-use super::properties::Checked;
 use super::replicas::with_index;
 use super::report::{Report, replacing};
+use super::slots::Slot;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::hash::{Map, Seeded};
 use crate::model::Property;
@@ -63,7 +64,7 @@ impl<'a> Unique<'a> {
         &mut self,
         (place, fleet): (usize, &Fleet<'_>),
         class: &ClassIndex<'a>,
-        checked: &Checked<'_>,
+        checked: &Checked,
         report: &mut Report<'_>,
     ) {
         let own = &fleet.members[place];
@@ -76,12 +77,12 @@ impl<'a> Unique<'a> {
             let slot = &class.slots.all[place];
             let Some(declaration) = slot.main() else { continue };
             let (value, place) = match checked.at(place) {
-                Some(given) => (Some(&given.value), given.place),
+                Some(given) => (Some(given.value), given.place),
                 None => (class.slots.preset(&declaration.name), own.component.name.location),
             };
-            let Some(value) = value.and_then(|value| Canonical::of(value, declaration)) else { continue };
+            let Some(value) = value.and_then(|value| Canonical::of(value, slot)) else { continue };
             let word = declaration.unique.as_deref().map_or(NONE, |word| self.word(word));
-            let user = User { seen: Seen { member, place }, word, is_task: slot.is_task_id(), next: NONE };
+            let user = User { seen: Seen { member, place }, word, is_task: slot.is_task_id, next: NONE };
             self.use_value(value, user, declaration, fleet, report);
         }
     }
@@ -214,10 +215,14 @@ enum Canonical {
 }
 
 impl Canonical {
-    fn of(value: &PropertyValue, declaration: &PropertyDeclaration) -> Option<Self> {
-        let PropertyValue::Text(text) = value else { return None };
+    fn of(value: &PropertyValue, slot: &Slot<'_>) -> Option<Self> {
+        let (text, declaration) = (value.as_text()?, slot.main()?);
         if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
-            return Some(Self::Text(text.trim().into()));
+            let trimmed = text.trim();
+            return Some(Self::Text(if trimmed.len() == text.len() { text.clone() } else { trimmed.into() }));
+        }
+        if let Some(number) = slot.number(text) {
+            return Some(Self::Integer(number.into()));
         }
         Some(match parse_scalar(declaration.kind, text)? {
             // Of larger ones there are few.

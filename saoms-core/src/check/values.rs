@@ -65,22 +65,25 @@ struct Before<'a> {
 
 impl<'a> Values<'a> {
     /// The place in the class of the property that is written `at` this place, where that is the one of this name that was there before.
-    pub(super) fn expected(&self, at: usize, slots: &Slots<'_>, name: &str) -> Option<usize> {
+    pub(super) fn expected(&self, at: usize, slots: &Slots<'_>, name: &SmolStr) -> Option<usize> {
         let place = self.before.get(at)?.place;
-        let main = slots.all.get(place)?.main()?;
-        (main.name == name).then_some(place)
+        (slots.all.get(place)?.name == *name).then_some(place)
     }
 
     /// Whether the property that is written `at` this place had this very text before.
-    pub(super) fn is_as_before(&self, at: usize, slot: &Slot<'a>, text: &Text) -> bool {
+    pub(super) fn is_as_before(&mut self, at: usize, (place, slot): (usize, &Slot<'a>), text: &Text) -> bool {
         let is_same = |one: Option<&PropertyDeclaration>, other: Option<&PropertyDeclaration>| {
             one.map(std::ptr::from_ref) == other.map(std::ptr::from_ref)
         };
-        self.before.get(at).is_some_and(|before| {
-            before.text == text.value
-                && is_same(before.declarations[0], slot.own)
-                && is_same(before.declarations[1], slot.task)
-        })
+        let Some(before) = self.before.get_mut(at) else { return false };
+        let is_as_before = before.text == text.value
+            && is_same(before.declarations[0], slot.own)
+            && is_same(before.declarations[1], slot.task);
+        if is_as_before {
+            // A property of tasks has other places in other classes.
+            before.place = place;
+        }
+        is_as_before
     }
 
     /// Remembers a text that was accepted.
@@ -198,7 +201,7 @@ impl<'a> Values<'a> {
         report: &mut Report<'_>,
     ) -> Option<PropertyValue> {
         self.text(text, path, declarations.iter().copied(), used, report)?;
-        Some(PropertyValue::Text(text.as_str().to_owned()))
+        Some(PropertyValue::Text(text.value.clone()))
     }
 
     /// Holds a text to the declarations of a property that takes one; `None` when there is a fault, which is reported.
@@ -272,7 +275,7 @@ impl<'a> Values<'a> {
             }
             let used = Use { property: given[0].name_location(), ..used };
             match self.convert(Raw::of_elements(&given, instance), inner, &[part], used, report) {
-                Some(value) => values.push((part.name.clone(), value)),
+                Some(value) => values.push((part.name.as_str().into(), value)),
                 None => is_sound = false,
             }
         }

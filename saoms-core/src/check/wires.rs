@@ -5,7 +5,7 @@
 
 mod unwired;
 
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::collections::HashSet;
 
 use smol_str::SmolStr;
@@ -16,7 +16,7 @@ use super::by_name::warm_targets;
 use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
-use super::fleet::Fleet;
+use super::fleet::{Fleet, Member};
 use super::given;
 use super::multiplicity::keeps_own;
 use super::promote::{Place, Promoted};
@@ -74,7 +74,7 @@ pub(super) fn check(
     let (mut wires, astray) = wires(fleet, classes, &room, report);
     // They are looked up by the names of their references.
     wires.values_mut().for_each(|wires| wires.sort_by_key(|wire| wire.name));
-    let (autowire, before) = (Autowire::default(), Cell::default());
+    let (autowire, before) = (Autowire::default(), RefCell::default());
     let mut all = Wires { fleet, classes, promoted, wires, astray, autowire, room, before };
     let sources = given::promoted(fleet);
     let mut circles = Circles::default();
@@ -90,11 +90,14 @@ pub(super) fn check(
             continue;
         };
         for &declared in &class.references {
-            let ends = all.of_class(member, declared, report);
-            for end in &ends {
+            let mut add = |end: End| {
                 circles.add(member, &declared.name, end.provider, end.place, fleet, classes);
+                wiring.providers.push(end.provider);
+            };
+            match all.again_alone(member, declared) {
+                Some(end) => add(end),
+                None => all.of_class(member, declared, report).into_iter().for_each(add),
             }
-            wiring.providers.extend(ends.iter().map(|end| end.provider));
             wiring.references.push(wiring.providers.len());
         }
         wiring.members.push(wiring.references.len());
@@ -113,7 +116,7 @@ struct Wires<'f, 'a> {
     autowire: Autowire<'f>,
     room: Room,
     /// The target that was looked at last: components that stand together mostly call the same one.
-    before: Cell<Option<Before<'f>>>,
+    before: RefCell<Option<Before<'f>>>,
 }
 
 /// A target that leads to one service.
@@ -349,7 +352,7 @@ impl<'f, 'a> Wires<'f, 'a> {
                     }
                     if replica.is_none() {
                         let text = text.value.clone();
-                        self.before.set(Some(Before { text, scope, interface, provider }));
+                        *self.before.borrow_mut() = Some(Before { text, scope, interface, provider });
                     }
                 }
                 Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
@@ -362,13 +365,24 @@ impl<'f, 'a> Wires<'f, 'a> {
 
     /// Where a text leads, when it is the one that was looked at last.
     fn again(&self, text: &Text, scope: usize, interface: Option<&InterfaceDeclaration>) -> Option<Provider> {
-        let before = self.before.take()?;
-        let is_again = before.text == text.value
-            && before.scope == scope
-            && before.interface.map(std::ptr::from_ref) == interface.map(std::ptr::from_ref);
-        let provider = before.provider;
-        self.before.set(Some(before));
-        is_again.then_some(provider)
+        let before = self.before.borrow();
+        let before = before.as_ref().filter(|before| {
+            before.scope == scope
+                && before.interface.map(std::ptr::from_ref) == interface.map(std::ptr::from_ref)
+                && before.text == text.value
+        });
+        before.map(|before| before.provider)
+    }
+
+    /// The end of a reference that has one target, the one that was looked at last, and of which nothing else is said anywhere: what most have.
+    fn again_alone(&self, member: usize, declared: &ReferenceDeclaration) -> Option<End> {
+        let Member { component, scope, .. } = &self.fleet.members[member];
+        let reference = component.reference(&declared.name)?;
+        let is_plain = reference.details.is_none() && reference.contract.is_none();
+        let [text] = &reference.targets[..] else { return None };
+        let provider = self.again(text, *scope, Some(&declared.interface)).filter(|_| is_plain)?;
+        let is_alone = self.wires_of(member).is_empty() && !self.promoted.concerns(&(member, &declared.name));
+        is_alone.then_some(End { provider, place: text.location })
     }
 
     /// Whether a text is nothing but the name of a component that has one service as far as anybody knows: what most targets are.

@@ -31,7 +31,8 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for member in &fleet.members {
         report.about(member);
         let component = member.component;
-        for property in &component.properties {
+        // Types and elements are among the details of a property, and few have any.
+        for property in component.properties.iter().filter(|property| property.details.is_some()) {
             type_and_element(property, "ASM50035", report);
             global::check(property, &member.composite.document, &codes::VALUE_TYPE, report);
             value_type::named(property, &member.composite.document, report);

@@ -15,6 +15,7 @@ use std::sync::{Arc, OnceLock};
 
 use saoms_api::abi::{ImportedClass, ImportedLoopClass, ImportedRule};
 use saoms_api::{DynComponent, DynLoop, Failure, Finding, FleetView, PropertyValue};
+use smol_str::SmolStr;
 
 pub use error::PluginError;
 pub use metadata::Metadata;
@@ -115,7 +116,7 @@ struct Part {
 }
 
 impl Provider for Part {
-    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+    fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         // There is one for each of the metadata.
         self.plugin.code()?.classes.get(self.place).ok_or("the library has no such class")?.construct(values)
     }
@@ -126,7 +127,7 @@ impl Provider for Part {
 }
 
 impl LoopProvider for Part {
-    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+    fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         // There is one for each of the metadata.
         self.plugin.code()?.loops.get(self.place).ok_or("the library has no such loop")?.construct(values)
     }

@@ -6,6 +6,7 @@ use std::fmt;
 use std::path::Path;
 
 use saoms_api::{DynComponent, Failure, PropertyValue, Registration};
+use smol_str::SmolStr;
 
 use super::ClassDeclaration;
 
@@ -14,7 +15,7 @@ use super::ClassDeclaration;
 pub struct Class {
     pub(super) name: String,
     pub(super) declaration: Arc<ClassDeclaration>,
-    pub(super) presets: Vec<(String, PropertyValue)>,
+    pub(super) presets: Vec<(SmolStr, PropertyValue)>,
     pub(super) text: Arc<str>,
     pub(super) extended: Arc<[Arc<str>]>,
     pub(super) provider: Arc<dyn Provider>,
@@ -47,7 +48,7 @@ impl Class {
     }
 
     /// The values that this name presets, for properties that a composite does not give.
-    pub fn presets(&self) -> &[(String, PropertyValue)] {
+    pub fn presets(&self) -> &[(SmolStr, PropertyValue)] {
         &self.presets
     }
 
@@ -61,7 +62,7 @@ impl Class {
     ///
     /// # Errors
     /// A value is missing or wrong, or the values do not fit together.
-    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         self.provider.construct(values)
     }
 }
@@ -72,14 +73,14 @@ pub trait Provider: fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// As there.
-    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
+    fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
 
     /// As [`Class::origin`].
     fn origin(&self) -> Option<&Path>;
 }
 
 impl Provider for Registration {
-    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+    fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         Registration::construct(self, values)
     }
 

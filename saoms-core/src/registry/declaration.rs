@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use saoms_api::declaration::{PropertyKind, Rule, Scalar};
+use saoms_api::declaration::{PlainBounds, PropertyKind, Rule, Scalar};
 use saoms_api::{Interface, TaskInterface, TopicKind};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -136,6 +136,11 @@ impl PropertyDeclaration {
         matches!(self.kind, PropertyKind::Integer | PropertyKind::Float | PropertyKind::Duration)
     }
 
+    /// What it allows that needs no look at the texts of its bounds.
+    pub(crate) fn plain_bounds(&self) -> Option<PlainBounds> {
+        self.with_rule(PlainBounds::of)
+    }
+
     /// What is expected, as in `a whole number from 1 to 99 [%]`.
     pub fn expected(&self) -> String {
         if self.kind == PropertyKind::Complex {
@@ -146,7 +151,11 @@ impl PropertyDeclaration {
     }
 
     fn with_rule<R>(&self, ask: impl FnOnce(&Rule<'_>) -> R) -> R {
-        let allowed: Vec<&str> = self.allowed.iter().map(String::as_str).collect();
+        // Few have any.
+        let allowed = match &self.allowed[..] {
+            [] => Vec::new(),
+            allowed => allowed.iter().map(String::as_str).collect(),
+        };
         ask(&Rule {
             kind: self.kind,
             min: self.min.as_deref(),

@@ -76,6 +76,7 @@ mod tests {
 
     use saoms_api::{DynComponent, Failure, PropertyValue};
     use serde_json::{Value, json};
+    use smol_str::SmolStr;
 
     use crate::registry::{Class, Provider, Registry};
 
@@ -83,7 +84,7 @@ mod tests {
     struct Nowhere;
 
     impl Provider for Nowhere {
-        fn construct(&self, _: &[(String, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        fn construct(&self, _: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
             Err("nowhere".into())
         }
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use saoms_api::{DynLoop, Failure, LoopRegistration, PropertyValue};
 use serde::Deserialize;
 use serde_json::Value;
+use smol_str::SmolStr;
 
 use super::{PropertyDeclaration, ReferenceDeclaration, TopicDeclaration, simple};
 
@@ -154,7 +155,7 @@ impl LoopClass {
     ///
     /// # Errors
     /// A value is missing or wrong, or the values do not fit together.
-    pub fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         self.provider.construct(values)
     }
 }
@@ -165,14 +166,14 @@ pub trait LoopProvider: fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// As there.
-    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
+    fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
 
     /// As [`LoopClass::origin`].
     fn origin(&self) -> Option<&Path>;
 }
 
 impl LoopProvider for LoopRegistration {
-    fn construct(&self, values: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+    fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         LoopRegistration::construct(self, values)
     }
 

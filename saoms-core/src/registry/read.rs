@@ -43,7 +43,7 @@ pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Clas
         provider: Arc::clone(provider),
     };
     let also = declaration.also.iter().map(|alias| {
-        let presets = alias.preset.iter().map(|(name, value)| (name.clone(), value.as_str().into()));
+        let presets = alias.preset.iter().map(|(name, value)| (name.into(), value.as_str().into()));
         class(&alias.name, presets.collect())
     });
     Ok(std::iter::once(class(&declaration.name, Vec::new())).chain(also).collect())

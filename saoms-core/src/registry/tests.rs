@@ -5,6 +5,7 @@ use saoms_api::{
     Class, Component, DynLoop, Failure, Message, Properties, PropertyValue, Registration, Topic,
 };
 use serde_json::{Value, json};
+use smol_str::SmolStr;
 
 use super::*;
 
@@ -62,7 +63,7 @@ fn a_class_is_found_by_all_its_names_with_their_presets() {
     assert_eq!(names(&registry), ["a.Eye", "a.Eye001"]);
     let first = registry.get("a.Eye001").unwrap();
     assert!(first.is_alias() && !registry.get("a.Eye").unwrap().is_alias());
-    assert_eq!(first.presets(), [("number".to_owned(), "1".into())]);
+    assert_eq!(first.presets(), [("number".into(), "1".into())]);
     assert!(first.construct(first.presets()).is_ok());
     assert!(first.construct(&[]).is_err(), "presets are among the values that the caller gives");
 
@@ -217,7 +218,7 @@ fn refused_loops(change: impl FnOnce(&mut Value, &mut Value, &mut Value)) -> Str
 struct Nowhere;
 
 impl LoopProvider for Nowhere {
-    fn construct(&self, _: &[(String, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+    fn construct(&self, _: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         Err("nowhere".into())
     }
 

@@ -106,3 +106,38 @@ fn the_files_of_the_manual() {
           TaskSettings { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, topic_rename: [("POS001", "pos001"), ("POS002", "pos002")], overrun: Skip, restart: Never, deadline: None, queue: 1024, loss: Fail }
     "#]].assert_eq(&assembly(&[broker, &tasks], &[]));
 }
+
+#[test]
+fn values_have_the_order_of_the_class_however_they_are_written() {
+    let lines = [
+        r#"<property name="ID">R1</property>"#,
+        r#"<property name="period">1s</property>"#,
+        r#"<property name="number">7</property>"#,
+        r#"<property name="queue">9</property>"#,
+        r#"<property name="awake">false</property>"#,
+        r#"<property name="stops"><value>1</value><value>2</value></property>"#,
+    ];
+    // All components of one fleet, since what one gives is held against what the one before gave.
+    let mut orders: Vec<Vec<&str>> =
+        (0..lines.len()).map(|first| [&lines[first..], &lines[..first]].concat()).collect();
+    orders.extend(orders.clone().into_iter().map(|order| order.into_iter().rev().collect()));
+    let components = orders.iter().enumerate().map(|(place, order)| {
+        let properties = order.concat().replace("R1", &format!("R{place}")).replace(">7<", &format!(">{}<", place + 1));
+        format!("<component name=\"R{place}\"><implementation.java class=\"example.Robot\"/>{properties}</component>\n")
+    });
+    let (assembly, diagnostics, _) = run(&[&fleet(&components.collect::<String>())], &[]);
+    assert_eq!(diagnostics.iter().map(|one| &one.message).collect::<Vec<_>>(), Vec::<&String>::new());
+    let assembly = assembly.unwrap();
+    assert_eq!(assembly.components.len(), 2 * lines.len());
+    for (place, component) in assembly.components.iter().enumerate() {
+        let values: Vec<String> =
+            component.values.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
+        let expected = format!(
+            r#"ID=Text("R{place}") number=Text("{}") awake=Text("false") stops=Many([Text("1"), Text("2")])"#,
+            place + 1
+        );
+        assert_eq!(values.join(" "), expected);
+        let task = component.task.as_ref().unwrap();
+        assert_eq!((task.id.as_str(), task.period.as_secs(), task.queue), (&*format!("R{place}"), 1, 9));
+    }
+}

@@ -182,7 +182,7 @@ fn a_component_type_gives_the_values_that_components_do_not() {
         });
         (speeds, without(&found, folder.path()))
     };
-    let values: Vec<_> = ["0.75", "0.5"].map(|text| Some(PropertyValue::Text(text.to_owned()))).into();
+    let values: Vec<_> = ["0.75", "0.5"].map(|text| Some(PropertyValue::from(text))).into();
     assert_eq!(outcome("0.75"), (Some(values), String::new()));
     let (speeds, found) = outcome("fast");
     assert_eq!(speeds, None);
@@ -250,7 +250,7 @@ fn values_of_a_file_are_in_elements() {
         let assembly = assembly.unwrap();
         assert_eq!(value(&assembly, "number"), "7".into());
         assert_eq!(value(&assembly, "stops"), PropertyValue::Many(vec!["1".into(), "2".into()]));
-        assert_eq!(value(&assembly, "charger"), PropertyValue::Complex(vec![("x".to_owned(), "3".into())]));
+        assert_eq!(value(&assembly, "charger"), PropertyValue::Complex(vec![("x".into(), "3".into())]));
     }
     let (_, found) =
         outcome(&values("<s:value>1</s:value><s:value>two</s:value>"), "<at>\n<x>three</x><z>4</z></at>");

@@ -91,7 +91,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
             }
             "peer" => references[0].targets = target("echo"),
             "task" => references[1].targets = target("TaskInterface"),
-            script => values.push((script.to_owned(), PropertyValue::from(value))),
+            script => values.push((script.into(), PropertyValue::from(value))),
         }
     }
     let task = class.declaration().is_periodic().then_some(task);

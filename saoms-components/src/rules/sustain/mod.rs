@@ -33,6 +33,11 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let luggage = luggage(fleet);
+    // Without work none is too much.
+    if luggage.is_empty() {
+        return Vec::new();
+    }
     let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
     // The classic rules drive on with an empty battery, and of other robots and loops nothing is known.
     let is_known = |robot: &Known| {
@@ -43,7 +48,6 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let ranges: Vec<Range> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();
-    let luggage = luggage(fleet);
     let chargers = ranges.iter().map(|range| range.charger);
     let ends = luggage.iter().flat_map(|piece| [&piece.from, &piece.to]);
     let mut ways = Ways::on(&area.map, chargers.chain(ends.filter_map(|spot| spot.value.block())));

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use saoms_api::PropertyValue;
 
 use super::{Planned, order};
+use crate::check::checked::Checked;
 use crate::check::classes::ClassIndex;
 use crate::check::fleet::Member;
-use crate::check::properties::Checked;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Loop, Part};
@@ -19,7 +19,7 @@ use crate::xml::escaped;
 pub(super) fn plan<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: &Checked<'_>,
+    checked: &Checked,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {
@@ -99,13 +99,13 @@ pub(super) fn plan<'a>(
 }
 
 /// The value that says which loops of its class a component has.
-pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked<'_>) -> Option<&'c str> {
-    let declaration = class.class.declaration();
-    let property = declaration.loops.property.as_ref()?;
-    let given = checked.get(&class.slots, property).map(|given| &given.value);
-    match given.or_else(|| class.slots.preset(property)) {
+pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked) -> Option<&'c str> {
+    let place = class.slots.choice?;
+    let slot = &class.slots.all[place];
+    let given = checked.at(place).map(|given| given.value);
+    match given.or_else(|| class.slots.preset(&slot.name)) {
         Some(PropertyValue::Text(text)) => Some(text.trim()),
-        _ => declaration.property(property)?.default.as_deref(),
+        _ => slot.own?.default.as_deref(),
     }
 }
 
@@ -113,7 +113,7 @@ pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked<'_>) ->
 fn by_default<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: &Checked<'_>,
+    checked: &Checked,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {

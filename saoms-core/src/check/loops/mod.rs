@@ -9,11 +9,12 @@ use std::sync::Arc;
 
 use smol_str::SmolStr;
 
+use super::checked::{Checked, Elsewhere};
 use super::classes::ClassIndex;
 use super::findings::Subject;
 use super::fleet::{Fleet, Kind, Member};
 use super::parameters::Parameters;
-use super::properties::{self, Checked, Given, Giver};
+use super::properties::{self, Giver};
 use super::report::Report;
 use super::slots::Slots;
 use super::values::Values;
@@ -36,7 +37,7 @@ struct Changed<'a> {
     place: usize,
     element: &'a Loop,
     /// Its values that are not one text in the composite, for their places.
-    elsewhere: Vec<Given<'a>>,
+    elsewhere: Vec<Elsewhere>,
 }
 
 impl Resolved<'_> {
@@ -61,15 +62,21 @@ struct Planned<'a> {
 /// A place among the classes, and the value that chooses among the lists of loops that the class has.
 type Choice = (usize, Option<SmolStr>);
 
-/// A place among the classes, and the loops as they are where the composite says nothing about them.
-type Usual = (usize, Arc<[LoopSpec]>);
+/// The loops as they are where the composite says nothing about them.
+#[derive(Clone)]
+struct Usual {
+    of: Choice,
+    /// The place of the class together with these loops.
+    with: usize,
+    specs: Arc<[LoopSpec]>,
+}
 
 /// Finds the loops of all components; `None` where something about them is wrong. The class of a component with loops becomes one that uses
 /// the topics and references of these as well.
 pub(super) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
     classes: &mut Vec<ClassIndex<'a>>,
-    checked: &[Option<Box<Checked<'a>>>],
+    checked: &[Option<Box<Checked>>],
     registry: &'a Registry,
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
@@ -79,6 +86,8 @@ pub(super) fn resolve<'a>(
     let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
     // The same with the loops that components of a class have by this choice where the composite says nothing about them.
     let mut usual: Map<Choice, Usual> = Map::default();
+    // Those of the component before, which this one mostly has as well.
+    let mut before: Option<Usual> = None;
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, checked) in checked.iter().enumerate() {
         let member = &fleet.members[place];
@@ -90,17 +99,19 @@ pub(super) fn resolve<'a>(
         };
         let class = &classes[index];
         // A component that says nothing about its loops has them as those have that were there before it.
-        let plain = member
-            .component
-            .loops()
-            .is_empty()
-            .then(|| (index, list::choice(class, checked).map(SmolStr::new)));
-        if let Some((with, specs)) = plain.as_ref().and_then(|plain| usual.get(plain)) {
-            let specs = Arc::clone(specs);
-            fleet.members[place].kind = Kind::Class(*with);
-            all.push(Some(Resolved { specs, changed: Box::default() }));
-            continue;
+        let plain = member.component.loops().is_empty().then(|| (index, list::choice(class, checked)));
+        if let Some((index, choice)) = plain {
+            let is_same = |one: &&Usual| one.of.0 == index && one.of.1.as_deref() == choice;
+            if before.as_ref().filter(is_same).is_none() {
+                before = usual.get(&(index, choice.map(SmolStr::new))).cloned();
+            }
+            if let Some(Usual { with, specs, .. }) = &before {
+                fleet.members[place].kind = Kind::Class(*with);
+                all.push(Some(Resolved { specs: Arc::clone(specs), changed: Box::default() }));
+                continue;
+            }
         }
+        let plain = plain.map(|(index, choice)| (index, choice.map(SmolStr::new)));
         let (loops, is_planned) = list::plan(member, class, checked, registry, report);
         let is_team = is_planned && team::check(member, class, &loops, report);
         let used: Vec<&Arc<LoopClass>> = loops.iter().filter_map(|one| one.class).collect();
@@ -116,8 +127,8 @@ pub(super) fn resolve<'a>(
         }
         let resolved = resolved(&loops, &fleet.members[place], parameters, &mut values, report);
         let resolved = resolved.filter(|_| is_team);
-        if let (Some(plain), Some(resolved)) = (plain, &resolved) {
-            usual.insert(plain, (with, Arc::clone(&resolved.specs)));
+        if let (Some(of), Some(resolved)) = (plain, &resolved) {
+            usual.insert(of.clone(), Usual { of, with, specs: Arc::clone(&resolved.specs) });
         }
         all.push(resolved);
     }
