@@ -126,6 +126,7 @@ impl Small {
 fn huge(memory: *mut u8, size: usize) -> *mut u8 {
     /// That of the processors that SAOMS runs on.
     const PAGE: usize = 2 << 20;
+    const SMALL_PAGE: usize = 4 << 10;
     /// What mimalloc maps at once, in bytes.
     const AREA: usize = 1 << 30;
     static IS_ASKED: AtomicBool = AtomicBool::new(false);
@@ -133,9 +134,11 @@ fn huge(memory: *mut u8, size: usize) -> *mut u8 {
     if size < (if is_first { HUGE } else { HUGE_LATER }) || memory.is_null() {
         return memory;
     }
-    let before = memory.align_offset(PAGE);
-    // SAFETY: the range lies inside the memory, as that is larger than a page, and the advice changes nothing of what is in it.
-    unsafe { libc::madvise(memory.add(before).cast(), (size - before) & !(PAGE - 1), libc::MADV_HUGEPAGE) };
+    // All of the mapping that the memory is in, from its start on: one of which a part alone has the advice cannot grow by its page table.
+    let start = memory.map_addr(|at| at & !(SMALL_PAGE - 1));
+    let length = (memory.addr() - start.addr() + size).next_multiple_of(SMALL_PAGE);
+    // SAFETY: the range begins and ends with pages that the memory is in, and the advice changes nothing of what is in them.
+    unsafe { libc::madvise(start.cast(), length, libc::MADV_HUGEPAGE) };
     // Where one list is so large, the small pieces of a model come to several times as much.
     if is_first && !IS_ASKED.swap(true, Ordering::Relaxed) {
         // SAFETY: the piece is given back to where it came from. What else may be mapped behind it is not changed by the advice either, and
