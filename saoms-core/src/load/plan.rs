@@ -8,7 +8,7 @@ use super::Loader;
 use crate::model::{
     Component, Composite, Implementation, ImplementationKind, Origin, Policy, Property, Reference, Service,
 };
-use crate::source::{Located, Text};
+use crate::source::{Located, Span, Text};
 use crate::xml::{Alike, Attribute, Document, Element, ElementId};
 
 /// What the components of one form consist of.
@@ -21,6 +21,8 @@ struct Plan {
     properties: Vec<(Place, Value)>,
     services: Vec<Place>,
     references: Vec<(Place, Option<Place>)>,
+    /// All names, its own included.
+    names: Vec<Place>,
 }
 
 /// An attribute.
@@ -28,9 +30,9 @@ struct Plan {
 struct Place {
     /// Its element, counted from that of the component.
     element: u32,
-    /// Its place among the attributes of that.
+    /// Its place among the attributes of that, and among all of the component, with the bit of that.
     at: u32,
-    /// Its bit among all of the component.
+    nth: u32,
     bit: u64,
 }
 
@@ -60,7 +62,8 @@ impl Plans {
     ) -> Option<Component> {
         let plan = self.0.get_mut(alike.form as usize)?.as_mut()?;
         let last = plan.last.take().and_then(|last| composite.components.get(last))?;
-        let made = plan.make(&Copy { alike, document, last })?;
+        let element = document.element(alike.element);
+        let made = plan.make(&Copy { alike, element, values: element.values(), last })?;
         plan.last = Some(composite.components.len());
         Some(made)
     }
@@ -112,8 +115,9 @@ impl Loader<'_> {
         let mut place = |part: ElementId, names: &[&str], name: &str| {
             let part = element.document().element(part);
             let at = self.only_of(part, names, name)?;
-            let bit = 1_u64.checked_shl(part.values_behind(element) + at as u32).unwrap_or_default();
-            Some(Place { element: part.id().0 - first, at: at as u32, bit })
+            let nth = part.values_behind(element) + at as u32;
+            let bit = 1_u64.checked_shl(nth).unwrap_or_default();
+            Some(Place { element: part.id().0 - first, at: at as u32, nth, bit })
         };
         let name = place(element.id(), &["name"], "name")?;
         let class = place(implementation.origin.element, &["class"], "class")?;
@@ -129,12 +133,12 @@ impl Loader<'_> {
                 (place(at, &["name"], "name")?, Value::Text)
             })
         };
-        let properties = properties.iter().map(of_property).collect::<Option<_>>()?;
+        let properties: Vec<(Place, Value)> = properties.iter().map(of_property).collect::<Option<_>>()?;
         let of_service = |one: &Service| {
             let is_plain = one.promote.is_none() && one.contract.is_none();
             place(one.origin.element, &["name"], "name").filter(|_| is_plain)
         };
-        let services = services.iter().map(of_service).collect::<Option<_>>()?;
+        let services: Vec<Place> = services.iter().map(of_service).collect::<Option<_>>()?;
         let of_reference = |one: &Reference| {
             let at = one.origin.element;
             let target = place(at, &["name", "target"], "target");
@@ -142,104 +146,120 @@ impl Loader<'_> {
                 one.details.is_none() && one.contract.is_none() && target.is_some() != one.targets.is_empty();
             place(at, &["name", "target"], "name").filter(|_| is_plain).map(|name| (name, target))
         };
-        let references = references.iter().map(of_reference).collect::<Option<_>>()?;
-        Some(Plan { last: Some(last), name, class, properties, services, references })
+        let references: Vec<_> = references.iter().map(of_reference).collect::<Option<_>>()?;
+        let mut names = vec![name];
+        names.extend(properties.iter().map(|(name, _)| *name));
+        names.extend(&services);
+        names.extend(references.iter().map(|(name, _)| *name));
+        Some(Plan { last: Some(last), name, class, properties, services, references, names })
     }
 }
 
 /// An element that becomes a component as the last of its form did.
 struct Copy<'c> {
     alike: Alike,
-    document: &'c Document,
+    element: Element<'c>,
+    /// Where its values are, and those behind them.
+    values: &'c [Span],
     last: &'c Component,
 }
 
 impl Plan {
+    /// Whether a component of the form has nothing in other places than the last one that is to be told of, or read in another way.
+    fn is_plain(&self, copy: &Copy<'_>) -> bool {
+        let has_expression =
+            |place| memchr::memchr(b'$', copy.attribute(place).raw_value().as_bytes()).is_some();
+        let is_word = |place| copy.attribute(place).plain_word().is_some();
+        let mut names = self.names.iter().filter(|place| !copy.is_same(**place));
+        names.all(|place| is_silent_name(copy.attribute(*place)))
+            && (copy.is_same(self.name) || !has_expression(self.name))
+            && (copy.is_same(self.class) || is_word(self.class))
+            && self.references.iter().all(|(_, target)| target.is_none_or(is_word))
+    }
+
     fn make(&self, copy: &Copy<'_>) -> Option<Component> {
-        let last = copy.last;
-        let name = copy.name(self.name, &last.name)?;
-        if memchr::memchr(b'$', name.as_bytes()).is_some() {
+        if !self.is_plain(copy) {
             return None;
         }
-        let implementation = last.implementation.as_ref()?;
-        let class = Some(copy.word(self.class, last.class()?)?);
-        let kind = match &implementation.kind {
+        let last = copy.last;
+        let class = Some(copy.text(self.class, last.class()?));
+        let kind = match &last.implementation.as_ref()?.kind {
             ImplementationKind::Java { .. } => ImplementationKind::Java { class },
             _ => ImplementationKind::Rust { class, library: None },
         };
-        let implementation = Implementation { origin: copy.origin(self.class), kind, policy: Policy::NONE };
-        let mut properties = Vec::with_capacity(self.properties.len());
-        for ((place, value), last) in self.properties.iter().zip(&last.properties) {
-            let name = copy.name(*place, &last.name)?;
-            let simple = match value {
-                Value::Attribute(place) => copy.value(*place, last.simple.as_ref()?),
-                Value::Text => copy.element(*place).trimmed_text()?,
-            };
-            let (origin, is_attribute) = (copy.origin(*place), last.is_attribute);
-            properties.push(Property { origin, name, simple: Some(simple), is_attribute, details: None });
-        }
-        let mut services = Vec::with_capacity(self.services.len());
-        for (place, last) in self.services.iter().zip(&last.services) {
-            let (origin, name) = (copy.origin(*place), copy.name(*place, &last.name)?);
-            services.push(Service { origin, name, promote: None, contract: None });
-        }
-        let mut references = Vec::with_capacity(self.references.len());
-        for ((place, target), last) in self.references.iter().zip(&last.references) {
-            let (origin, name) = (copy.origin(*place), copy.name(*place, &last.name)?);
-            let targets = match target {
-                Some(target) => vec![copy.word(*target, last.targets.first()?)?],
-                None => Vec::new(),
-            };
-            references.push(Reference { origin, name, targets, details: None, contract: None });
-        }
-        let (origin, implementation) = (copy.origin(self.name), Some(implementation));
-        Some(Component { origin, name, implementation, properties, services, references, details: None })
+        let properties = self.properties.iter().zip(&last.properties).map(|((name, value), last)| Property {
+            origin: copy.origin(*name),
+            name: copy.text(*name, &last.name),
+            simple: match (value, &last.simple) {
+                (Value::Attribute(place), Some(last)) => Some(copy.text(*place, last)),
+                _ => copy.part(*name).trimmed_text(),
+            },
+            is_attribute: last.is_attribute,
+            details: None,
+        });
+        let services = self.services.iter().zip(&last.services).map(|(name, last)| Service {
+            origin: copy.origin(*name),
+            name: copy.text(*name, &last.name),
+            promote: None,
+            contract: None,
+        });
+        let references = self.references.iter().zip(&last.references).map(|((name, target), last)| {
+            let target = target.and_then(|target| Some(vec![copy.text(target, last.targets.first()?)]));
+            Reference {
+                origin: copy.origin(*name),
+                name: copy.text(*name, &last.name),
+                targets: target.unwrap_or_default(),
+                details: None,
+                contract: None,
+            }
+        });
+        Some(Component {
+            origin: copy.origin(self.name),
+            name: copy.text(self.name, &last.name),
+            implementation: Some(Implementation {
+                origin: copy.origin(self.class),
+                kind,
+                policy: Policy::NONE,
+            }),
+            properties: properties.collect(),
+            services: services.collect(),
+            references: references.collect(),
+            details: None,
+        })
     }
 }
 
-impl Copy<'_> {
-    fn element(&self, place: Place) -> Element<'_> {
-        self.document.element(ElementId(self.alike.element.0 + place.element))
+/// Whether an attribute is a name of which nothing is told.
+fn is_silent_name(attribute: Attribute<'_>) -> bool {
+    let name = attribute.plain_name();
+    name.is_some_and(|name| !matches!(name.as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..]))
+}
+
+impl<'c> Copy<'c> {
+    fn part(&self, place: Place) -> Element<'c> {
+        self.element.document().element(ElementId(self.alike.element.0 + place.element))
     }
 
     fn origin(&self, place: Place) -> Origin {
-        Origin::of(self.element(place))
+        Origin::of(self.part(place))
     }
 
-    fn attribute(&self, place: Place) -> Attribute<'_> {
-        self.element(place).nth_attribute(place.at as usize)
+    fn attribute(&self, place: Place) -> Attribute<'c> {
+        self.part(place).nth_attribute(place.at as usize)
     }
 
-    /// What the last one had at this place, where it is the same and had no white space around it.
-    #[inline]
-    fn again(&self, place: Place, last: &Text) -> Option<Text> {
-        if self.alike.same & place.bit == 0 {
-            return None;
+    /// Whether the value at a place is as the last one had it.
+    fn is_same(&self, place: Place) -> bool {
+        self.alike.same & place.bit != 0
+    }
+
+    /// What stands at a place, white space at its ends left out.
+    #[inline(always)]
+    fn text(&self, place: Place, last: &Text) -> Text {
+        let location = self.values[place.nth as usize].in_file(last.location.file);
+        match self.is_same(place) && location.span.len() == last.location.span.len() {
+            true => Located::new(last.value.clone(), location),
+            false => self.attribute(place).trimmed(),
         }
-        let location = self.attribute(place).value_location();
-        let is_whole = location.span.len() == last.location.span.len();
-        is_whole.then(|| Located::new(last.value.clone(), location))
-    }
-
-    /// A name that is told nothing of.
-    #[inline]
-    fn name(&self, place: Place, last: &Text) -> Option<Text> {
-        self.again(place, last).or_else(|| {
-            let attribute = self.attribute(place);
-            let name = attribute.plain_name()?;
-            let is_told = matches!(name.as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..]);
-            (!is_told).then(|| attribute.as_it_is(name))
-        })
-    }
-
-    /// A value of one word.
-    #[inline]
-    fn word(&self, place: Place, last: &Text) -> Option<Text> {
-        self.again(place, last).or_else(|| self.attribute(place).only_word())
-    }
-
-    #[inline]
-    fn value(&self, place: Place, last: &Text) -> Text {
-        self.again(place, last).unwrap_or_else(|| self.attribute(place).trimmed())
     }
 }

@@ -6,22 +6,55 @@ use crate::diagnostic::{Diagnostic, codes};
 /// Bytes that are looked at together.
 const CHUNK: usize = 128;
 
-/// Where the first character is that XML 1.0 does not allow: controls but tab, line feed and carriage return, and
-/// U+FFFE and U+FFFF. Surrogates cannot be in a Rust text.
-pub(super) fn first_forbidden(text: &[u8]) -> Option<usize> {
-    for (index, chunk) in text.chunks(CHUNK).enumerate() {
+/// What one look at all bytes of a text tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Survey {
+    /// Where the first character is that XML 1.0 does not allow: controls but tab, line feed and carriage return, and U+FFFE and U+FFFF.
+    /// Surrogates cannot be in a Rust text.
+    pub(super) forbidden: Option<usize>,
+    /// How many `<` there are without a `/` behind.
+    pub(super) starts: usize,
+}
+
+/// Looks at a whole text, with the widest vectors that the processor has.
+pub(super) fn survey(text: &[u8]) -> Survey {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has what the function is compiled for.
+        return unsafe { survey_wide(text) };
+    }
+    survey_plain(text)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn survey_wide(text: &[u8]) -> Survey {
+    survey_plain(text)
+}
+
+#[inline(always)]
+fn survey_plain(text: &[u8]) -> Survey {
+    let mut survey = Survey { forbidden: None, starts: 0 };
+    let behind = text.get(1..).unwrap_or_default();
+    for (index, (chunk, behind)) in text.chunks(CHUNK).zip(behind.chunks(CHUNK)).enumerate() {
         // The whole chunk without a branch first: the compiler makes vector instructions of it. 0xEF starts U+FFFE.
-        let suspect = |byte: u8| u8::from(is_control(byte)) | u8::from(byte == 0xef);
-        if chunk.iter().fold(0, |any, &byte| any | suspect(byte)) != 0 {
+        let (mut suspect, mut starts) = (0, 0);
+        for (&byte, &next) in chunk.iter().zip(behind) {
+            suspect |= u8::from(is_control(byte)) | u8::from(byte == 0xef);
+            starts += u8::from((byte == b'<') & (next != b'/'));
+        }
+        survey.starts += usize::from(starts);
+        if suspect != 0 && survey.forbidden.is_none() {
             let start = index * CHUNK;
-            let found = (start..start + chunk.len())
+            survey.forbidden = (start..start + chunk.len())
                 .find(|&at| is_control(text[at]) || matches!(text[at..], [0xef, 0xbf, 0xbe | 0xbf, ..]));
-            if found.is_some() {
-                return found;
-            }
         }
     }
-    None
+    // The last byte has none behind it.
+    if let Some(last) = text.len().checked_sub(1).filter(|last| is_control(text[*last])) {
+        survey.forbidden.get_or_insert(last);
+    }
+    survey
 }
 
 fn is_control(byte: u8) -> bool {

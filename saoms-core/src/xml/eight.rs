@@ -77,14 +77,14 @@ pub(super) fn same(one: &[u8], other: &[u8]) -> bool {
 /// How many bytes at the start of both are the same.
 #[inline]
 pub(super) fn same_start(one: &[u8], other: &[u8]) -> usize {
-    let pairs = one.as_chunks::<8>().0.iter().zip(other.as_chunks::<8>().0);
+    let pairs = one.as_chunks::<16>().0.iter().zip(other.as_chunks::<16>().0);
     let mut at = 0;
     for (one, other) in pairs {
-        let differs = u64::from_le_bytes(*one) ^ u64::from_le_bytes(*other);
+        let differs = u128::from_le_bytes(*one) ^ u128::from_le_bytes(*other);
         if differs != 0 {
             return at + differs.trailing_zeros() as usize / 8;
         }
-        at += 8;
+        at += 16;
     }
     let rest = one[at..].iter().zip(&other[at..]);
     at + rest.take_while(|(one, other)| one == other).count()

@@ -178,6 +178,11 @@ impl<'a> Element<'a> {
         Attribute { document: self.document, shape: node.shape, at: at as u32, value }
     }
 
+    /// Where the values of all attributes are from its own on, those of inner elements and of all behind it included.
+    pub(crate) fn values(self) -> &'a [Span] {
+        &self.document.values[self.node().values as usize..]
+    }
+
     /// Its attributes and its declarations of namespaces, in the order in which they are written.
     pub fn written_attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
         (0..self.count_of_attributes()).map(move |at| self.nth_attribute(at))

@@ -35,6 +35,8 @@ struct Form {
     mark: u32,
     /// The form that came behind the last of this one.
     next: u32,
+    /// Whether some of its holes are texts.
+    has_texts: bool,
 }
 
 /// What differs from one element of a form to another.
@@ -68,7 +70,7 @@ pub(super) struct Forms {
     numbers: Map<u64, u32>,
     hasher: Seeded,
     /// The holes of the element at hand, and how far what comes behind each of them is moved from where it is in the last of the form.
-    found: Vec<Hole>,
+    found: Vec<Span>,
     moved: Vec<u32>,
 }
 
@@ -129,53 +131,61 @@ impl Forms {
         let form = self.all.get(form as usize)?;
         let bytes = input.bytes();
         let holes = &self.holes[form.hole as usize..(form.hole + form.holes) as usize];
-        self.found.clear();
-        self.moved.clear();
-        let mut holes = holes.iter().peekable();
-        let (mut same, mut value) = (0, 1_u64);
+        self.found.resize(holes.len(), Span::empty(0));
+        let (mut same, mut first) = (0, 0);
         let (mut last, mut at) = (form.span.start, start);
+        // Somewhat more is compared than the element, so that the last bytes of it are not compared one by one.
+        let like = &bytes[..bytes.len().min(form.span.end as usize + 16)];
         loop {
             let moved = at.wrapping_sub(last);
-            let length =
-                same_start(&bytes[last as usize..form.span.end as usize], &bytes[at as usize..]) as u32;
-            let differs = last + length;
-            while let Some(hole) = holes.next_if(|hole| hole.span.end < differs) {
-                let span = Span::new(hole.span.start.wrapping_add(moved), hole.span.end.wrapping_add(moved));
-                self.found.push(Hole { span, ..*hole });
-                self.moved.push(moved);
-                if !hole.is_text {
-                    same |= value;
-                    value <<= 1;
+            let length = same_start(&like[last as usize..], &bytes[at as usize..]) as u32;
+            let differs = form.span.end.min(last + length);
+            let mut next = first;
+            for (hole, found) in holes[first..].iter().zip(&mut self.found[first..]) {
+                if hole.span.end >= differs {
+                    break;
                 }
+                *found = Span::new(hole.span.start.wrapping_add(moved), hole.span.end.wrapping_add(moved));
+                next += 1;
             }
-            self.moved.push(moved);
+            same |= up_to(next) & !up_to(first);
             if differs == form.span.end {
-                return Some((at + length, same));
+                return Some((
+                    differs.wrapping_add(moved),
+                    if form.has_texts { of_values(same, holes) } else { same },
+                ));
             }
-            let hole = holes.next_if(|hole| hole.span.start <= differs)?;
+            let hole = holes.get(next).filter(|hole| hole.span.start <= differs)?;
             let start = hole.span.start.wrapping_add(moved);
             let bytes = &bytes[start as usize - 1..];
             let length = if hole.is_text { text_end(&bytes[1..])? } else { value_end(bytes)? } as u32;
-            self.found.push(Hole { span: Span::new(start, start + length), ..*hole });
-            if !hole.is_text {
-                value <<= 1;
-            }
-            (last, at) = (hole.span.end, start + length);
+            self.found[next] = Span::new(start, start + length);
+            (last, at, first) = (hole.span.end, start + length, next + 1);
         }
     }
 
     /// Appends the elements and values of the element that was found to be of a form, which is the last of it now. The first of the elements
     /// is not linked with others.
     fn make(&mut self, form: u32, span: Span, read: &mut Read<'_>) {
-        let Form { node, nodes, value, mark, .. } = self.all[form as usize];
+        let form = &mut self.all[form as usize];
+        let holes = &mut self.holes[form.hole as usize..(form.hole + form.holes) as usize];
+        self.moved.clear();
+        self.moved.push(span.start.wrapping_sub(form.span.start));
+        let ends = holes.iter().zip(&self.found);
+        self.moved.extend(ends.map(|(hole, found)| found.end.wrapping_sub(hole.span.end)));
+        holes.iter_mut().zip(&self.found).for_each(|(hole, found)| hole.span = *found);
         let first = read.nodes.len();
-        let further = first as u32 - node;
+        let further = first as u32 - form.node;
         let values = read.values.len() as u32;
-        let values_further = values - value;
-        read.nodes.extend_from_within(node as usize..(node + nodes) as usize);
+        let values_further = values - form.value;
+        match form.has_texts {
+            true => read.values.extend(holes.iter().filter(|hole| !hole.is_text).map(|hole| hole.span)),
+            false => read.values.extend_from_slice(&self.found),
+        }
+        read.nodes.extend_from_within(form.node as usize..(form.node + form.nodes) as usize);
         let made = &mut read.nodes[first..];
         let moved = |at: u32, holes: u16| at.wrapping_add(self.moved[usize::from(holes)]);
-        for (made, mark) in made.iter_mut().zip(&self.marks[mark as usize..]) {
+        for (made, mark) in made.iter_mut().zip(&self.marks[form.mark as usize..]) {
             made.start = moved(made.start, mark.start);
             made.tag_end = moved(made.tag_end, mark.tag_end);
             made.end = moved(made.end, mark.end);
@@ -186,9 +196,6 @@ impl Forms {
         }
         made[0].parent -= further;
         made[0].next = NONE;
-        read.values.extend(self.found.iter().filter(|hole| !hole.is_text).map(|hole| hole.span));
-        let form = &mut self.all[form as usize];
-        self.holes[form.hole as usize..(form.hole + form.holes) as usize].copy_from_slice(&self.found);
         (form.span, form.node, form.value) = (span, first as u32, values);
     }
 }
@@ -234,6 +241,7 @@ impl Forms {
             holes: holes.len() as u32,
             mark: mark as u32,
             next: NONE,
+            has_texts: holes.iter().any(|hole| hole.is_text),
         };
         let is_small = holes.len() < usize::from(u16::MAX);
         let hash = self.hash(input, &made);
@@ -302,6 +310,17 @@ fn text(input: Input<'_>, node: &Node) -> Option<Span> {
     let closes = memchr::memchr(b'>', &input.bytes()[end..node.end as usize])?;
     let is_end = end + closes + 1 == node.end as usize && input.bytes().get(end + 1) == Some(&b'/');
     is_end.then(|| Span::new(start as u32, end as u32))
+}
+
+/// A bit for each of the first 64 that come before the one at this place.
+fn up_to(place: usize) -> u64 {
+    1_u64.checked_shl(place as u32).map_or(u64::MAX, |bit| bit - 1)
+}
+
+/// The bits of the values among those of holes.
+fn of_values(same: u64, holes: &[Hole]) -> u64 {
+    let values = holes.iter().enumerate().take(64).filter(|(_, hole)| !hole.is_text);
+    values.enumerate().fold(0, |all, (value, (hole, _))| all | (same >> hole & 1) << value)
 }
 
 /// A place among the forms at hand for what stands at `start`: found by its name, and by what is behind its start tag, where components

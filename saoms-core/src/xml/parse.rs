@@ -5,7 +5,7 @@ use std::sync::Arc;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
-use super::characters::{first_forbidden, forbidden, is_blank};
+use super::characters::{Survey, forbidden, is_blank, survey};
 use super::eight::{blanks, first_of, same};
 use super::fault::{Checked, Fault, Input};
 use super::form::{Forms, Read};
@@ -52,9 +52,12 @@ pub enum Tangle {
 /// ```
 pub fn parse(file: FileId, text: &Arc<String>) -> Parsed {
     // A character that XML forbids ends the text for all that follows: faults before it come first.
-    let bad = first_forbidden(text.as_bytes());
+    let Survey { forbidden: bad, starts } = survey(text.as_bytes());
     let visible = &text[..bad.unwrap_or(text.len())];
-    let mut parser = Parser::new(Input { file, text: visible });
+    // How many elements there are, or somewhat more, as comments count as well: a list that grows has room for twice as many. The shortest
+    // start tag is `<a>`.
+    let elements = starts.min(text.len() / 3);
+    let mut parser = Parser::new(Input { file, text: visible }, elements);
     let fault = match (parser.run(), bad) {
         (Err(Fault::Wrong(one)), _) => Some(*one),
         (Err(Fault::Ended(_)) | Ok(()), Some(at)) => Some(forbidden(Input { file, text }, at as u32)),
@@ -63,20 +66,6 @@ pub fn parse(file: FileId, text: &Arc<String>) -> Parsed {
     };
     let tangle = parser.tangle;
     Parsed { document: parser.into_document(text), fault, tangle }
-}
-
-/// How many elements there are, or somewhat more, as comments count as well: a list that grows has room for twice as many. The shortest start
-/// tag is `<a>`.
-fn elements(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let is_start = |(first, second): (&u8, &u8)| (*first == b'<') & (*second != b'/');
-    // Counted in bytes, without a branch, so that the compiler makes vector instructions of it.
-    let pieces = bytes.chunks(128).zip(bytes.get(1..).unwrap_or_default().chunks(128));
-    let starts = pieces.map(|(bytes, behind)| {
-        let pairs = bytes.iter().zip(behind);
-        usize::from(pairs.fold(0_u8, |count, pair| count + u8::from(is_start(pair))))
-    });
-    starts.sum::<usize>().min(text.len() / 3)
 }
 
 /// An element whose end tag has not come yet.
@@ -107,11 +96,11 @@ pub(super) struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(input: Input<'a>) -> Self {
+    fn new(input: Input<'a>, elements: usize) -> Self {
         Self {
             input,
             start: 0,
-            nodes: Vec::with_capacity(elements(input.text)),
+            nodes: Vec::with_capacity(elements),
             values: Vec::new(),
             shapes: Known::new(),
             forms: Forms::new(),

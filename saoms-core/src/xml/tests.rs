@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 
+use super::characters::{Survey, survey};
 use super::*;
 use crate::source::{FileId, Sources, Span};
 
@@ -297,6 +298,16 @@ proptest! {
     fn the_first_of_some_bytes_is_found(bytes in prop::collection::vec(prop_oneof![1 => any::<u8>(), 1 => Just(b'<'), 9 => Just(b'a')], 0..40)) {
         let expected = bytes.iter().position(|byte| b"\"<&".contains(byte));
         prop_assert_eq!(super::eight::first_of(&bytes, *b"\"<&"), expected);
+    }
+
+    #[test]
+    fn a_survey_finds_what_is_forbidden_and_counts_start_tags(
+        text in prop::collection::vec(prop_oneof![60 => Just("a"), 9 => Just("<"), 3 => Just("/"), 1 => Just("\n"), 1 => Just("\u{1}"), 1 => Just("\u{fffe}"), 1 => Just("\u{ffe0}")], 0..300),
+    ) {
+        let text = text.concat();
+        let is_forbidden = |one: char| matches!(one, '\u{1}' | '\u{fffe}');
+        let starts = text.as_bytes().windows(2).filter(|pair| pair[0] == b'<' && pair[1] != b'/').count();
+        prop_assert_eq!(survey(text.as_bytes()), Survey { forbidden: text.find(is_forbidden), starts });
     }
 
     #[test]
