@@ -182,14 +182,14 @@ impl Plan {
             return None;
         }
         let last = copy.last;
-        let class = Some(copy.text(self.class, last.class()?));
+        let class = Some(copy.word(self.class, last.class()?));
         let kind = match &last.implementation.as_ref()?.kind {
             ImplementationKind::Java { .. } => ImplementationKind::Java { class },
             _ => ImplementationKind::Rust { class, library: None },
         };
         let properties = self.properties.iter().zip(&last.properties).map(|((name, value), last)| Property {
             origin: copy.origin(*name),
-            name: copy.text(*name, &last.name),
+            name: copy.word(*name, &last.name),
             simple: match (value, &last.simple) {
                 (Value::Attribute(place), Some(last)) => Some(copy.text(*place, last)),
                 _ => copy.part(*name).trimmed_text(),
@@ -199,15 +199,15 @@ impl Plan {
         });
         let services = self.services.iter().zip(&last.services).map(|(name, last)| Service {
             origin: copy.origin(*name),
-            name: copy.text(*name, &last.name),
+            name: copy.word(*name, &last.name),
             promote: None,
             contract: None,
         });
         let references = self.references.iter().zip(&last.references).map(|((name, target), last)| {
-            let target = target.and_then(|target| Some(vec![copy.text(target, last.targets.first()?)]));
+            let target = target.and_then(|target| Some(vec![copy.word(target, last.targets.first()?)]));
             Reference {
                 origin: copy.origin(*name),
-                name: copy.text(*name, &last.name),
+                name: copy.word(*name, &last.name),
                 targets: target.unwrap_or_default(),
                 details: None,
                 contract: None,
@@ -215,7 +215,7 @@ impl Plan {
         });
         Some(Component {
             origin: copy.origin(self.name),
-            name: copy.text(self.name, &last.name),
+            name: copy.word(self.name, &last.name),
             implementation: Some(Implementation {
                 origin: copy.origin(self.class),
                 kind,
@@ -260,6 +260,18 @@ impl<'c> Copy<'c> {
         match self.is_same(place) && location.span.len() == last.location.span.len() {
             true => Located::new(last.value.clone(), location),
             false => self.attribute(place).trimmed(),
+        }
+    }
+
+    /// The same for what was found to be a word where it differs.
+    #[inline(always)]
+    fn word(&self, place: Place, last: &Text) -> Text {
+        match self.is_same(place) {
+            true => self.text(place, last),
+            false => {
+                let attribute = self.attribute(place);
+                attribute.as_it_is(attribute.raw_value())
+            }
         }
     }
 }

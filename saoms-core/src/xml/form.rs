@@ -141,11 +141,9 @@ impl Forms {
             let length = same_start(&like[last as usize..], &bytes[at as usize..]) as u32;
             let differs = form.span.end.min(last + length);
             let mut next = first;
-            for (hole, found) in holes[first..].iter().zip(&mut self.found[first..]) {
-                if hole.span.end >= differs {
-                    break;
-                }
-                *found = Span::new(hole.span.start.wrapping_add(moved), hole.span.end.wrapping_add(moved));
+            while let Some(hole) = holes.get(next).filter(|hole| hole.span.end < differs) {
+                let span = Span::new(hole.span.start.wrapping_add(moved), hole.span.end.wrapping_add(moved));
+                self.found[next] = span;
                 next += 1;
             }
             same |= up_to(next) & !up_to(first);
