@@ -31,6 +31,9 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for member in &fleet.members {
         report.about(member);
         let component = member.component;
+        if component.has_plain_parts {
+            continue;
+        }
         // Types and elements are among the details of a property, and few have any.
         for property in component.properties.iter().filter(|property| property.details.is_some()) {
             type_and_element(property, "ASM50035", report);

@@ -33,6 +33,7 @@ impl Loader<'_> {
             services: Vec::with_capacity(services),
             references: Vec::with_capacity(references),
             details: None,
+            has_plain_parts: false,
         };
         if !is_plain || replicas.is_some() {
             let details = ComponentDetails {
@@ -55,6 +56,7 @@ impl Loader<'_> {
         if let Some(names) = Names::of(&component.services, &component.references) {
             component.details.get_or_insert_default().names = Some(names);
         }
+        component.find_plain_parts();
         self.is_replicated = false;
         // An element that was not read to its end may have had one.
         let is_whole = element.is_closed() && self.tangle != Some(Tangle::ClosedEarly(element.id()));

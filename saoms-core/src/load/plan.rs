@@ -225,6 +225,7 @@ impl Plan {
             services: services.collect(),
             references: references.collect(),
             details: None,
+            has_plain_parts: true,
         })
     }
 }

@@ -8,7 +8,7 @@ use super::read;
 use super::table::table;
 use super::value_file::{self, FileValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
-use crate::model::Composite;
+use crate::model::{Component, Composite};
 use crate::source::{Sources, Span, Text};
 
 /// Reads the files that properties of the composite's components and their loops name with `file`, each of at most `max_size` bytes. A name is a URI
@@ -26,7 +26,8 @@ pub fn read_values(
     let folder = own.parent().map(Path::to_owned).unwrap_or_default();
     // Many components may share a file.
     let mut known: HashMap<PathBuf, FileValue> = HashMap::new();
-    let properties = composite.components.iter_mut().flat_map(|component| {
+    let with_more = |one: &&mut Component| !one.has_plain_parts || one.details.is_some();
+    let properties = composite.components.iter_mut().filter(with_more).flat_map(|component| {
         let of_loops = component
             .details
             .iter_mut()

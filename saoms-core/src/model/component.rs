@@ -23,6 +23,9 @@ pub struct Component {
     pub references: Vec<Reference>,
     /// What few components have; the methods give it.
     pub details: Option<Box<ComponentDetails>>,
+    /// Whether its properties are a text each, and its services and references have no more than names and targets, as most do: there is
+    /// nothing else to look for in them.
+    pub(crate) has_plain_parts: bool,
 }
 
 /// What few components have.
@@ -87,6 +90,14 @@ fn find<'p, T>(all: &'p [T], order: Option<&[u32]>, name: &str, of: fn(&T) -> &s
 }
 
 impl Component {
+    /// Finds out whether its parts are plain.
+    pub(crate) fn find_plain_parts(&mut self) {
+        let Self { properties, services, references, .. } = self;
+        self.has_plain_parts = properties.iter().all(|one| one.details.is_none())
+            && services.iter().all(|one| one.promote.is_none() && one.contract.is_none())
+            && references.iter().all(|one| one.details.is_none() && one.contract.is_none());
+    }
+
     /// Whether it has no name and says nothing.
     pub(crate) fn is_nothing(&self) -> bool {
         self.name.is_empty()
