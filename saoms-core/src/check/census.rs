@@ -152,7 +152,7 @@ fn topics<'a>(
     let report = &mut Report::new(sources, &mut unheard);
     report.assumes = true;
     let mut classes = classes::resolve(fleet, fleet.contribution, registry, true, report);
-    let checked = super::properties(fleet, &classes, &mut parameters, report);
+    let (checked, _) = super::properties(fleet, &classes, &mut parameters, report);
     loops::resolve(fleet, &mut classes, &checked, registry, &mut parameters, report);
     let mut lists = Lists::default();
     let mut all: HashMap<Way, Used> = HashMap::new();

@@ -191,11 +191,11 @@ fn examine<T>(
     let mut fleet = unfold::unfold(contribution, options, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);
     let mut classes = classes::resolve(&mut fleet, contribution, registry, options.assume_classes, report);
-    let checked = properties(&fleet, &classes, &mut parameters, report);
+    let (checked, may_share) = properties(&fleet, &classes, &mut parameters, report);
     let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
     let (checked, loops) = absent::remove(&mut fleet, checked, loops);
-    let (resolved, halves) = components(&fleet, &classes, checked, loops, report);
+    let (resolved, halves) = components(&fleet, &classes, (checked, may_share), loops, report);
     written::check(&fleet, report);
     let is_misread = |one: &Diagnostic| one.code.id.starts_with("S10") && !severities.mentions(one.code);
     let misread = report.diagnostics().iter().any(is_misread);
@@ -287,14 +287,15 @@ impl Resolved<'_> {
     }
 }
 
-/// Checks the properties of all components; `None` for one without a class.
+/// Checks the properties of all components; `None` for one without a class. Says whether some may share a value that they must not.
 fn properties<'a>(
     fleet: &Fleet<'a>,
     classes: &[ClassIndex<'a>],
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<Option<Box<Checked>>> {
+) -> (Vec<Option<Box<Checked>>>, bool) {
     let mut values = Values::default();
+    let mut sieve = unique::Sieve::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
@@ -302,6 +303,7 @@ fn properties<'a>(
         if let Kind::Class(index) = member.kind {
             let giver = Giver::component(member, fleet.component_type(place));
             let checked = properties::check(&giver, &classes[index].slots, parameters, &mut values, report);
+            sieve.add(member, &classes[index], &checked);
             all.push(Some(Box::new(checked)));
             continue;
         }
@@ -313,7 +315,7 @@ fn properties<'a>(
         all.push(None);
     }
     report.about_all();
-    all
+    (all, sieve.may_share())
 }
 
 /// Checks everything else about components that needs no look at wires; `None` for one with a fault, of which what is known stands in
@@ -321,13 +323,12 @@ fn properties<'a>(
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
-    checked: Vec<Option<Box<Checked>>>,
+    (checked, may_share): (Vec<Option<Box<Checked>>>, bool),
     loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
 ) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half>) {
     let mut halves = Vec::new();
-    let uniques = |place: usize| fleet.class_of(place, classes).map_or(0, |class| class.slots.unique.len());
-    let mut unique = unique::Unique::with_capacity((0..fleet.members.len()).map(uniques).sum());
+    let mut unique = unique::Unique::default();
     let mut topics = topics::Topics::default();
     let mut before = task::Before::default();
     let mut listed = renames::Renames::default();
@@ -339,7 +340,9 @@ fn components<'f, 'a>(
             continue;
         };
         let class = &classes[index];
-        unique.add((place, fleet), class, &checked, report);
+        if may_share {
+            unique.add((place, fleet), class, &checked, report);
+        }
         let is_periodic = class.class.declaration().is_periodic();
         let mut task =
             is_periodic.then(|| task::check(member.component, (index, class), &checked, &mut before, report));

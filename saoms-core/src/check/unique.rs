@@ -2,6 +2,7 @@
 
 use std::collections::hash_map::Entry;
 use std::fmt;
+use std::hash::BuildHasher;
 
 use saoms_api::PropertyValue;
 use saoms_api::declaration::{PropertyKind, Scalar, parse_scalar};
@@ -9,7 +10,7 @@ use smol_str::SmolStr;
 
 use super::checked::Checked;
 use super::classes::ClassIndex;
-use super::fleet::Fleet;
+use super::fleet::{Fleet, Member};
 use super::replicas::with_index;
 use super::report::{Report, replacing};
 use super::slots::Slot;
@@ -20,7 +21,50 @@ use crate::registry::PropertyDeclaration;
 use crate::source::Location;
 use crate::xml::escaped;
 
-/// Collects values that components must not share. A large fleet has many, so that what is kept of each is small.
+/// Finds out whether any values are shared that must not be, before anything is kept of them: in a sound fleet none are, and in a large one there
+/// are many. Sorting some numbers takes a tenth of the time that a table of the values takes, and of its memory.
+#[derive(Default)]
+pub(super) struct Sieve {
+    hashes: Vec<u64>,
+    hasher: Seeded,
+}
+
+impl Sieve {
+    /// Adds what a component gives, or what its class presets.
+    pub(super) fn add(&mut self, member: &Member<'_>, class: &ClassIndex<'_>, checked: &Checked) {
+        for (value, _, slot, declaration) in uses(member, class, checked) {
+            let word = declaration.unique.as_deref().map(|word| self.hasher.hash_one((&value, word)));
+            let task = slot.is_task_id.then(|| self.hasher.hash_one(&value));
+            self.hashes.extend(word.into_iter().chain(task));
+        }
+    }
+
+    /// Whether there may be values that are shared.
+    pub(super) fn may_share(mut self) -> bool {
+        self.hashes.sort_unstable();
+        self.hashes.windows(2).any(|pair| pair[0] == pair[1])
+    }
+}
+
+/// The values of a component that others must not have, where each is, and which property has it.
+fn uses<'u, 'r>(
+    member: &'u Member<'_>,
+    class: &'u ClassIndex<'r>,
+    checked: &'u Checked,
+) -> impl Iterator<Item = (Canonical, Location, &'u Slot<'r>, &'r PropertyDeclaration)> {
+    let slots = class.slots.unique.iter().filter(|_| !member.is_partial);
+    slots.filter_map(move |&place| {
+        let slot = &class.slots.all[place];
+        let declaration = slot.main()?;
+        let (value, place) = match checked.at(place) {
+            Some(given) => (given.value, given.place),
+            None => (class.slots.preset(&declaration.name)?, member.component.name.location),
+        };
+        Some((Canonical::of(value, slot)?, place, slot, declaration))
+    })
+}
+
+/// Collects values that components must not share.
 #[derive(Default)]
 pub(super) struct Unique<'a> {
     /// The words that properties share.
@@ -54,11 +98,6 @@ struct Seen {
 }
 
 impl<'a> Unique<'a> {
-    /// With room for so many values.
-    pub(super) fn with_capacity(values: usize) -> Self {
-        Self { seen: Map::with_capacity_and_hasher(values, Seeded::default()), ..Self::default() }
-    }
-
     /// Adds what a component gives, or what its class presets.
     pub(super) fn add(
         &mut self,
@@ -67,20 +106,9 @@ impl<'a> Unique<'a> {
         checked: &Checked,
         report: &mut Report<'_>,
     ) {
-        let own = &fleet.members[place];
-        if own.is_partial {
-            return;
-        }
         // Fleets are limited to fewer.
         let member = place as u32;
-        for &place in &class.slots.unique {
-            let slot = &class.slots.all[place];
-            let Some(declaration) = slot.main() else { continue };
-            let (value, place) = match checked.at(place) {
-                Some(given) => (Some(given.value), given.place),
-                None => (class.slots.preset(&declaration.name), own.component.name.location),
-            };
-            let Some(value) = value.and_then(|value| Canonical::of(value, slot)) else { continue };
+        for (value, place, slot, declaration) in uses(&fleet.members[place], class, checked) {
             let word = declaration.unique.as_deref().map_or(NONE, |word| self.word(word));
             let user = User { seen: Seen { member, place }, word, is_task: slot.is_task_id, next: NONE };
             self.use_value(value, user, declaration, fleet, report);

@@ -14,6 +14,8 @@ pub(super) struct Survey {
     pub(super) forbidden: Option<usize>,
     /// How many `<` there are without a `/` behind.
     pub(super) starts: usize,
+    /// How many `=` there are.
+    pub(super) equals: usize,
 }
 
 /// Looks at a whole text, with the widest vectors that the processor has.
@@ -34,16 +36,18 @@ fn survey_wide(text: &[u8]) -> Survey {
 
 #[inline(always)]
 fn survey_plain(text: &[u8]) -> Survey {
-    let mut survey = Survey { forbidden: None, starts: 0 };
+    let mut survey = Survey { forbidden: None, starts: 0, equals: 0 };
     let behind = text.get(1..).unwrap_or_default();
     for (index, (chunk, behind)) in text.chunks(CHUNK).zip(behind.chunks(CHUNK)).enumerate() {
         // The whole chunk without a branch first: the compiler makes vector instructions of it. 0xEF starts U+FFFE.
-        let (mut suspect, mut starts) = (0, 0);
+        let (mut suspect, mut starts, mut equals) = (0, 0_u8, 0_u8);
         for (&byte, &next) in chunk.iter().zip(behind) {
             suspect |= u8::from(is_control(byte)) | u8::from(byte == 0xef);
             starts += u8::from((byte == b'<') & (next != b'/'));
+            equals += u8::from(byte == b'=');
         }
         survey.starts += usize::from(starts);
+        survey.equals += usize::from(equals);
         if suspect != 0 && survey.forbidden.is_none() {
             let start = index * CHUNK;
             survey.forbidden = (start..start + chunk.len())
@@ -51,8 +55,11 @@ fn survey_plain(text: &[u8]) -> Survey {
         }
     }
     // The last byte has none behind it.
-    if let Some(last) = text.len().checked_sub(1).filter(|last| is_control(text[*last])) {
-        survey.forbidden.get_or_insert(last);
+    if let Some((&byte, before)) = text.split_last() {
+        survey.equals += usize::from(byte == b'=');
+        if is_control(byte) {
+            survey.forbidden.get_or_insert(before.len());
+        }
     }
     survey
 }

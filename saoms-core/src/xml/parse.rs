@@ -52,12 +52,10 @@ pub enum Tangle {
 /// ```
 pub fn parse(file: FileId, text: &Arc<String>) -> Parsed {
     // A character that XML forbids ends the text for all that follows: faults before it come first.
-    let Survey { forbidden: bad, starts } = survey(text.as_bytes());
+    let survey = survey(text.as_bytes());
+    let bad = survey.forbidden;
     let visible = &text[..bad.unwrap_or(text.len())];
-    // How many elements there are, or somewhat more, as comments count as well: a list that grows has room for twice as many. The shortest
-    // start tag is `<a>`.
-    let elements = starts.min(text.len() / 3);
-    let mut parser = Parser::new(Input { file, text: visible }, elements);
+    let mut parser = Parser::new(Input { file, text: visible }, &survey);
     let fault = match (parser.run(), bad) {
         (Err(Fault::Wrong(one)), _) => Some(*one),
         (Err(Fault::Ended(_)) | Ok(()), Some(at)) => Some(forbidden(Input { file, text }, at as u32)),
@@ -96,12 +94,16 @@ pub(super) struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(input: Input<'a>, elements: usize) -> Self {
+    fn new(input: Input<'a>, survey: &Survey) -> Self {
+        // Lists that grow have room for twice as much. So many elements and values there are, or somewhat more, as comments and texts count as
+        // well; the shortest are `<a>` and ` a=""`.
+        let elements = survey.starts.min(input.text.len() / 3);
+        let values = survey.equals.min(input.text.len() / 5);
         Self {
             input,
             start: 0,
             nodes: Vec::with_capacity(elements),
-            values: Vec::new(),
+            values: Vec::with_capacity(values),
             shapes: Known::new(),
             forms: Forms::new(),
             alike: Vec::new(),
