@@ -21,8 +21,6 @@ impl Loader<'_> {
         self.no_text(root);
         let name = self.name(root);
         let [properties, services, references, components, wires] = self.counted(root);
-        // What holds nothing is told, and not kept.
-        let bare = root.children().filter(|child| child.is_bare()).count();
         let mut composite = Composite {
             origin: Origin::of(root),
             document: Arc::clone(document),
@@ -35,8 +33,8 @@ impl Loader<'_> {
             properties: Vec::with_capacity(properties),
             services: Vec::with_capacity(services),
             references: Vec::with_capacity(references),
-            components: Vec::with_capacity(components.saturating_sub(bare)),
-            wires: Vec::with_capacity(wires.saturating_sub(bare)),
+            components: Vec::with_capacity(components),
+            wires: Vec::with_capacity(wires),
             severities: Vec::new(),
             outside: Vec::new(),
             policy: self.policy(root),

@@ -55,6 +55,8 @@ const OTHERS: u16 = 1 << USUAL;
 
 /// The elements of SCA that most elements are.
 const FREQUENT: [&str; 5] = ["property", "service", "reference", "component", "wire"];
+/// So many of these are kept whatever they hold.
+const ALWAYS_KEPT: usize = 3;
 
 impl Tag {
     const UNKNOWN: Self = Self {
@@ -137,12 +139,13 @@ impl Loader<'_> {
         self.tags[element.shape()].sound_for = Some(kind);
     }
 
-    /// How many children have each of the [`FREQUENT`] names.
+    /// How many children have each of the [`FREQUENT`] names. Components and wires that hold nothing at all are told, and not kept.
     pub(super) fn counted(&mut self, element: Element<'_>) -> [usize; FREQUENT.len()] {
         let mut counted = [0; FREQUENT.len()];
         for child in element.children() {
-            if let Some(count) = counted.get_mut(usize::from(self.tag(child).frequent)) {
-                *count += 1;
+            let place = usize::from(self.tag(child).frequent);
+            if let Some(count) = counted.get_mut(place) {
+                *count += usize::from(place < ALWAYS_KEPT || !child.is_bare());
             }
         }
         counted
