@@ -44,9 +44,19 @@ enum Value {
     Text,
 }
 
-/// The plans of a document, by form.
+/// What is known of a form.
+#[derive(Debug)]
+enum Known {
+    /// None of it was read yet that is nothing to be told of.
+    Nothing,
+    /// Those of it are read part by part.
+    Irregular,
+    Regular(Plan),
+}
+
+/// What is known of the forms of a document.
 #[derive(Debug, Default)]
-pub(super) struct Plans(Vec<Option<Plan>>);
+pub(super) struct Plans(Vec<Known>);
 
 /// How much the loader has told and noted so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +70,7 @@ impl Plans {
         document: &Document,
         composite: &Composite,
     ) -> Option<Component> {
-        let plan = self.0.get_mut(alike.form as usize)?.as_mut()?;
+        let Known::Regular(plan) = self.0.get_mut(alike.form as usize)? else { return None };
         let last = plan.last.take().and_then(|last| composite.components.get(last))?;
         let element = document.element(alike.element);
         let made = plan.make(&Copy { alike, element, values: element.values(), last })?;
@@ -87,12 +97,14 @@ impl Loader<'_> {
     ) {
         let form = form as usize;
         if plans.0.len() <= form {
-            plans.0.resize_with(form + 1, || None);
+            plans.0.resize_with(form + 1, || Known::Nothing);
         }
         match &mut plans.0[form] {
-            Some(plan) => plan.last = Some(place),
-            None if self.tangle.is_some() => {}
-            new => *new = self.regular(element, read, place),
+            Known::Regular(plan) => plan.last = Some(place),
+            new @ Known::Nothing if self.tangle.is_none() => {
+                *new = self.regular(element, read, place).map_or(Known::Irregular, Known::Regular);
+            }
+            _ => {}
         }
     }
 
