@@ -329,3 +329,41 @@ fn wrong_properties_say_what_was_found_and_expected() {
     let missing = RobotProperties::from_values(&[]).unwrap_err();
     assert_eq!(missing.message(), "property `number` is missing: expected a whole number from 1 to 99");
 }
+
+#[derive(Debug, PartialEq, Properties)]
+struct LabelProperties {
+    #[property(required_text)]
+    name: SmolStr,
+    #[property(allowed("red", "blue"))]
+    color: String,
+    #[property(default = "none")]
+    note: SmolStr,
+    title: Option<SmolStr>,
+}
+
+#[test]
+fn texts_are_held_to_their_rules_and_stay_as_they_are() {
+    let read = |values: &[(&str, &str)]| {
+        let values: Vec<_> = values.iter().map(|(name, value)| text(name, value)).collect();
+        LabelProperties::from_values(&values).map_err(|failure| failure.message().to_owned())
+    };
+    let label = |name: &str, note: &str, title: Option<&str>| LabelProperties {
+        name: name.into(),
+        color: "red".to_owned(),
+        note: note.into(),
+        title: title.map(SmolStr::from),
+    };
+    assert_eq!(read(&[("name", "A"), ("color", "red")]), Ok(label("A", "none", None)));
+    assert_eq!(
+        read(&[("title", " of all "), ("name", " A "), ("note", ""), ("color", "red")]),
+        Ok(label(" A ", "", Some(" of all ")))
+    );
+    for (name, color, expected) in [
+        ("", "red", "property `name`: the value is empty: expected a text that is not empty"),
+        (" ", "red", "property `name`: the value is empty: expected a text that is not empty"),
+        ("A", "green", "property `color`: `green` is not allowed: expected `red` or `blue`"),
+        ("A", "", "property `color`: `` is not allowed: expected `red` or `blue`"),
+    ] {
+        assert_eq!(read(&[("name", name), ("color", color)]), Err(expected.to_owned()), "{name:?} {color:?}");
+    }
+}

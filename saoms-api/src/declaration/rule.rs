@@ -149,6 +149,18 @@ impl<'a> Rule<'a> {
         }
     }
 
+    /// Whether it takes any text that is not blank.
+    #[inline]
+    pub fn takes_any_text(&self) -> bool {
+        matches!(self.kind, PropertyKind::String) && self.allowed.is_empty()
+    }
+
+    /// Whether it certainly allows a text, as a look at its beginning tells. For any other [`check`](Rule::check) has to say it.
+    #[inline]
+    pub(crate) fn allows_plain_text(&self, text: &str) -> bool {
+        self.takes_any_text() && text.bytes().next().is_some_and(|first| first.is_ascii_graphic())
+    }
+
     fn text(&self, text: &str) -> Result<(), String> {
         let trimmed = trim(text);
         if trimmed.is_empty() && (self.non_empty || self.kind != PropertyKind::String) {

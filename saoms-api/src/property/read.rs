@@ -32,11 +32,20 @@ impl Preset {
     /// That the rule allows it was seen to when it was compiled and registered.
     #[inline(always)]
     fn read<T: PropertyField>(self, kind: PropertyKind) -> Result<T, String> {
-        let known = T::from_choice(self.text).map(Ok);
-        let scalar = || self.scalar.or_else(|| parse_scalar(kind, self.text)).and_then(T::from_scalar);
-        let otherwise = || T::from_value(&PropertyValue::from(self.text));
-        known.or_else(scalar).unwrap_or_else(otherwise)
+        if let Some(read) = T::from_choice(self.text) {
+            return Ok(read);
+        }
+        match self.scalar.and_then(T::from_scalar) {
+            Some(read) => read,
+            None => read_default(self.text, kind),
+        }
     }
+}
+
+/// The default that is no choice, and that the compiler cannot read.
+fn read_default<T: PropertyField>(text: &str, kind: PropertyKind) -> Result<T, String> {
+    let read = parse_scalar(kind, text).and_then(T::from_scalar);
+    read.unwrap_or_else(|| T::from_value(&PropertyValue::from(text)))
 }
 
 /// Reads one property from the values of a composite.
@@ -58,10 +67,13 @@ pub fn property<T: PropertyField>(
             None => T::absent().ok_or_else(|| missing(name, rule)),
         };
     };
-    let plain = bounds.and_then(|bounds| bounds.read(value.as_text()?));
-    match plain.and_then(|number| T::from_scalar(Scalar::Integer(i128::from(number)))) {
-        Some(Ok(read)) => Ok(read),
-        _ => given(value, name, rule),
+    let plain = value.as_text().and_then(|text| match bounds {
+        Some(bounds) => T::from_scalar(Scalar::Integer(i128::from(bounds.read(text)?)))?.ok(),
+        None => T::from_text(text).filter(|_| rule.allows_plain_text(text)),
+    });
+    match plain {
+        Some(read) => Ok(read),
+        None => given(value, name, rule),
     }
 }
 

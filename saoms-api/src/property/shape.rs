@@ -1,8 +1,8 @@
-use crate::PropertyValue;
 use crate::declaration::{PropertyKind, Rule, Scalar, Text};
 use crate::time::read_duration;
+use crate::{PropertyValue, SmolStr};
 
-/// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `Duration`, enums (derive it), other
+/// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `SmolStr`, `Duration`, enums (derive it), other
 /// [`Properties`](crate::Properties) structs, `Option` of these (need not be given) and `Vec` of these (any number of values).
 ///
 /// `#[derive(PropertyField)]` on an enum without data allows the names of its variants in lowerCamelCase, or what
@@ -19,6 +19,11 @@ pub trait PropertyField: Sized {
 
     /// The same from the text of a scalar that was read and checked already; `None` where the type is not made of such.
     fn from_scalar(_: Scalar) -> Option<Result<Self, String>> {
+        None
+    }
+
+    /// The same from a text that its rule allows; `None` where the type is no text.
+    fn from_text(_: &SmolStr) -> Option<Self> {
         None
     }
 

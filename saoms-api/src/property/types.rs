@@ -1,8 +1,8 @@
 use std::time::Duration;
 
 use super::{PropertyField, PropertyShape};
-use crate::PropertyValue;
 use crate::declaration::{PropertyKind, Rule, Scalar};
+use crate::{PropertyValue, SmolStr};
 
 /// Reads a scalar through its rule.
 fn scalar(value: &PropertyValue, rule: &Rule<'_>) -> Result<Scalar, String> {
@@ -15,7 +15,7 @@ fn scalar(value: &PropertyValue, rule: &Rule<'_>) -> Result<Scalar, String> {
 }
 
 macro_rules! scalars {
-    ($($type:ty, $rule:expr, $variant:ident($value:ident) => $result:expr;)*) => {
+    ($($type:ty, $rule:expr, $variant:ident($value:ident) => $result:expr $(, $text:ident => $from_text:expr)?;)*) => {
         $(impl PropertyField for $type {
             const TYPE: PropertyShape = PropertyShape::scalar($rule);
 
@@ -25,19 +25,26 @@ macro_rules! scalars {
                 read.unwrap_or_else(|| Err(format!("expected {}", RULE.expected())))
             }
 
+            #[inline]
             fn from_scalar(scalar: Scalar) -> Option<Result<Self, String>> {
                 match scalar {
                     Scalar::$variant($value) => Some($result),
                     _ => None,
                 }
             }
+
+            $(#[inline]
+            fn from_text($text: &SmolStr) -> Option<Self> {
+                Some($from_text)
+            })?
         })*
     };
 }
 
 scalars! {
     bool, Rule::of(PropertyKind::Boolean), Boolean(value) => Ok(value);
-    String, Rule::of(PropertyKind::String), Text(value) => Ok(value);
+    String, Rule::of(PropertyKind::String), Text(value) => Ok(value), text => text.to_string();
+    SmolStr, Rule::of(PropertyKind::String), Text(value) => Ok(value.into()), text => text.clone();
     Duration, Rule::of(PropertyKind::Duration), Duration(value) => Ok(value);
     f64, Rule::of(PropertyKind::Float), Float(value) => Ok(value);
     f32, Rule::of(PropertyKind::Float), Float(value) => match value as f32 {
@@ -74,8 +81,14 @@ impl<T: PropertyField> PropertyField for Option<T> {
         T::from_value(value).map(Some)
     }
 
+    #[inline]
     fn from_scalar(scalar: Scalar) -> Option<Result<Self, String>> {
         T::from_scalar(scalar).map(|read| read.map(Some))
+    }
+
+    #[inline]
+    fn from_text(text: &SmolStr) -> Option<Self> {
+        T::from_text(text).map(Some)
     }
 
     fn from_choice(text: &str) -> Option<Self> {

@@ -92,11 +92,10 @@ impl Component for Robot {
         let number = properties.number()?;
         let charge_block = properties.charge_block(number)?;
         let battery = Battery::new(properties.battery, properties.discharge);
-        let asleep = properties.asleep;
-        let name = properties.into_name();
+        let name = properties.id.trim().to_owned();
         let mut knowledge = Box::new(RobotKnowledge::new(name, number, charge_block, battery));
-        knowledge.variables.asleep = asleep;
-        knowledge.variables.in_charge = asleep;
+        knowledge.variables.asleep = properties.asleep;
+        knowledge.variables.in_charge = properties.asleep;
         Ok(Robot { knowledge, loops: Loops::default() })
     }
 

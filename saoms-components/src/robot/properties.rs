@@ -1,4 +1,4 @@
-use saoms_api::{Failure, Finding, Place, Properties, PropertyField};
+use saoms_api::{Failure, Finding, Place, Properties, PropertyField, SmolStr};
 
 use crate::grid::Block;
 
@@ -16,7 +16,7 @@ pub enum Policy {
 pub struct RobotProperties {
     /// The robot's name.
     #[property(name = "ID", required_text, unique = "robot")]
-    pub(crate) id: String,
+    pub(crate) id: SmolStr,
     /// The robot's number; by default the digits at the end of its ID. Where robots are equal, the lower number goes first.
     #[property(range = 1.., unique = "robot number")]
     pub(crate) number: Option<u32>,
@@ -57,14 +57,6 @@ impl RobotProperties {
                 Err(Finding::new(Place::property("ID"), message).into())
             }
         }
-    }
-
-    /// What the robot is called: its ID without blanks around it.
-    pub(crate) fn into_name(mut self) -> String {
-        self.id.truncate(self.id.trim_end().len());
-        let blanks = self.id.len() - self.id.trim_start().len();
-        self.id.drain(..blanks);
-        self.id
     }
 
     pub(crate) fn charge_block(&self, number: u32) -> Result<Block, Failure> {

@@ -6,6 +6,8 @@
 use std::hash::BuildHasher;
 use std::hint::black_box;
 
+use smol_str::SmolStr;
+
 use super::fleet::{Fleet, Member};
 use crate::hash::Seeded;
 
@@ -134,15 +136,20 @@ pub(super) fn warm_targets(member: usize, fleet: &Fleet<'_>) {
     if !member.is_multiple_of(TOGETHER) {
         return;
     }
-    let next = fleet.members[member..].iter().take(TOGETHER);
-    let references =
-        next.flat_map(|one| one.component.references.iter().map(|reference| (one.scope, reference)));
-    let targets =
-        references.flat_map(|(scope, one)| one.targets.iter().map(move |text| (scope, text.as_str())));
-    // Components that stand together mostly have the same one.
-    let mut before = None;
-    let targets = targets.filter(|target| before.replace(*target) != Some(*target));
-    fleet.by_name.warm(targets, &fleet.members);
+    let mut targets = [(0, ""); AT_ONCE];
+    let mut count = 0;
+    let mut before: Option<&SmolStr> = None;
+    for one in fleet.members[member..].iter().take(TOGETHER) {
+        for text in one.component.references.iter().flat_map(|reference| &reference.targets) {
+            // Components that stand together may all have the same one.
+            if count < AT_ONCE && before != Some(&text.value) {
+                targets[count] = (one.scope, text.as_str());
+                count += 1;
+                before = Some(&text.value);
+            }
+        }
+    }
+    fleet.by_name.warm(targets[..count].iter().copied(), &fleet.members);
 }
 
 fn key<'m>(member: &'m Member<'_>) -> (usize, &'m str) {

@@ -152,13 +152,13 @@ fn topics<'a>(
     let report = &mut Report::new(sources, &mut unheard);
     report.assumes = true;
     let mut classes = classes::resolve(fleet, fleet.contribution, registry, true, report);
-    let (checked, _) = super::properties(fleet, &classes, &mut parameters, report);
-    loops::resolve(fleet, &mut classes, &checked, registry, &mut parameters, report);
+    let (checks, _) = super::properties(fleet, &classes, &mut parameters, report);
+    loops::resolve(fleet, &mut classes, &checks, registry, &mut parameters, report);
     let mut lists = Lists::default();
     let mut all: HashMap<Way, Used> = HashMap::new();
     let mut before = task::Before::default();
-    for (member, checked) in fleet.members.iter().zip(&checked).filter(|(member, _)| !member.is_absent) {
-        let (Kind::Class(index), Some(checked)) = (member.kind, checked) else { continue };
+    for (at, member) in fleet.members.iter().enumerate().filter(|(_, member)| !member.is_absent) {
+        let (Kind::Class(index), Some(checked)) = (member.kind, checks.get(at)) else { continue };
         let class = &classes[index];
         let is_periodic = class.class.declaration().is_periodic();
         let renames = match is_periodic {

@@ -39,16 +39,43 @@ impl Given<'_> {
 }
 
 /// What all properties of a component come to.
-#[derive(Default)]
-pub(super) struct Checked {
-    /// The names and values of the class's own properties in its order, as constructors take them.
-    values: Vec<(SmolStr, PropertyValue)>,
-    /// All that is given, in the order in which it is written: as a rule little.
-    given: Vec<Entry>,
+#[derive(Clone, Copy)]
+pub(super) struct Checked<'c> {
+    values: &'c [(SmolStr, PropertyValue)],
+    of_tasks: &'c [PropertyValue],
+    given: &'c [Entry],
     /// Whether there was no fault, so that the component can be constructed.
     pub(super) is_sound: bool,
-    /// The places of the properties whose values cannot be known for such faults.
-    pub(super) unsure: Vec<usize>,
+}
+
+impl<'c> Checked<'c> {
+    /// What is given for the property of this name.
+    pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<Given<'c>> {
+        self.at(slots.place(name)?)
+    }
+
+    /// What is given for the property of this place.
+    pub(super) fn at(&self, slot: usize) -> Option<Given<'c>> {
+        let entry = self.given.iter().find(|entry| entry.slot as usize == slot)?;
+        let Entry { place, elsewhere, .. } = entry;
+        Some(Given { value: self.value(entry), place: *place, elsewhere: elsewhere.as_deref() })
+    }
+
+    fn value(&self, entry: &'c Entry) -> &'c PropertyValue {
+        match entry.value {
+            Held::Own(own) => &self.values[own as usize].1,
+            Held::OfTask(place) => &self.of_tasks[place as usize],
+        }
+    }
+
+    /// What is given for properties of tasks, with the places of these.
+    pub(super) fn of_task<'s>(
+        self,
+        slots: &'s Slots<'s>,
+    ) -> impl Iterator<Item = (usize, &'c PropertyValue)> + use<'c, 's> {
+        let given = self.given.iter().filter(|entry| slots.all[entry.slot as usize].task.is_some());
+        given.map(move |entry| (entry.slot as usize, self.value(entry)))
+    }
 }
 
 /// A property that has a value.
@@ -62,18 +89,101 @@ struct Entry {
 
 /// Where a value is kept.
 enum Held {
-    /// Here: that of a property of tasks alone, which constructors do not take.
-    Here(PropertyValue),
-    /// At this place among the class's own.
+    /// At this place among those of the class's own properties.
     Own(u32),
+    /// At this place among those of properties that tasks alone have, which constructors do not take.
+    OfTask(u32),
 }
 
-impl Checked {
-    /// With room for so many values.
-    pub(super) fn with_capacity(count: usize) -> Self {
-        Self { values: Vec::with_capacity(count), given: Vec::with_capacity(count), ..Self::default() }
+/// What the properties of many components come to: in long lists, as a large fleet has many components of few properties.
+#[derive(Default)]
+pub(super) struct Checks {
+    /// For each component its place in `all`; [`NONE`] for one without a class.
+    pub(super) of: Vec<u32>,
+    all: Vec<One>,
+    /// What is given by all of them, in the order in which it is written.
+    given: Vec<Entry>,
+    /// The values that all of them give for properties of tasks alone.
+    of_tasks: Vec<PropertyValue>,
+}
+
+/// No place: fleets are limited to fewer components.
+const NONE: u32 = u32::MAX;
+
+struct One {
+    /// The names and values of the class's own properties in its order, as constructors take them.
+    values: Vec<(SmolStr, PropertyValue)>,
+    /// Where what it gives starts, and where it ends.
+    given: (u32, u32),
+    is_sound: bool,
+    /// The places of the properties whose values cannot be known for faults.
+    unsure: Vec<usize>,
+}
+
+/// What is kept of [`Checked`] when all about it is looked at.
+#[derive(Default)]
+pub(super) struct Kept {
+    /// Those of own properties.
+    pub(super) values: Vec<(SmolStr, PropertyValue)>,
+    /// What is to be said of those of them that stand elsewhere.
+    pub(super) elsewhere: Vec<Elsewhere>,
+    /// The places of the properties whose values cannot be known for faults.
+    pub(super) unsure: Vec<usize>,
+}
+
+impl Checks {
+    /// With room for so many components, and for those of them that have a class, with what these give at most.
+    pub(super) fn with_capacity(count: usize, with_class: usize, given: usize) -> Self {
+        Self {
+            of: Vec::with_capacity(count),
+            all: Vec::with_capacity(with_class),
+            given: Vec::with_capacity(given),
+            of_tasks: Vec::with_capacity(with_class),
+        }
     }
 
+    /// What the component at this place gives; `None` for one without a class.
+    pub(super) fn get(&self, place: usize) -> Option<Checked<'_>> {
+        let One { values, given: (start, end), is_sound, .. } = self.all.get(self.of[place] as usize)?;
+        let given = &self.given[*start as usize..*end as usize];
+        Some(Checked { values, of_tasks: &self.of_tasks, given, is_sound: *is_sound })
+    }
+
+    /// Takes what the component at this place gives.
+    pub(super) fn take(&mut self, place: usize) -> Option<Kept> {
+        let One { values, given: (start, end), unsure, .. } = self.all.get_mut(self.of[place] as usize)?;
+        let (values, unsure) = (std::mem::take(values), std::mem::take(unsure));
+        let given = &mut self.given[*start as usize..*end as usize];
+        let mut elsewhere = Vec::new();
+        for entry in given.iter_mut().filter(|entry| entry.elsewhere.is_some()) {
+            if let (Held::Own(_), Some(one)) = (&entry.value, entry.elsewhere.take()) {
+                elsewhere.push(*one);
+            }
+        }
+        Some(Kept { values, elsewhere, unsure })
+    }
+
+    /// Adds a component without a class.
+    pub(super) fn add_none(&mut self) {
+        self.of.push(NONE);
+    }
+
+    /// Starts the next component, which gives at most so many values.
+    pub(super) fn start(&mut self, count: usize) -> Open<'_> {
+        Open { start: self.given.len(), values: Vec::with_capacity(count), next: 0, checks: self }
+    }
+}
+
+/// A component whose values are added.
+pub(super) struct Open<'c> {
+    checks: &'c mut Checks,
+    start: usize,
+    values: Vec<(SmolStr, PropertyValue)>,
+    /// From this place on own properties have no value yet.
+    next: usize,
+}
+
+impl Open<'_> {
     /// Adds the value of the property of this place, which has none yet.
     #[inline]
     pub(super) fn add(
@@ -84,65 +194,53 @@ impl Checked {
         elsewhere: Option<Box<Elsewhere>>,
     ) {
         let value = match slot.own {
-            None => Held::Here(value),
+            None => {
+                self.checks.of_tasks.push(value);
+                Held::OfTask(self.checks.of_tasks.len() as u32 - 1)
+            }
+            // Most are written in the order of the class.
+            Some(_) if place >= self.next => {
+                self.next = place + 1;
+                self.values.push((slot.name.clone(), value));
+                Held::Own(self.values.len() as u32 - 1)
+            }
             Some(_) => {
-                let behind = self.make_place(place);
-                let pair = (slot.name.clone(), value);
-                match behind == self.values.len() {
-                    true => self.values.push(pair),
-                    false => self.values.insert(behind, pair),
-                }
-                Held::Own(behind as u32)
+                let own = self.make_place(place);
+                self.values.insert(own, (slot.name.clone(), value));
+                Held::Own(own as u32)
             }
         };
-        // Classes have fewer properties.
-        self.given.push(Entry { slot: place as u32, place: at, value, elsewhere });
+        // Classes and fleets are limited to fewer.
+        self.checks.given.push(Entry { slot: place as u32, place: at, value, elsewhere });
     }
 
-    /// Where the value of an own property belongs; those that belong behind it move on. Most are written in the order of the class.
+    /// Where the value of an own property belongs that stands before others, which move on.
     fn make_place(&mut self, slot: usize) -> usize {
-        let is_before = |entry: &&Entry| matches!(entry.value, Held::Own(_)) && (entry.slot as usize) < slot;
-        let at = self.given.iter().filter(is_before).count();
-        if at < self.values.len() {
-            for entry in &mut self.given {
-                match &mut entry.value {
-                    Held::Own(own) if *own as usize >= at => *own += 1,
-                    _ => {}
-                }
+        let given = &mut self.checks.given[self.start..];
+        let is_behind = |entry: &&Entry| matches!(entry.value, Held::Own(_)) && entry.slot as usize > slot;
+        let behind = given.iter().filter(is_behind).count();
+        let at = self.values.len() - behind;
+        for entry in given {
+            match &mut entry.value {
+                Held::Own(own) if *own as usize >= at => *own += 1,
+                _ => {}
             }
         }
         at
     }
 
-    /// What is given for the property of this name.
-    pub(super) fn get(&self, slots: &Slots<'_>, name: &str) -> Option<Given<'_>> {
-        self.at(slots.place(name)?)
+    /// What is given so far.
+    pub(super) fn so_far(&self) -> Checked<'_> {
+        let Checks { given, of_tasks, .. } = &*self.checks;
+        Checked { values: &self.values, of_tasks, given: &given[self.start..], is_sound: false }
     }
 
-    /// What is given for the property of this place.
-    pub(super) fn at(&self, slot: usize) -> Option<Given<'_>> {
-        let entry = self.given.iter().find(|entry| entry.slot as usize == slot)?;
-        let Entry { place, elsewhere, .. } = entry;
-        Some(Given { value: self.value(entry), place: *place, elsewhere: elsewhere.as_deref() })
-    }
-
-    fn value<'c>(&'c self, entry: &'c Entry) -> &'c PropertyValue {
-        match &entry.value {
-            Held::Here(value) => value,
-            Held::Own(own) => &self.values[*own as usize].1,
-        }
-    }
-
-    /// What is given for properties of tasks, with the places of these.
-    pub(super) fn of_task(&self, slots: &Slots<'_>) -> impl Iterator<Item = (usize, &PropertyValue)> {
-        let given = self.given.iter().filter(|entry| slots.all[entry.slot as usize].task.is_some());
-        given.map(|entry| (entry.slot as usize, self.value(entry)))
-    }
-
-    /// The values of own properties, and what is to be said of those of them that stand elsewhere.
-    pub(super) fn into_values(self) -> (Vec<(SmolStr, PropertyValue)>, Vec<Elsewhere>) {
-        let own = self.given.into_iter().filter(|entry| matches!(entry.value, Held::Own(_)));
-        let elsewhere = own.filter_map(|entry| entry.elsewhere);
-        (self.values, elsewhere.map(|one| *one).collect())
+    /// That is all; said with it is whether there was no fault, and which properties' values cannot be known for such.
+    pub(super) fn finish(self, is_sound: bool, unsure: Vec<usize>) {
+        let Self { checks, start, values, .. } = self;
+        // Fleets are limited to fewer.
+        let given = (start as u32, checks.given.len() as u32);
+        checks.of.push(checks.all.len() as u32);
+        checks.all.push(One { values, given, is_sound, unsure });
     }
 }

@@ -86,7 +86,7 @@ use crate::source::{Location, Sources};
 
 use arena::Arena;
 pub use census::{Census, TopicUse};
-use checked::{Checked, Elsewhere};
+use checked::{Checks, Elsewhere, Kept};
 use classes::ClassIndex;
 use findings::Subject;
 use fleet::{Fleet, Kind, Member};
@@ -191,11 +191,12 @@ fn examine<T>(
     let mut fleet = unfold::unfold(contribution, options, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);
     let mut classes = classes::resolve(&mut fleet, contribution, registry, options.assume_classes, report);
-    let (checked, may_share) = properties(&fleet, &classes, &mut parameters, report);
-    let loops = loops::resolve(&mut fleet, &mut classes, &checked, registry, &mut parameters, report);
+    let (mut checks, may_share) = properties(&fleet, &classes, &mut parameters, report);
+    let loops = loops::resolve(&mut fleet, &mut classes, &checks, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
-    let (checked, loops) = absent::remove(&mut fleet, checked, loops);
-    let (resolved, halves) = components(&fleet, &classes, (checked, may_share), loops, report);
+    let (of, loops) = absent::remove(&mut fleet, std::mem::take(&mut checks.of), loops);
+    checks.of = of;
+    let (resolved, halves) = components(&fleet, &classes, (checks, may_share), loops, report);
     written::check(&fleet, report);
     let is_misread = |one: &Diagnostic| one.code.id.starts_with("S10") && !severities.mentions(one.code);
     let misread = report.diagnostics().iter().any(is_misread);
@@ -293,18 +294,21 @@ fn properties<'a>(
     classes: &[ClassIndex<'a>],
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> (Vec<Option<Box<Checked>>>, bool) {
+) -> (Checks, bool) {
     let mut values = Values::default();
     let mut sieve = unique::Sieve::default();
-    let mut all = Vec::with_capacity(fleet.members.len());
+    let with_class = || fleet.members.iter().filter(|member| matches!(member.kind, Kind::Class(_)));
+    let given = with_class().map(|member| member.component.properties.len()).sum();
+    let mut all = Checks::with_capacity(fleet.members.len(), with_class().count(), given);
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
         parameters.types(member, report);
         if let Kind::Class(index) = member.kind {
             let giver = Giver::component(member, fleet.component_type(place));
-            let checked = properties::check(&giver, &classes[index].slots, parameters, &mut values, report);
-            sieve.add(member, &classes[index], &checked);
-            all.push(Some(Box::new(checked)));
+            properties::check(&giver, &classes[index].slots, parameters, &mut values, &mut all, report);
+            if let Some(checked) = all.get(place) {
+                sieve.add(member, &classes[index], checked);
+            }
             continue;
         }
         properties::repeated(member.component, report);
@@ -312,7 +316,7 @@ fn properties<'a>(
             Some(inner) => properties::of_composite(member, inner, report),
             None => given::properties(member, fleet.known(place), parameters, report),
         }
-        all.push(None);
+        all.add_none();
     }
     report.about_all();
     (all, sieve.may_share())
@@ -323,7 +327,7 @@ fn properties<'a>(
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
-    (checked, may_share): (Vec<Option<Box<Checked>>>, bool),
+    (mut checks, may_share): (Checks, bool),
     loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
 ) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half>) {
@@ -333,26 +337,29 @@ fn components<'f, 'a>(
     let mut before = task::Before::default();
     let mut listed = renames::Renames::default();
     let mut all = Vec::with_capacity(fleet.members.len());
-    for (place, ((member, checked), loops)) in fleet.members.iter().zip(checked).zip(loops).enumerate() {
+    for (place, (member, loops)) in fleet.members.iter().zip(loops).enumerate() {
         report.about(member);
-        let (Kind::Class(index), Some(mut checked)) = (member.kind, checked) else {
+        let (Kind::Class(index), Some(checked)) = (member.kind, checks.get(place)) else {
             all.push(None);
             continue;
         };
         let class = &classes[index];
         if may_share {
-            unique.add((place, fleet), class, &checked, report);
+            unique.add((place, fleet), class, checked, report);
         }
         let is_periodic = class.class.declaration().is_periodic();
         let mut task =
-            is_periodic.then(|| task::check(member.component, (index, class), &checked, &mut before, report));
-        listed.add(place, task.as_mut().map(|task| std::mem::take(&mut task.listed)).unwrap_or_default());
-        topics.add(member, index, class, task.as_ref(), report);
+            is_periodic.then(|| task::check(member.component, (index, class), checked, &mut before, report));
+        if let Some(task) = task.as_mut().filter(|task| !task.listed.is_empty()) {
+            listed.add(place, std::mem::take(&mut task.listed));
+        }
+        if !topics.has(index, task.as_ref()) {
+            topics.add(member, index, class, task.as_ref(), report);
+        }
         let (task, renamed) = task.map_or_else(Default::default, Task::into_parts);
         let sound = checked.is_sound && is_periodic == task.is_some();
         let queue = class.slots.queue.and_then(|queue| checked.at(queue)).map(|given| given.place);
-        let unsure = std::mem::take(&mut checked.unsure);
-        let (mut values, elsewhere) = checked.into_values();
+        let Kept { mut values, elsewhere, unsure } = checks.take(place).unwrap_or_default();
         for preset in class.slots.presets {
             if values.iter().all(|(name, _)| *name != preset.0) {
                 values.push(preset.clone());

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use saoms_api::PropertyValue;
 
-use super::checked::{Checked, Elsewhere};
+use super::checked::{Checks, Elsewhere, Open};
 use super::described;
 use super::fleet::{Member, Unit};
 use super::lacking;
@@ -59,16 +59,17 @@ impl<'a> Giver<'_, 'a> {
     }
 }
 
-/// Checks the properties that somebody gives to a component of a class, or to a loop.
+/// Checks the properties that somebody gives to a component of a class, or to a loop, and adds what they come to.
 pub(super) fn check<'a>(
     giver: &Giver<'_, 'a>,
     slots: &Slots<'a>,
     parameters: &mut Parameters<'a>,
     values: &mut Values<'a>,
+    checks: &mut Checks,
     report: &mut Report<'_>,
-) -> Checked {
+) {
     let member = giver.member;
-    let mut given = Checked::with_capacity(giver.properties.len());
+    let mut given = checks.start(giver.properties.len());
     let mut first = values.first(slots.all.len());
     // Those whose `source` is right, and has no value.
     let mut unset: Vec<&Text> = Vec::new();
@@ -114,7 +115,9 @@ pub(super) fn check<'a>(
         match add(&mut given, member, (at, property), (place, slot), parameters, values, report) {
             Ok(false) => unset.push(&property.name),
             Ok(true) => {
-                if let (Some(described), Some(value)) = (giver.described, given.at(place)) {
+                if let Some(described) = giver.described
+                    && let Some(value) = given.so_far().at(place)
+                {
                     described::value(described, name, value, report);
                 }
                 // What lacks the index as the name does, which is reported, can be anything.
@@ -152,7 +155,7 @@ pub(super) fn check<'a>(
         let slot = &slots.all[place];
         let Some(declaration) = slot.main() else { continue };
         let is_given = is_sound && unset.is_empty() && first[place].is_some();
-        if is_given || given.at(place).is_some() {
+        if is_given || given.so_far().at(place).is_some() {
             continue;
         }
         let name = declaration.name.as_str();
@@ -183,24 +186,22 @@ pub(super) fn check<'a>(
     }
     unsure.sort_unstable();
     unsure.dedup();
-    given.is_sound = is_sound && !member.is_partial;
-    given.unsure = unsure;
-    given
+    given.finish(is_sound && !member.is_partial, unsure);
 }
 
 /// The places of the properties that an unknown name may stand for: the one that is spelt alike, or else any number that is not given.
-fn meant(name: &str, slots: &Slots<'_>, given: &Checked) -> Vec<usize> {
+fn meant(name: &str, slots: &Slots<'_>, given: &Open<'_>) -> Vec<usize> {
     if let Some(place) = nearest(name, slots.names()).and_then(|near| slots.place(near)) {
         return vec![place];
     }
-    let open = slots.all.iter().enumerate().filter(|(place, _)| given.at(*place).is_none());
+    let open = slots.all.iter().enumerate().filter(|(place, _)| given.so_far().at(*place).is_none());
     let numbers = open.filter(|(_, slot)| slot.own.is_some_and(PropertyDeclaration::is_number));
     numbers.map(|(place, _)| place).collect()
 }
 
 /// Adds the value of a property, which stands `at` this place of the component's own; `false` when its `source` has none.
 fn add<'a>(
-    given: &mut Checked,
+    given: &mut Open<'_>,
     member: &Member<'a>,
     (at, property): (usize, &'a Property),
     slot: (usize, &Slot<'a>),
@@ -232,7 +233,7 @@ fn add<'a>(
 
 /// Adds what was found for a property, as the class takes it.
 fn convert(
-    given: &mut Checked,
+    given: &mut Open<'_>,
     property: &Property,
     found: Raw<'_>,
     used: Use,

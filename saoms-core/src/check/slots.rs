@@ -58,8 +58,7 @@ impl<'r> Slot<'r> {
             (Some(only), None) | (None, Some(only)) => (only.name.as_str(), only.plain_bounds()),
             _ => (own.map_or("", |own| &own.name), None),
         };
-        let mut all = own.into_iter().chain(task);
-        let takes_any = all.all(|one| one.kind == PropertyKind::String && one.allowed.is_empty());
+        let takes_any = own.into_iter().chain(task).all(PropertyDeclaration::takes_any_text);
         let is_task_id = task.is_some_and(|task| task.name == ID);
         let takes_text = own.or(task).is_some_and(|main| !main.many && main.kind != PropertyKind::Complex);
         Self { name: name.into(), own, task, bounds, takes_text, takes_any, is_task_id }

@@ -33,6 +33,7 @@ pub(super) struct Task<'a> {
 
 impl Task<'_> {
     /// The settings, and the new names of topics with their places.
+    #[inline]
     pub(super) fn into_parts(self) -> (Option<Settled>, Vec<(String, Location)>) {
         if self.renames.is_empty() {
             return (self.settings, Vec::new());
@@ -87,7 +88,7 @@ struct Known {
 
 impl Before {
     /// The settings of the task before with the ID of this component, where all else is the same.
-    fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: &Checked) -> Option<Settled> {
+    fn with_id(&self, index: usize, class: &ClassIndex<'_>, checked: Checked<'_>) -> Option<Settled> {
         let Known { others, settings, .. } = self.0.as_ref().filter(|known| known.index == index)?;
         let mut id = None;
         let mut others = others.iter();
@@ -106,7 +107,7 @@ impl Before {
         }
     }
 
-    fn keep(&mut self, index: usize, class: &ClassIndex<'_>, checked: &Checked, settings: &Settled) {
+    fn keep(&mut self, index: usize, class: &ClassIndex<'_>, checked: Checked<'_>, settings: &Settled) {
         let values = || checked.of_task(&class.slots);
         if !values().all(|(place, _)| ALONE.contains(&class.slots.all[place].name.as_str())) {
             return;
@@ -121,7 +122,7 @@ impl Before {
 pub(super) fn check<'a>(
     component: &Component,
     (index, class): (usize, &ClassIndex<'a>),
-    checked: &Checked,
+    checked: Checked<'_>,
     before: &mut Before,
     report: &mut Report<'_>,
 ) -> Task<'a> {
@@ -154,7 +155,7 @@ pub(super) fn check<'a>(
 fn settings(
     component: &Component,
     class: &ClassIndex<'_>,
-    checked: &Checked,
+    checked: Checked<'_>,
     renames: &[(String, String)],
     report: &mut Report<'_>,
 ) -> Option<TaskSettings> {
@@ -258,7 +259,7 @@ fn renames<'a>(
 }
 
 /// Reports a component that has topics and must not use them.
-fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, report: &mut Report<'_>) {
+fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: Checked<'_>, report: &mut Report<'_>) {
     let Some(given) = checked.get(&class.slots, "useJMS") else { return };
     if !class.has_topics() || bool::from_value(given.value) != Ok(false) {
         return;
@@ -288,7 +289,7 @@ fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &Checked, rep
 fn combinations(
     component: &Component,
     class: &ClassIndex<'_>,
-    checked: &Checked,
+    checked: Checked<'_>,
     settings: &TaskSettings,
     report: &mut Report<'_>,
 ) {
@@ -321,7 +322,12 @@ fn combinations(
     credentials(checked, class, settings, report);
 }
 
-fn credentials(checked: &Checked, class: &ClassIndex<'_>, settings: &TaskSettings, report: &mut Report<'_>) {
+fn credentials(
+    checked: Checked<'_>,
+    class: &ClassIndex<'_>,
+    settings: &TaskSettings,
+    report: &mut Report<'_>,
+) {
     let is_empty =
         |value: &PropertyValue| matches!(value, PropertyValue::Text(text) if text.trim().is_empty());
     let given = |name: &str| checked.get(&class.slots, name).filter(|given| !is_empty(given.value));

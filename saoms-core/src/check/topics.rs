@@ -30,6 +30,11 @@ struct End<'a> {
 }
 
 impl<'a> Topics<'a> {
+    /// Whether the topics of a component were added already: all of a class say the same, and the first speaks for them.
+    pub(super) fn has(&self, index: usize, task: Option<&Task<'_>>) -> bool {
+        task.is_none_or(|task| task.renames.is_empty()) && self.plain.get(index) == Some(&true)
+    }
+
     /// Adds the topics of a component.
     pub(super) fn add(
         &mut self,
@@ -41,13 +46,10 @@ impl<'a> Topics<'a> {
     ) {
         let renames = task.map_or(&[][..], |task| &task.renames[..]);
         if renames.is_empty() {
-            // All components of a class say the same: the first speaks for them.
             if self.plain.len() <= index {
                 self.plain.resize(index + 1, false);
             }
-            if std::mem::replace(&mut self.plain[index], true) {
-                return;
-            }
+            self.plain[index] = true;
         }
         let published = class.publishes.iter().map(|topic| ("publishes", *topic));
         // What is published as well has been held against the others once.

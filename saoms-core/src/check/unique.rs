@@ -31,7 +31,7 @@ pub(super) struct Sieve {
 
 impl Sieve {
     /// Adds what a component gives, or what its class presets.
-    pub(super) fn add(&mut self, member: &Member<'_>, class: &ClassIndex<'_>, checked: &Checked) {
+    pub(super) fn add(&mut self, member: &Member<'_>, class: &ClassIndex<'_>, checked: Checked<'_>) {
         for (value, _, slot, declaration) in uses(member, class, checked) {
             let word = declaration.unique.as_deref().map(|word| self.hasher.hash_one((&value, word)));
             let task = slot.is_task_id.then(|| self.hasher.hash_one(&value));
@@ -50,7 +50,7 @@ impl Sieve {
 fn uses<'u, 'r>(
     member: &'u Member<'_>,
     class: &'u ClassIndex<'r>,
-    checked: &'u Checked,
+    checked: Checked<'u>,
 ) -> impl Iterator<Item = (Canonical, Location, &'u Slot<'r>, &'r PropertyDeclaration)> {
     let slots = class.slots.unique.iter().filter(|_| !member.is_partial);
     slots.filter_map(move |&place| {
@@ -103,7 +103,7 @@ impl<'a> Unique<'a> {
         &mut self,
         (place, fleet): (usize, &Fleet<'_>),
         class: &ClassIndex<'a>,
-        checked: &Checked,
+        checked: Checked<'_>,
         report: &mut Report<'_>,
     ) {
         // Fleets are limited to fewer.
@@ -246,8 +246,7 @@ impl Canonical {
     fn of(value: &PropertyValue, slot: &Slot<'_>) -> Option<Self> {
         let (text, declaration) = (value.as_text()?, slot.main()?);
         if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
-            let trimmed = text.trim();
-            return Some(Self::Text(if trimmed.len() == text.len() { text.clone() } else { trimmed.into() }));
+            return Some(Self::Text(trimmed(text)));
         }
         if let Some(number) = slot.number(text) {
             return Some(Self::Integer(number.into()));
@@ -263,6 +262,14 @@ impl Canonical {
             Scalar::Boolean(value) => Self::Text(value.to_string().into()),
             Scalar::Text(text) => Self::Text(text.into()),
         })
+    }
+}
+
+/// A text without the blanks around it, of which most have none.
+fn trimmed(text: &SmolStr) -> SmolStr {
+    match text.as_bytes() {
+        [first, .., last] if first.is_ascii_graphic() && last.is_ascii_graphic() => text.clone(),
+        _ => text.trim().into(),
     }
 }
 

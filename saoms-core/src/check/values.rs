@@ -65,12 +65,14 @@ struct Before<'a> {
 
 impl<'a> Values<'a> {
     /// The place in the class of the property that is written `at` this place, where that is the one of this name that was there before.
+    #[inline]
     pub(super) fn expected(&self, at: usize, slots: &Slots<'_>, name: &SmolStr) -> Option<usize> {
         let place = self.before.get(at)?.place;
         (slots.all.get(place)?.name == *name).then_some(place)
     }
 
     /// Whether the property that is written `at` this place had this very text before.
+    #[inline]
     pub(super) fn is_as_before(&mut self, at: usize, (place, slot): (usize, &Slot<'a>), text: &Text) -> bool {
         let is_same = |one: Option<&PropertyDeclaration>, other: Option<&PropertyDeclaration>| {
             one.map(std::ptr::from_ref) == other.map(std::ptr::from_ref)

@@ -141,6 +141,11 @@ impl PropertyDeclaration {
         self.with_rule(PlainBounds::of)
     }
 
+    /// Whether it takes any text that is not blank.
+    pub(crate) fn takes_any_text(&self) -> bool {
+        self.with_rule(|rule| rule.takes_any_text())
+    }
+
     /// What is expected, as in `a whole number from 1 to 99 [%]`.
     pub fn expected(&self) -> String {
         if self.kind == PropertyKind::Complex {

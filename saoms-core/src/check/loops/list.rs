@@ -19,7 +19,7 @@ use crate::xml::escaped;
 pub(super) fn plan<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: &Checked,
+    checked: Checked<'_>,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {
@@ -99,7 +99,7 @@ pub(super) fn plan<'a>(
 }
 
 /// The value that says which loops of its class a component has.
-pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked) -> Option<&'c str> {
+pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: Checked<'c>) -> Option<&'c str> {
     let place = class.slots.choice?;
     let slot = &class.slots.all[place];
     let given = checked.at(place).map(|given| given.value);
@@ -113,7 +113,7 @@ pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c Checked) -> Opt
 fn by_default<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: &Checked,
+    checked: Checked<'_>,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {

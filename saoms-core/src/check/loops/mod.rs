@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use smol_str::SmolStr;
 
-use super::checked::{Checked, Elsewhere};
+use super::checked::{Checks, Elsewhere, Kept};
 use super::classes::ClassIndex;
 use super::findings::Subject;
 use super::fleet::{Fleet, Kind, Member};
@@ -76,7 +76,7 @@ struct Usual {
 pub(super) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
     classes: &mut Vec<ClassIndex<'a>>,
-    checked: &[Option<Box<Checked>>],
+    checks: &Checks,
     registry: &'a Registry,
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
@@ -89,10 +89,10 @@ pub(super) fn resolve<'a>(
     // Those of the component before, which this one mostly has as well.
     let mut before: Option<Usual> = None;
     let mut all = Vec::with_capacity(fleet.members.len());
-    for (place, checked) in checked.iter().enumerate() {
+    for place in 0..fleet.members.len() {
         let member = &fleet.members[place];
         report.about(member);
-        let (Kind::Class(index), Some(checked)) = (member.kind, checked) else {
+        let (Kind::Class(index), Some(checked)) = (member.kind, checks.get(place)) else {
             without_class(member, parameters, report);
             all.push(None);
             continue;
@@ -156,12 +156,13 @@ fn resolved<'a>(
         if let Some(element) = one.element {
             let slots = Slots::of_loop(class);
             let giver = Giver::looping(element, member);
-            let checked = properties::check(&giver, &slots, parameters, values, report);
-            if !checked.is_sound {
+            let mut own = Checks::default();
+            properties::check(&giver, &slots, parameters, values, &mut own, report);
+            if own.get(0).is_none_or(|checked| !checked.is_sound) {
                 continue;
             }
-            let elsewhere;
-            (spec.values, elsewhere) = checked.into_values();
+            let Kept { values, elsewhere, .. } = own.take(0).unwrap_or_default();
+            spec.values = values;
             changed.push(Changed { place: specs.len(), element, elsewhere });
         }
         specs.push(spec);
