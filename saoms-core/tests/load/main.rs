@@ -9,6 +9,7 @@ mod exchange;
 mod files;
 mod folders;
 mod format;
+mod forms;
 mod graph;
 mod imports;
 mod intents;

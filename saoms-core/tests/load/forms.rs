@@ -1,0 +1,72 @@
+//! Parts of real composites that come again are read as they are the first time.
+
+use std::ops::Range;
+
+use saoms_core::diagnostic::{Diagnostic, Diagnostics};
+use saoms_core::load::load_file;
+use saoms_core::model::Composite;
+use saoms_core::source::Sources;
+use saoms_core::xml::{Document, Element};
+
+use crate::files::{Sample, all};
+
+/// How often each part stands there.
+const TIMES: usize = 3;
+
+/// The composite with all of its parts several times over. Behind each start tag in it is a filler: the same in all parts, or a comment of the
+/// same length that is another one in each, so that no part is written as one before it.
+fn repeated(document: &Document, is_like: bool) -> String {
+    let (text, root) = (document.text(), document.root());
+    let content = root.content_span();
+    let slice = |range: Range<u32>| &text[range.start as usize..range.end as usize];
+    let mut out = slice(0..content.start).to_owned();
+    let mut count = 0;
+    for part in (0..TIMES).flat_map(|_| root.children()) {
+        let (span, tag) = (part.span(), part.start_tag_span());
+        out.push_str(slice(span.start..tag.end));
+        if tag.end < span.end {
+            let comment = format!("<!--{count:05}-->");
+            out.push_str(if is_like { "            " } else { &comment });
+            count += 1;
+        }
+        out.push_str(slice(tag.end..span.end));
+        out.push('\n');
+    }
+    out + slice(content.end..text.len() as u32)
+}
+
+fn loaded(text: &str) -> (Composite, Vec<Diagnostic>) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = sources.add("t.composite", text);
+    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    (composite, diagnostics.into_sorted())
+}
+
+#[test]
+fn parts_that_come_again_are_read_as_the_first_time() {
+    let mut again = 0;
+    for Sample { name, text } in all() {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let file = sources.add(name.as_str(), text);
+        let Some(composite) = load_file(file, &sources, &mut diagnostics) else { continue };
+        let [like, unlike] = [true, false].map(|is_like| repeated(&composite.document, is_like));
+        let ((one, told), (other, expected)) = (loaded(&like), loaded(&unlike));
+        assert_eq!(told, expected, "{name}");
+        assert!(one.components == other.components, "{name}: {:#?} {:#?}", one.components, other.components);
+        assert!(one.properties == other.properties && one.services == other.services, "{name}");
+        assert!(one.references == other.references && one.wires == other.wires, "{name}");
+        assert_eq!(shown(&one), shown(&other), "{name}");
+        again += one.components.len() - composite.components.len();
+    }
+    assert!(again > 20, "{again} components came again");
+}
+
+/// The tree, element by element.
+fn shown(composite: &Composite) -> Vec<String> {
+    let shown = |element: Element<'_>| {
+        let attributes: Vec<_> = element.attributes().map(|one| (one.span(), one.namespace())).collect();
+        let places = (element.span(), element.content_span(), element.parent().map(Element::id));
+        format!("{} {places:?} {attributes:?} {}", element.name(), element.has_text())
+    };
+    composite.document.elements().map(shown).collect()
+}
