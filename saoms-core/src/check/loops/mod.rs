@@ -28,8 +28,9 @@ use crate::registry::{LoopClass, Registry};
 pub(super) struct Resolved<'a> {
     /// In their order; components that say nothing about them share those of their class.
     pub(super) specs: Arc<[LoopSpec]>,
-    /// Those that the composite says something about.
-    changed: Box<[Changed<'a>]>,
+    /// Those that the composite says something about: a pointer of one word, as few components have any.
+    #[expect(clippy::box_collection, reason = "of a large fleet, a word of each component matters")]
+    changed: Option<Box<Vec<Changed<'a>>>>,
 }
 
 /// A loop that the composite says something about.
@@ -43,7 +44,7 @@ struct Changed<'a> {
 impl Resolved<'_> {
     /// Those that the composite says something about, for the judgement of their constructors: the others are as their class has them.
     pub(super) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
-        self.changed.iter().map(|one| {
+        self.changed.iter().flat_map(|changed| changed.iter()).map(|one| {
             let (spec, Loop { name, properties, .. }) = (&self.specs[one.place], one.element);
             let (values, elsewhere) = (&spec.values, &one.elsewhere);
             (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, elsewhere })
@@ -107,7 +108,7 @@ pub(super) fn resolve<'a>(
             }
             if let Some(Usual { with, specs, .. }) = &before {
                 fleet.members[place].kind = Kind::Class(*with);
-                all.push(Some(Resolved { specs: Arc::clone(specs), changed: Box::default() }));
+                all.push(Some(Resolved { specs: Arc::clone(specs), changed: None }));
                 continue;
             }
         }
@@ -167,7 +168,8 @@ fn resolved<'a>(
         }
         specs.push(spec);
     }
-    (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed: changed.into() })
+    let changed = (!changed.is_empty()).then(|| Box::new(changed));
+    (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed })
 }
 
 /// Looks at where the properties of loops without a class take their values from.
