@@ -100,7 +100,7 @@ pub use nearest::{nearest, nearest_few};
 pub use property::{Properties, PropertyField, PropertyValue};
 pub use registration::Registration;
 pub use report::{ReportValue, Work};
-pub use rule::{Code, ComponentView, Fact, FleetRule, FleetView, Severity};
+pub use rule::{ClassView, Code, ComponentView, Fact, FleetRule, FleetView, Severity};
 pub use saved::Saved;
 pub use service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
 pub use task::{TaskInterface, TaskInterfaceReference};

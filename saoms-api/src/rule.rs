@@ -53,7 +53,7 @@ pub struct Code {
 ///
 /// /// One clock is enough.
 /// fn one_clock(fleet: &FleetView<'_>) -> Vec<Finding> {
-///     let clocks = fleet.components().iter().enumerate().filter(|(_, component)| component.class == "example.Clock");
+///     let clocks = fleet.components().iter().enumerate().filter(|(_, component)| component.class.name == "example.Clock");
 ///     clocks.skip(1).map(|(index, _)| Finding::new(Place::component(index), "this is a second clock").help("keep one")).collect()
 /// }
 ///
@@ -126,7 +126,7 @@ pub struct FleetView<'a> {
 /// impl Fact for Clocks {
 ///     fn of(fleet: &FleetView<'_>) -> Clocks {
 ///         let all = fleet.components().iter().enumerate();
-///         Clocks(all.filter(|(_, component)| component.class == "example.Clock").map(|(index, _)| index).collect())
+///         Clocks(all.filter(|(_, component)| component.class.name == "example.Clock").map(|(index, _)| index).collect())
 ///     }
 /// }
 ///
@@ -185,7 +185,11 @@ impl<'a> FleetView<'a> {
         let mut last: Option<(&'a ComponentView<'a>, Kinship)> = None;
         self.components.iter().enumerate().filter_map(move |(index, component)| {
             let kinship = match last {
-                Some((known, kinship)) if std::ptr::eq(known.declaration, component.declaration) => kinship,
+                Some((known, kinship))
+                    if std::ptr::eq(known.class.declaration, component.class.declaration) =>
+                {
+                    kinship
+                }
                 _ => component.kinship::<C>(),
             };
             last = Some((component, kinship));
@@ -215,27 +219,34 @@ enum Kinship {
     None,
 }
 
+/// A class with loops, as rules see it.
+#[derive(Clone, Debug)]
+pub struct ClassView<'a> {
+    /// Its name, as declared.
+    pub name: &'a str,
+    /// Its declaration.
+    pub declaration: &'a str,
+    /// The declarations of the classes that it extends, the nearest first.
+    pub extends: Vec<&'a str>,
+    /// The topics that it and the loops publish, by their names before any `topicRename`.
+    pub publishes: Vec<&'a str>,
+    /// The classes of the loops, in their order.
+    pub loops: Vec<&'a str>,
+}
+
 /// A component of a fleet, as rules see it.
 #[derive(Clone, Debug)]
 pub struct ComponentView<'a> {
     /// Its path in the composite.
     pub path: &'a str,
-    /// The name of its class, as declared.
-    pub class: &'a str,
-    /// The declaration of its class.
-    pub declaration: &'a str,
-    /// The declarations of the classes that its class extends, the nearest first.
-    pub extends: Rc<[&'a str]>,
+    /// Its class, which it shares with others of the same loops.
+    pub class: Rc<ClassView<'a>>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: &'a [(SmolStr, PropertyValue)],
     /// From one execution to the next, where it is periodic.
     pub period: Option<Duration>,
     /// Whether its messages go to a broker, where others may be that this fleet does not know.
     pub has_broker: bool,
-    /// The topics that it publishes, by their names before any `topicRename`.
-    pub publishes: Rc<[&'a str]>,
-    /// The classes of its loops, in their order.
-    pub loops: Rc<[&'a str]>,
     /// Its references that are wired, and the index of the component that each leads to.
     pub wires: &'a [(&'a str, usize)],
 }
@@ -247,9 +258,9 @@ impl ComponentView<'_> {
     }
 
     fn kinship<C: Class>(&self) -> Kinship {
-        match self.declaration == C::DECLARATION {
+        match self.class.declaration == C::DECLARATION {
             true => Kinship::Same,
-            false if self.extends.contains(&C::DECLARATION) => Kinship::Extends,
+            false if self.class.extends.contains(&C::DECLARATION) => Kinship::Extends,
             false => Kinship::None,
         }
     }

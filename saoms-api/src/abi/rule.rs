@@ -1,7 +1,8 @@
 use std::ffi::c_void;
+use std::rc::Rc;
 use std::time::Duration;
 
-use crate::{ComponentView, Failure, Finding, FleetRule, FleetView};
+use crate::{ClassView, ComponentView, Failure, Finding, FleetRule, FleetView};
 
 use super::data::{PropertyViews, list};
 use super::guard::guarded;
@@ -176,14 +177,16 @@ impl MemberView {
         unsafe {
             Ok(ComponentView {
                 path: self.path.get_text()?,
-                class: self.class_name.get_text()?,
-                declaration: self.declaration.get_text()?,
+                class: Rc::new(ClassView {
+                    name: self.class_name.get_text()?,
+                    declaration: self.declaration.get_text()?,
+                    extends: self.extends.read()?,
+                    publishes: self.publishes.read()?,
+                    loops: self.loops.read()?,
+                }),
                 values,
                 period: (self.period != u64::MAX).then(|| Duration::from_nanos(self.period)),
                 has_broker: self.has_broker != 0,
-                extends: self.extends.read()?.into(),
-                publishes: self.publishes.read()?.into(),
-                loops: self.loops.read()?.into(),
                 wires,
             })
         }
@@ -219,7 +222,9 @@ impl ImportedRule {
         let values: Vec<_> = components.iter().map(|one| PropertyViews::of(one.values)).collect();
         let texts: Vec<_> = components
             .iter()
-            .map(|one| [&one.extends, &one.publishes, &one.loops].map(|texts| Texts::of(texts)))
+            .map(|one| {
+                [&one.class.extends, &one.class.publishes, &one.class.loops].map(|texts| Texts::of(texts))
+            })
             .collect();
         let wires: Vec<Vec<_>> = components
             .iter()
@@ -236,8 +241,8 @@ impl ImportedRule {
             .enumerate()
             .map(|(place, one)| MemberView {
                 path: Bytes::text(one.path),
-                class_name: Bytes::text(one.class),
-                declaration: Bytes::text(one.declaration),
+                class_name: Bytes::text(one.class.name),
+                declaration: Bytes::text(one.class.declaration),
                 extends: texts[place][0].list(),
                 values: values[place].top.as_ptr(),
                 value_count: values[place].top.len(),

@@ -2,13 +2,14 @@
 
 use saoms_api::abi::{ClassTable, ImportedClass, ImportedLoopClass, ImportedRule, LoopClassTable, RuleTable};
 use saoms_api::{
-    CallError, Cause, Class, Code, Component, ComponentView, Context, DynComponent, DynLoop, Effector,
-    Entries, Entry, Extras, Failure, Field, Finding, FleetRule, FleetView, Header, Invocation, Knowledge,
-    Level, Loop, LoopClass, LoopRegistration, Loops, Message, Place, Properties, PropertyValue, Publisher,
-    Record, Registration, ReportValue, Severity, SharedMessage, SmolStr, Subscription, Time, Topic,
-    TypedCall, Work, interface, record,
+    CallError, Cause, Class, ClassView, Code, Component, ComponentView, Context, DynComponent, DynLoop,
+    Effector, Entries, Entry, Extras, Failure, Field, Finding, FleetRule, FleetView, Header, Invocation,
+    Knowledge, Level, Loop, LoopClass, LoopRegistration, Loops, Message, Place, Properties, PropertyValue,
+    Publisher, Record, Registration, ReportValue, Severity, SharedMessage, SmolStr, Subscription, Time,
+    Topic, TypedCall, Work, interface, record,
 };
 
+use std::rc::Rc;
 use std::time::Duration;
 
 use crate::host::FakeHost;
@@ -416,20 +417,23 @@ static SHOWN: FleetRule = FleetRule {
 #[test]
 fn a_rule_finds_the_same_behind_the_boundary() {
     let values = values("nowhere");
+    let class = ClassView {
+        name: "test.Busy",
+        declaration: Busy::DECLARATION,
+        extends: vec!["{}", "{1}"],
+        publishes: vec!["A", "B"],
+        loops: vec!["test.Dimmer"],
+    };
     let one = ComponentView {
         path: "hall/robot",
-        class: "test.Busy",
-        declaration: Busy::DECLARATION,
-        extends: ["{}", "{1}"].into(),
+        class: Rc::new(class.clone()),
         values: &values,
         period: Some(Duration::from_millis(50)),
         has_broker: true,
-        publishes: ["A", "B"].into(),
-        loops: ["test.Dimmer"].into(),
         wires: &[("adder", 1)],
     };
-    let other =
-        ComponentView { period: None, has_broker: false, values: &[], publishes: [].into(), ..one.clone() };
+    let class = Rc::new(ClassView { publishes: Vec::new(), ..class });
+    let other = ComponentView { class, period: None, has_broker: false, values: &[], ..one.clone() };
     // SAFETY: the function of the table is this crate's own.
     let imported = unsafe { ImportedRule::new(RuleTable::of(&SHOWN)) };
     for missing in [

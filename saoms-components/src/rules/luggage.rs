@@ -23,8 +23,9 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let area = area(fleet);
-    let says =
-        |component: &ComponentView<'_>| component.has_broker || component.publishes.contains(&AREA.name());
+    let says = |component: &ComponentView<'_>| {
+        component.has_broker || component.class.publishes.contains(&AREA.name())
+    };
     let is_said = fleet.misses::<World>() || fleet.components().iter().any(says);
     let (mut findings, mut looks) = (Vec::new(), Looks::default());
     for piece in luggage(fleet) {

@@ -46,14 +46,16 @@ impl Deref for Robots {
 
 impl Fact for Robots {
     fn of(fleet: &FleetView<'_>) -> Robots {
-        let known = fleet.all::<Robot>().filter_map(|(index, properties)| {
+        // Of a large fleet most components are robots, and a list that grows is moved again and again.
+        let mut known = Vec::with_capacity(fleet.indices::<Robot>().count());
+        known.extend(fleet.all::<Robot>().filter_map(|(index, properties)| {
             let number = properties.number().ok()?;
             let charger = properties.charge_block(number).ok()?;
             let world = fleet.components()[index].target("world");
             Some(Known { index, number, charger, world, properties })
-        });
+        }));
         Robots {
-            known: known.collect(),
+            known,
             may_be_others: fleet.components().iter().any(|component| component.has_broker)
                 || publishes_beside_robots(fleet, ROBOT_LIST.name()),
         }
@@ -64,8 +66,9 @@ impl Fact for Robots {
 pub(super) fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> bool {
     let mut robots = fleet.indices::<Robot>().peekable();
     let mut components = fleet.components().iter().enumerate();
-    components
-        .any(|(index, component)| robots.next_if_eq(&index).is_none() && component.publishes.contains(&topic))
+    components.any(|(index, component)| {
+        robots.next_if_eq(&index).is_none() && component.class.publishes.contains(&topic)
+    })
 }
 
 /// The robots, in their order, that share a key with one before them, each with the first that has it.

@@ -105,6 +105,8 @@ pub(super) struct Checks {
     given: Vec<Entry>,
     /// The values that all of them give for properties of tasks alone.
     of_tasks: Vec<PropertyValue>,
+    /// How many values the component before gives, and how many of own properties: most have as many.
+    before: (usize, usize),
 }
 
 /// No place: fleets are limited to fewer components.
@@ -139,6 +141,7 @@ impl Checks {
             all: Vec::with_capacity(with_class),
             given: Vec::with_capacity(given),
             of_tasks: Vec::with_capacity(with_class),
+            before: (0, 0),
         }
     }
 
@@ -170,7 +173,8 @@ impl Checks {
 
     /// Starts the next component, which gives at most so many values.
     pub(super) fn start(&mut self, count: usize) -> Open<'_> {
-        Open { start: self.given.len(), values: Vec::with_capacity(count), next: 0, checks: self }
+        let own = if count == self.before.0 { self.before.1 } else { count };
+        Open { start: self.given.len(), count, values: Vec::with_capacity(own), next: 0, checks: self }
     }
 }
 
@@ -178,6 +182,7 @@ impl Checks {
 pub(super) struct Open<'c> {
     checks: &'c mut Checks,
     start: usize,
+    count: usize,
     values: Vec<(SmolStr, PropertyValue)>,
     /// From this place on own properties have no value yet.
     next: usize,
@@ -237,7 +242,8 @@ impl Open<'_> {
 
     /// That is all; said with it is whether there was no fault, and which properties' values cannot be known for such.
     pub(super) fn finish(self, is_sound: bool, unsure: Vec<usize>) {
-        let Self { checks, start, values, .. } = self;
+        let Self { checks, start, count, values, .. } = self;
+        checks.before = (count, values.len());
         // Fleets are limited to fewer.
         let given = (start as u32, checks.given.len() as u32);
         checks.of.push(checks.all.len() as u32);

@@ -24,6 +24,9 @@ use crate::xml::escaped;
 impl<'a> Fleet<'a> {
     /// What a file beside the implementation of a component says about it.
     pub(super) fn component_type(&self, member: usize) -> Option<&'a ComponentType> {
+        if !self.contribution.describes_any() {
+            return None;
+        }
         let implementation = self.members[member].component.implementation.as_ref()?;
         self.contribution.component_type(implementation.origin)
     }
@@ -60,6 +63,9 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
             described.version,
             report,
         );
+    }
+    if !fleet.contribution.describes_any() {
+        return;
     }
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);

@@ -28,7 +28,7 @@ pub(super) struct Known<'a> {
 impl<'a> Fleet<'a> {
     /// What a file says of a component that is taken as given; `None` where there is none, and for all other components.
     pub(super) fn known(&self, member: usize) -> Option<Known<'a>> {
-        if self.members[member].kind != Kind::Given {
+        if self.members[member].kind != Kind::Given || !self.contribution.describes_any() {
             return None;
         }
         let kind = &self.members[member].component.implementation.as_ref()?.kind;
@@ -185,6 +185,10 @@ pub(super) fn unwired<'f>(
     report: &mut Report<'_>,
 ) {
     let member = &fleet.members[place];
+    // Neither it nor a file says that a reference needs a target.
+    if member.is_usual && !fleet.contribution.describes_any() {
+        return;
+    }
     let component = member.component;
     let is_promoted = |name| promoted.contains(&(member.scope, component.name.as_str(), name));
     if member.kind != Kind::Given || is_promoted(None) || is_wired("") || fleet.lacks_include(member.scope) {

@@ -248,7 +248,7 @@ fn examine<T>(
 
 /// The files of values of components that are taken as given may come with what implements them: that they are not there is a warning.
 fn elsewhere(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    let given = fleet.members.iter().filter(|member| member.kind == Kind::Given);
+    let given = fleet.members.iter().filter(|member| member.kind == Kind::Given && !member.is_usual);
     let properties = given.flat_map(|member| &member.component.properties);
     let places: HashSet<Location> = properties.filter_map(|one| Some(one.file()?.location)).collect();
     report.diagnostics().adjust(0, |one| {
@@ -262,14 +262,20 @@ fn elsewhere(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 struct Resolved<'r> {
     /// The values of the class's own properties.
     values: Vec<(SmolStr, PropertyValue)>,
-    /// Those that are not one text in the composite, for their places.
-    elsewhere: Vec<Elsewhere>,
     task: Option<Settled>,
+    loops: loops::Resolved<'r>,
+    /// What few have.
+    more: Option<Box<More>>,
+}
+
+/// What the properties of few components come to.
+struct More {
+    /// The values that are not one text in the composite, for their places.
+    elsewhere: Vec<Elsewhere>,
     /// Where its topics got other names.
     renamed: Vec<(String, Location)>,
     /// Where its `queue` is written.
     queue: Option<Location>,
-    loops: loops::Resolved<'r>,
 }
 
 /// What is known of the properties of a component with a fault.
@@ -284,7 +290,8 @@ struct Half {
 
 impl Resolved<'_> {
     fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
-        Subject::of(member, &self.values, &self.elsewhere)
+        let elsewhere = self.more.as_ref().map_or(&[][..], |more| &more.elsewhere);
+        Subject::of(member, &self.values, elsewhere)
     }
 }
 
@@ -309,6 +316,15 @@ fn properties<'a>(
             if let Some(checked) = all.get(place) {
                 sieve.add(member, &classes[index], checked);
             }
+            continue;
+        }
+        // A text of which nobody says what it should be.
+        if member.is_single
+            && member.kind == Kind::Given
+            && member.instance.is_none()
+            && fleet.known(place).is_none()
+        {
+            all.add_none();
             continue;
         }
         properties::repeated(member.component, report);
@@ -366,7 +382,11 @@ fn components<'f, 'a>(
             }
         }
         let resolved = match loops.filter(|_| sound) {
-            Some(loops) => Some(Box::new(Resolved { values, elsewhere, task, renamed, queue, loops })),
+            Some(loops) => {
+                let has_more = !elsewhere.is_empty() || !renamed.is_empty() || queue.is_some();
+                let more = has_more.then(|| Box::new(More { elsewhere, renamed, queue }));
+                Some(Box::new(Resolved { values, task, loops, more }))
+            }
             None if member.has_open_values() => None,
             None => {
                 halves.push(Half { member: place, values, elsewhere, unsure });
@@ -412,8 +432,9 @@ impl Sound<'_, '_> {
     fn places(&self) -> Vec<traffic::Place> {
         let runs = self.fleet.members.iter().zip(&self.resolved).filter(|(member, _)| member.runs());
         let places = runs.filter_map(|(member, resolved)| {
-            let resolved = resolved.as_ref()?;
-            let (renamed, queue) = (resolved.renamed.clone(), resolved.queue);
+            let more = resolved.as_ref()?.more.as_deref();
+            let renamed = more.map_or_else(Vec::new, |more| more.renamed.clone());
+            let queue = more.and_then(|more| more.queue);
             Some(traffic::Place { name: member.component.name.location, renamed, queue })
         });
         places.collect()

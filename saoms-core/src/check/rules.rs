@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::rc::Rc;
 
-use saoms_api::{ComponentView, FleetView};
+use saoms_api::{ClassView, ComponentView, FleetView};
 
 use super::Resolved;
 use super::classes::ClassIndex;
@@ -35,8 +35,10 @@ pub(super) fn check<'s>(
     // One of each class is enough, and one for all of which nobody knows the class.
     let mut missing: Vec<Option<Vec<&'s str>>> = Vec::new();
     let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
+    let mut missed: Option<Option<*const ClassIndex<'_>>> = None;
     let mut miss = |missing: &mut Vec<_>, class: Option<&'s ClassIndex<'_>>| {
-        if known.insert(class.map(std::ptr::from_ref)) {
+        let key = class.map(std::ptr::from_ref);
+        if missed.replace(key) != Some(key) && known.insert(key) {
             missing.push(class.map(declarations));
         }
     };
@@ -70,7 +72,7 @@ pub(super) fn check<'s>(
         let open = parts.iter().filter(|(place, ..)| wiring.of(*place).any(<[_]>::is_empty));
         open.for_each(|(.., class)| miss(&mut missing, Some(class)));
     }
-    let mut lists = Lists::default();
+    let mut before = Before::default();
     let mut wires: Vec<(&str, usize)> = Vec::new();
     let mut ends = Vec::with_capacity(parts.len());
     for (place, _, class) in &parts {
@@ -81,21 +83,13 @@ pub(super) fn check<'s>(
         ends.push(wires.len());
     }
     let mut start = 0;
-    let views = parts.iter().zip(ends).map(|((place, resolved, class), end)| {
-        let declaration = class.class.declaration();
-        let Lists { extends, publishes, loops, .. } = lists.of(class, resolved).clone();
-        ComponentView {
-            path: fleet.members[*place].path(),
-            class: &declaration.name,
-            declaration: class.class.declaration_json(),
-            extends,
-            values: &resolved.values,
-            period: resolved.task.as_ref().map(Settled::period),
-            has_broker: resolved.task.as_ref().is_some_and(Settled::has_broker),
-            publishes,
-            loops,
-            wires: &wires[std::mem::replace(&mut start, end)..end],
-        }
+    let views = parts.iter().zip(ends).map(|((place, resolved, class), end)| ComponentView {
+        path: fleet.members[*place].path(),
+        class: before.of(class, resolved),
+        values: &resolved.values,
+        period: resolved.task.as_ref().map(Settled::period),
+        has_broker: resolved.task.as_ref().is_some_and(Settled::has_broker),
+        wires: &wires[std::mem::replace(&mut start, end)..end],
     });
     let views: Vec<ComponentView<'_>> = views.collect();
     let view = FleetView::new(&views).without(&missing);
@@ -128,30 +122,30 @@ pub(super) fn check<'s>(
     }
 }
 
-/// What all components of a class with the same loops have in common.
-#[derive(Clone, Default)]
-struct Lists<'s> {
-    /// Whose lists these are.
-    of: Option<(&'s Class, &'s [LoopSpec])>,
-    extends: Rc<[&'s str]>,
-    publishes: Rc<[&'s str]>,
-    loops: Rc<[&'s str]>,
-}
+/// The class of the component before, with its loops: most components have those of the one before.
+#[derive(Default)]
+struct Before<'s>(Option<(&'s Class, &'s [LoopSpec], Rc<ClassView<'s>>)>);
 
-impl<'s> Lists<'s> {
-    /// Those of a component: mostly those of the one before.
-    fn of(&mut self, class: &ClassIndex<'s>, resolved: &'s Resolved<'_>) -> &Self {
+impl<'s> Before<'s> {
+    /// The class of a component.
+    fn of(&mut self, class: &ClassIndex<'s>, resolved: &'s Resolved<'_>) -> Rc<ClassView<'s>> {
         let (class, loops): (&'s Class, &'s [LoopSpec]) = (class.class, &resolved.loops.specs);
-        if !self.of.is_some_and(|(of, known)| std::ptr::eq(of, class) && std::ptr::eq(known, loops)) {
-            let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
-            let published = class.declaration().publishes.iter().chain(of_loops);
-            *self = Self {
-                of: Some((class, loops)),
-                extends: class.extended_json().collect(),
-                publishes: published.map(|topic| topic.name.as_str()).collect(),
-                loops: loops.iter().map(|one| one.class.name()).collect(),
-            };
+        if let Some((of, with, view)) = &self.0
+            && std::ptr::eq(*of, class)
+            && std::ptr::eq(*with, loops)
+        {
+            return Rc::clone(view);
         }
-        self
+        let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
+        let published = class.declaration().publishes.iter().chain(of_loops);
+        let view = Rc::new(ClassView {
+            name: &class.declaration().name,
+            declaration: class.declaration_json(),
+            extends: class.extended_json().collect(),
+            publishes: published.map(|topic| topic.name.as_str()).collect(),
+            loops: loops.iter().map(|one| one.class.name()).collect(),
+        });
+        self.0 = Some((class, loops, Rc::clone(&view)));
+        view
     }
 }

@@ -16,7 +16,7 @@ use super::by_name::warm_targets;
 use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
-use super::fleet::{Fleet, Member};
+use super::fleet::{Fleet, Kind, Member};
 use super::given;
 use super::multiplicity::keeps_own;
 use super::promote::{Place, Promoted};
@@ -186,6 +186,9 @@ impl<'f, 'a> Wires<'f, 'a> {
     /// Looks at the targets of a component that has no class: whether they are there is all that can be known.
     fn given(&mut self, member: usize, report: &mut Report<'_>) {
         let fleet = self.fleet;
+        if self.has_usual_targets(member) {
+            return;
+        }
         let Some(names) = fleet.reference_names(member, self.classes) else {
             let component = fleet.members[member].component;
             for reference in &component.references {
@@ -383,6 +386,21 @@ impl<'f, 'a> Wires<'f, 'a> {
         let provider = self.again(text, *scope, Some(&declared.interface)).filter(|_| is_plain)?;
         let is_alone = self.wires_of(member).is_empty() && !self.promoted.concerns(&(member, &declared.name));
         is_alone.then_some(End { provider, place: text.location })
+    }
+
+    /// Whether all that is said about the references of a component that is taken as given is one target each, that there is nothing to be told of:
+    /// what most say.
+    fn has_usual_targets(&self, member: usize) -> bool {
+        let Member { component, scope, kind, is_usual, .. } = &self.fleet.members[member];
+        *kind == Kind::Given
+            && *is_usual
+            && self.wires_of(member).is_empty()
+            && !self.fleet.contribution.describes_any()
+            && component.references.iter().all(|reference| match &reference.targets[..] {
+                [] => true,
+                [only] => self.is_component(only, *scope),
+                _ => false,
+            })
     }
 
     /// Whether a text is nothing but the name of a component that has one service as far as anybody knows: what most targets are.

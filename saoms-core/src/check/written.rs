@@ -28,12 +28,9 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             binding::of_reference(one, composite.version, &composite.document, report);
         }
     }
-    for member in &fleet.members {
+    for member in fleet.members.iter().filter(|member| !member.is_usual) {
         report.about(member);
         let component = member.component;
-        if component.has_plain_parts {
-            continue;
-        }
         // Types and elements are among the details of a property, and few have any.
         for property in component.properties.iter().filter(|property| property.details.is_some()) {
             type_and_element(property, "ASM50035", report);

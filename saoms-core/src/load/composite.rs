@@ -37,6 +37,7 @@ impl Loader<'_> {
             wires: Vec::with_capacity(wires),
             severities: Vec::new(),
             outside: Vec::new(),
+            unusual: Vec::new(),
             policy: self.policy(root),
             name,
         };
@@ -69,6 +70,10 @@ impl Loader<'_> {
             (Family::Sca, "component") => {
                 let component = self.component(child);
                 if !component.is_nothing() {
+                    if !component.is_usual() {
+                        // A text of at most 4 GiB has fewer.
+                        composite.unusual.push(composite.components.len() as u32);
+                    }
                     composite.components.push(component);
                 }
             }

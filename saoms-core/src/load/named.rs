@@ -212,9 +212,10 @@ struct Described {
 fn described(composite: &Composite) -> Vec<Described> {
     let mut all: Vec<Described> = Vec::new();
     let mut seen: Set<&str> = Set::default();
+    let mut before = "";
     for component in &composite.components {
         let Some((origin, written)) = implementation(component, composite) else { continue };
-        if !seen.insert(written) {
+        if std::mem::replace(&mut before, written) == written || !seen.insert(written) {
             continue;
         }
         let paths = component_type::paths(component, composite);

@@ -8,7 +8,7 @@ use super::read;
 use super::table::table;
 use super::value_file::{self, FileValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
-use crate::model::{Component, Composite};
+use crate::model::Composite;
 use crate::source::{Sources, Span, Text};
 
 /// Reads the files that properties of the composite's components and their loops name with `file`, each of at most `max_size` bytes. A name is a URI
@@ -26,8 +26,7 @@ pub fn read_values(
     let folder = own.parent().map(Path::to_owned).unwrap_or_default();
     // Many components may share a file.
     let mut known: HashMap<PathBuf, FileValue> = HashMap::new();
-    let with_more = |one: &&mut Component| !one.has_plain_parts || one.details.is_some();
-    let properties = composite.components.iter_mut().filter(with_more).flat_map(|component| {
+    let properties = composite.unusual_mut().flat_map(|component| {
         let of_loops = component
             .details
             .iter_mut()
@@ -60,7 +59,7 @@ pub fn read_values(
         }
     }
     for replicas in
-        composite.components.iter_mut().filter_map(|component| component.details.as_mut()?.replicas.as_mut())
+        composite.unusual_mut().filter_map(|component| component.details.as_mut()?.replicas.as_mut())
     {
         let Some(file) = &replicas.overrides else { continue };
         let path = folder.join(file.as_str());

@@ -93,9 +93,25 @@ impl Component {
     /// Finds out whether its parts are plain.
     pub(crate) fn find_plain_parts(&mut self) {
         let Self { properties, services, references, .. } = self;
-        self.has_plain_parts = properties.iter().all(|one| one.details.is_none())
+        self.has_plain_parts = properties.iter().all(|one| one.details.is_none() && one.simple.is_some())
             && services.iter().all(|one| one.promote.is_none() && one.contract.is_none())
             && references.iter().all(|one| one.details.is_none() && one.contract.is_none());
+    }
+
+    /// Whether it has plain parts and nothing else than a class: it names no composite, no library and no file, and is no replica.
+    pub(crate) fn is_usual(&self) -> bool {
+        let is_class = |one: &Implementation| {
+            matches!(
+                one.kind,
+                ImplementationKind::Java { .. } | ImplementationKind::Rust { library: None, .. }
+            )
+        };
+        self.has_plain_parts && self.details.is_none() && self.implementation.as_ref().is_none_or(is_class)
+    }
+
+    /// Whether it has no more than one property, one service and one reference.
+    pub(crate) fn has_single_parts(&self) -> bool {
+        self.properties.len() <= 1 && self.services.len() <= 1 && self.references.len() <= 1
     }
 
     /// Whether it has no name and says nothing.

@@ -91,7 +91,7 @@ impl Composite {
     /// All places in it that name other composites, in no order.
     pub fn namings(&self) -> impl Iterator<Item = Naming<'_>> {
         let includes = self.includes.iter().filter_map(Naming::of_include);
-        includes.chain(self.components.iter().filter_map(Naming::of_component))
+        includes.chain(self.unusual().filter_map(Naming::of_component))
     }
 
     /// Its target namespace; empty for none.
@@ -177,6 +177,11 @@ impl Contribution {
     pub fn component_type(&self, implementation: Origin) -> Option<&ComponentType> {
         let place = *self.described.get(&(implementation.file(), implementation.element))?;
         Some(&self.component_types[place?])
+    }
+
+    /// Whether there are implementations with a component type, or without one that should be there.
+    pub(crate) fn describes_any(&self) -> bool {
+        !self.described.is_empty()
     }
 
     /// Whether a component type was looked for and not found.

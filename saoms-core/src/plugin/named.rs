@@ -21,7 +21,7 @@ pub fn open_named(
     let mut wanted: Vec<(Origin, PathBuf, String)> = Vec::new();
     for composite in contribution.composites() {
         let folder = Path::new(sources.get(composite.file()).path()).parent().unwrap_or(Path::new(""));
-        for implementation in composite.components.iter().filter_map(|one| one.implementation.as_ref()) {
+        for implementation in composite.unusual().filter_map(|one| one.implementation.as_ref()) {
             if let ImplementationKind::Rust { library: Some(library), .. } = &implementation.kind {
                 wanted.push((implementation.origin, folder.to_owned(), library.as_str().trim().to_owned()));
             }

@@ -41,7 +41,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
     // The classic rules drive on with an empty battery, and of other robots and loops nothing is known.
     let is_known = |robot: &Known| {
-        let loops = &fleet.components()[robot.index].loops;
+        let loops = &fleet.components()[robot.index].class.loops;
         robot.properties.policy == Policy::Safe && loops.iter().all(|name| name.starts_with("saoms."))
     };
     if robots.is_empty() || !robots.iter().all(is_known) || may_be_others(fleet) {

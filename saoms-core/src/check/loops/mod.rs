@@ -100,7 +100,8 @@ pub(super) fn resolve<'a>(
         };
         let class = &classes[index];
         // A component that says nothing about its loops has them as those have that were there before it.
-        let plain = member.component.loops().is_empty().then(|| (index, list::choice(class, checked)));
+        let has_none = member.is_usual || member.component.loops().is_empty();
+        let plain = has_none.then(|| (index, list::choice(class, checked)));
         if let Some((index, choice)) = plain {
             let is_same = |one: &&Usual| one.of.0 == index && one.of.1.as_deref() == choice;
             if before.as_ref().filter(is_same).is_none() {
@@ -186,6 +187,9 @@ fn sources<'a>(
 
 /// What can be said of the loops of a component that has no class.
 fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
+    if member.is_usual {
+        return;
+    }
     let loops = member.component.loops();
     sources(loops.iter().flat_map(|one| &one.properties), member, parameters, report);
     if let (Kind::Composite(_), Some(first)) = (member.kind, loops.first()) {
