@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::Loader;
+use super::plan::starts_wrongly;
 use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, OutsideKind, OutsideName, Policy, SAOMS_NAMESPACE, Version};
@@ -238,7 +239,7 @@ impl Loader<'_> {
             && let Some(plain) = attribute.plain_name()
         {
             let name = attribute.as_it_is(plain);
-            if matches!(plain.as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..]) {
+            if starts_wrongly(plain) {
                 self.no_name(&name);
             }
             return name;

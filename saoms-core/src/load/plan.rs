@@ -110,7 +110,16 @@ impl Loader<'_> {
 
     /// The plan of a component that has nothing but what most have.
     fn regular(&mut self, element: Element<'_>, read: &Component, last: usize) -> Option<Plan> {
-        let Component { implementation, properties, services, references, details: None, .. } = read else {
+        let Component {
+            implementation,
+            properties,
+            services,
+            references,
+            details: None,
+            has_plain_parts: true,
+            ..
+        } = read
+        else {
             return None;
         };
         let implementation = implementation.as_ref().filter(|one| one.policy == Policy::NONE)?;
@@ -135,9 +144,6 @@ impl Loader<'_> {
         let class = place(implementation.origin.element, &["class"], "class")?;
         let of_property = |one: &Property| {
             let at = one.origin.element;
-            if one.details.is_some() || one.simple.is_none() {
-                return None;
-            }
             Some(if one.is_attribute {
                 let names = ["name", "value"];
                 (place(at, &names, "name")?, Value::Attribute(place(at, &names, "value")?))
@@ -146,16 +152,12 @@ impl Loader<'_> {
             })
         };
         let properties: Vec<(Place, Value)> = properties.iter().map(of_property).collect::<Option<_>>()?;
-        let of_service = |one: &Service| {
-            let is_plain = one.promote.is_none() && one.contract.is_none();
-            place(one.origin.element, &["name"], "name").filter(|_| is_plain)
-        };
+        let of_service = |one: &Service| place(one.origin.element, &["name"], "name");
         let services: Vec<Place> = services.iter().map(of_service).collect::<Option<_>>()?;
         let of_reference = |one: &Reference| {
             let at = one.origin.element;
             let target = place(at, &["name", "target"], "target");
-            let is_plain =
-                one.details.is_none() && one.contract.is_none() && target.is_some() != one.targets.is_empty();
+            let is_plain = target.is_some() != one.targets.is_empty();
             place(at, &["name", "target"], "name").filter(|_| is_plain).map(|name| (name, target))
         };
         let references: Vec<_> = references.iter().map(of_reference).collect::<Option<_>>()?;
@@ -245,7 +247,12 @@ impl Plan {
 /// Whether an attribute is a name of which nothing is told.
 fn is_silent_name(attribute: Attribute<'_>) -> bool {
     let name = attribute.plain_name();
-    name.is_some_and(|name| !matches!(name.as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..]))
+    name.is_some_and(|name| !starts_wrongly(name))
+}
+
+/// Whether a name starts with what can stand further behind in one alone (Namespaces in XML 1.0, production 4).
+pub(super) fn starts_wrongly(name: &str) -> bool {
+    matches!(name.as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..])
 }
 
 impl<'c> Copy<'c> {
