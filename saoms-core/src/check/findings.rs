@@ -7,7 +7,7 @@ use super::checked::Elsewhere;
 use super::fleet::Member;
 use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
-use crate::model::{Component, Property};
+use crate::model::{Component, Properties, Property};
 use crate::source::Location;
 use crate::xml::escaped;
 
@@ -21,13 +21,29 @@ pub(super) struct Subject<'a> {
     pub(super) at: Location,
     pub(super) values: &'a [(SmolStr, PropertyValue)],
     /// What the composite says of its properties.
-    pub(super) properties: &'a [Property],
+    pub(super) properties: Written<'a>,
     /// The values that are not one text there, with their places.
     pub(super) elsewhere: &'a [Elsewhere],
 }
 
+/// What the composite says of the properties of a component, or of a loop.
+#[derive(Clone, Copy)]
+pub(super) enum Written<'a> {
+    Component(&'a Properties),
+    Loop(&'a [Property]),
+}
+
+impl<'a> Written<'a> {
+    fn all(self) -> &'a [Property] {
+        match self {
+            Self::Component(properties) => properties,
+            Self::Loop(properties) => properties,
+        }
+    }
+}
+
 /// Where the composite gives a property.
-struct Written {
+struct Given {
     places: Vec<Location>,
     /// The `source` that leads there.
     source: Option<Location>,
@@ -41,6 +57,7 @@ impl<'a> Subject<'a> {
         elsewhere: &'a [Elsewhere],
     ) -> Self {
         let Component { name, properties, .. } = member.component;
+        let properties = Written::Component(properties);
         Self { what: "component", name: name.as_str(), at: name.location, values, properties, elsewhere }
     }
 
@@ -49,12 +66,12 @@ impl<'a> Subject<'a> {
         self.written(name).is_some()
     }
 
-    fn written(&self, name: &str) -> Option<Written> {
+    fn written(&self, name: &str) -> Option<Given> {
         if let Some(Elsewhere { places, source, .. }) = self.elsewhere.iter().find(|one| one.name == name) {
-            return Some(Written { places: places.clone(), source: *source });
+            return Some(Given { places: places.clone(), source: *source });
         }
-        let text = self.properties.iter().find(|one| one.name == *name)?.only_text()?;
-        Some(Written { places: vec![text.location], source: None })
+        let text = self.properties.all().iter().find(|one| one.name == *name)?.only_text()?;
+        Some(Given { places: vec![text.location], source: None })
     }
 }
 

@@ -41,6 +41,7 @@ mod once;
 mod options;
 mod parameters;
 mod path;
+mod placed;
 mod presence;
 mod promote;
 mod properties;
@@ -92,6 +93,7 @@ use findings::Subject;
 use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
+use placed::Patterns;
 use properties::Giver;
 use report::Report;
 pub use setting::Setting;
@@ -303,6 +305,7 @@ fn properties<'a>(
     report: &mut Report<'_>,
 ) -> (Checks, bool) {
     let mut values = Values::default();
+    let mut patterns = Patterns::default();
     let mut sieve = unique::Sieve::default();
     let with_class = || fleet.members.iter().filter(|member| matches!(member.kind, Kind::Class(_)));
     let given = with_class().map(|member| member.component.properties.len()).sum();
@@ -311,19 +314,18 @@ fn properties<'a>(
         report.about(member);
         parameters.types(member, report);
         if let Kind::Class(index) = member.kind {
-            let giver = Giver::component(member, fleet.component_type(place));
-            properties::check(&giver, &classes[index].slots, parameters, &mut values, &mut all, report);
+            let (slots, described) = (&classes[index].slots, fleet.component_type(place));
+            if described.is_some() || !patterns.take(member, slots, &mut all) {
+                let giver = Giver::component(member, described);
+                properties::check(&giver, slots, parameters, &mut values, &mut all, report);
+            }
             if let Some(checked) = all.get(place) {
                 sieve.add(member, &classes[index], checked);
             }
             continue;
         }
-        // A text of which nobody says what it should be.
-        if member.is_single
-            && member.kind == Kind::Given
-            && member.instance.is_none()
-            && fleet.known(place).is_none()
-        {
+        // Texts of which nobody says what they should be.
+        if member.kind == Kind::Given && has_distinct_texts(member) && fleet.known(place).is_none() {
             all.add_none();
             continue;
         }
@@ -336,6 +338,13 @@ fn properties<'a>(
     }
     report.about_all();
     (all, sieve.may_share())
+}
+
+/// Whether all that a component, which is no replica, says of properties is a text each, every one of another name.
+fn has_distinct_texts(member: &Member<'_>) -> bool {
+    let placed = || member.component.properties.as_placed();
+    let is_distinct = member.is_single || placed().is_some_and(|one| one.pattern().has_distinct_names());
+    member.is_usual && member.instance.is_none() && is_distinct
 }
 
 /// Checks everything else about components that needs no look at wires; `None` for one with a fault, of which what is known stands in

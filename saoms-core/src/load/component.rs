@@ -29,7 +29,7 @@ impl Loader<'_> {
             origin: Origin::of(element),
             name,
             implementation: None,
-            properties: Vec::with_capacity(properties),
+            properties: Vec::with_capacity(properties).into(),
             services: Vec::with_capacity(services),
             references: Vec::with_capacity(references),
             details: None,

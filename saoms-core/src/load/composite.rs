@@ -55,7 +55,7 @@ impl Loader<'_> {
             if let (Some(alike), Some(read)) = (alike, composite.components.get(count))
                 && told == self.told()
             {
-                self.plan(&mut plans, alike.form, count, (child, read));
+                self.plan(&mut plans, alike.form, count, (child, read), document);
             }
         }
         composite.severities = std::mem::take(&mut self.severities);

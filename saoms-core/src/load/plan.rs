@@ -4,48 +4,32 @@
 //! what most say, and has nothing to be told of, the loader keeps where each part stands. The others are put together by that, where their
 //! values need no closer look either.
 
+use std::sync::Arc;
+
 use super::Loader;
 use crate::model::{
-    Component, Composite, Implementation, ImplementationKind, Origin, Policy, Property, Reference, Service,
+    Component, Composite, Implementation, ImplementationKind, Origin, Pair, Pattern, Place, Policy,
+    Properties, Property, Reference, Service, Value,
 };
 use crate::source::{Located, Span, Text};
 use crate::xml::{Alike, Attribute, Document, Element, ElementId};
 
 /// What the components of one form consist of.
-#[derive(Debug)]
 struct Plan {
     /// The last of them among the components of the composite; `None` where that was read part by part.
     last: Option<usize>,
     name: Place,
     class: Place,
-    properties: Vec<(Place, Value)>,
+    /// Where its properties are, and whether those of the last one are called as it says.
+    pattern: Arc<Pattern>,
+    has_names: bool,
     services: Vec<Place>,
     references: Vec<(Place, Option<Place>)>,
     /// All names, its own included.
     names: Vec<Place>,
 }
 
-/// An attribute.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// Its element, counted from that of the component.
-    element: u32,
-    /// Its place among the attributes of that, and among all of the component, with the bit of that.
-    at: u32,
-    nth: u32,
-    bit: u64,
-}
-
-/// Where a property has its value.
-#[derive(Clone, Copy, Debug)]
-enum Value {
-    Attribute(Place),
-    /// In the text of its element.
-    Text,
-}
-
 /// What is known of a form.
-#[derive(Debug)]
 enum Known {
     /// None of it was read yet that is nothing to be told of.
     Nothing,
@@ -55,7 +39,7 @@ enum Known {
 }
 
 /// What is known of the forms of a document.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Plans(Vec<Known>);
 
 /// How much the loader has told and noted so far.
@@ -94,22 +78,33 @@ impl Loader<'_> {
         form: u32,
         place: usize,
         (element, read): (Element<'_>, &Component),
+        document: &Arc<Document>,
     ) {
         let form = form as usize;
         if plans.0.len() <= form {
             plans.0.resize_with(form + 1, || Known::Nothing);
         }
         match &mut plans.0[form] {
-            Known::Regular(plan) => plan.last = Some(place),
+            Known::Regular(plan) => {
+                plan.last = Some(place);
+                plan.has_names = plan.pattern.names(&read.properties);
+            }
             new @ Known::Nothing if self.tangle.is_none() => {
-                *new = self.regular(element, read, place).map_or(Known::Irregular, Known::Regular);
+                let plan = self.regular(element, read, place, document);
+                *new = plan.map_or(Known::Irregular, Known::Regular);
             }
             _ => {}
         }
     }
 
     /// The plan of a component that has nothing but what most have.
-    fn regular(&mut self, element: Element<'_>, read: &Component, last: usize) -> Option<Plan> {
+    fn regular(
+        &mut self,
+        element: Element<'_>,
+        read: &Component,
+        last: usize,
+        document: &Arc<Document>,
+    ) -> Option<Plan> {
         let Component {
             implementation,
             properties,
@@ -144,14 +139,16 @@ impl Loader<'_> {
         let class = place(implementation.origin.element, &["class"], "class")?;
         let of_property = |one: &Property| {
             let at = one.origin.element;
+            let name = one.name.value.clone();
             Some(if one.is_attribute {
                 let names = ["name", "value"];
-                (place(at, &names, "name")?, Value::Attribute(place(at, &names, "value")?))
+                let value = Value::Attribute(place(at, &names, "value")?);
+                Pair { name, name_at: place(at, &names, "name")?, value }
             } else {
-                (place(at, &["name"], "name")?, Value::Text)
+                Pair { name, name_at: place(at, &["name"], "name")?, value: Value::Text }
             })
         };
-        let properties: Vec<(Place, Value)> = properties.iter().map(of_property).collect::<Option<_>>()?;
+        let properties: Vec<Pair> = properties.iter().map(of_property).collect::<Option<_>>()?;
         let of_service = |one: &Service| place(one.origin.element, &["name"], "name");
         let services: Vec<Place> = services.iter().map(of_service).collect::<Option<_>>()?;
         let of_reference = |one: &Reference| {
@@ -162,10 +159,11 @@ impl Loader<'_> {
         };
         let references: Vec<_> = references.iter().map(of_reference).collect::<Option<_>>()?;
         let mut names = vec![name];
-        names.extend(properties.iter().map(|(name, _)| *name));
+        names.extend(properties.iter().map(|one| one.name_at));
         names.extend(&services);
         names.extend(references.iter().map(|(name, _)| *name));
-        Some(Plan { last: Some(last), name, class, properties, services, references, names })
+        let pattern = Arc::new(Pattern::new(document, properties));
+        Some(Plan { last: Some(last), name, class, pattern, has_names: true, services, references, names })
     }
 }
 
@@ -191,26 +189,31 @@ impl Plan {
             && self.references.iter().all(|(_, target)| target.is_none_or(is_word))
     }
 
-    fn make(&self, copy: &Copy<'_>) -> Option<Component> {
+    /// Those of another name than in the first one are a list at once.
+    fn properties(&mut self, copy: &Copy<'_>) -> Properties {
+        let mut all = self.pattern.properties().iter();
+        if self.pattern.properties().is_empty() {
+            return Properties::default();
+        }
+        if self.has_names && all.all(|one| copy.is_same(one.name_at)) {
+            return Properties::placed(&self.pattern, copy.element);
+        }
+        let made = self.pattern.make(copy.element.id());
+        self.has_names = self.pattern.names(&made);
+        made.into()
+    }
+
+    fn make(&mut self, copy: &Copy<'_>) -> Option<Component> {
         if !self.is_plain(copy) {
             return None;
         }
+        let properties = self.properties(copy);
         let last = copy.last;
         let class = Some(copy.word(self.class, last.class()?));
         let kind = match &last.implementation.as_ref()?.kind {
             ImplementationKind::Java { .. } => ImplementationKind::Java { class },
             _ => ImplementationKind::Rust { class, library: None },
         };
-        let properties = self.properties.iter().zip(&last.properties).map(|((name, value), last)| Property {
-            origin: copy.origin(*name),
-            name: copy.word(*name, &last.name),
-            simple: match (value, &last.simple) {
-                (Value::Attribute(place), Some(last)) => Some(copy.text(*place, last)),
-                _ => copy.part(*name).trimmed_text(),
-            },
-            is_attribute: last.is_attribute,
-            details: None,
-        });
         let services = self.services.iter().zip(&last.services).map(|(name, last)| Service {
             origin: copy.origin(*name),
             name: copy.word(*name, &last.name),
@@ -235,7 +238,7 @@ impl Plan {
                 kind,
                 policy: Policy::NONE,
             }),
-            properties: properties.collect(),
+            properties,
             services: services.collect(),
             references: references.collect(),
             details: None,

@@ -3,7 +3,7 @@
 use smol_str::SmolStr;
 
 use super::origin::parts;
-use super::{Loop, Origin, Policy, Property, Reference, Replicas, Service};
+use super::{Loop, Origin, Policy, Properties, Property, Reference, Replicas, Service};
 use crate::source::{Located, Text};
 
 /// A component: a configured use of an implementation.
@@ -16,7 +16,7 @@ pub struct Component {
     /// Its implementation.
     pub implementation: Option<Implementation>,
     /// Its properties in order.
-    pub properties: Vec<Property>,
+    pub properties: Properties,
     /// Its services in order.
     pub services: Vec<Service>,
     /// Its references in order.

@@ -178,9 +178,14 @@ impl<'a> Element<'a> {
         Attribute { document: self.document, shape: node.shape, at: at as u32, value }
     }
 
+    /// The place of the first of its values among those of the document.
+    pub(crate) fn first_value(self) -> u32 {
+        self.node().values
+    }
+
     /// Where the values of all attributes are from its own on, those of inner elements and of all behind it included.
     pub(crate) fn values(self) -> &'a [Span] {
-        &self.document.values[self.node().values as usize..]
+        self.document.values_from(self.first_value())
     }
 
     /// Its attributes and its declarations of namespaces, in the order in which they are written.

@@ -32,7 +32,7 @@ pub(crate) use node::Node;
 pub use parse::{Parsed, Tangle, parse};
 pub(crate) use tree::Alike;
 pub use tree::{Document, ElementId};
-pub(crate) use value::Writing;
+pub(crate) use value::{Writing, is_plain};
 
 /// The namespace to which the prefix `xml` is bound always.
 pub const XML_NAMESPACE: &str = "http://www.w3.org/XML/1998/namespace";

@@ -98,6 +98,11 @@ impl Document {
         self.shapes.len()
     }
 
+    /// Where the values of all attributes are from a place among them on.
+    pub(crate) fn values_from(&self, first: u32) -> &[Span] {
+        &self.values[first as usize..]
+    }
+
     /// Children of the root in order.
     pub(crate) fn alike(&self) -> &[Alike] {
         &self.alike

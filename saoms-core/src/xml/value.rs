@@ -9,7 +9,7 @@ use super::eight;
 
 /// Whether the bytes are no white space and no `&`: such a value means itself.
 #[inline]
-pub(super) fn is_plain(bytes: &[u8]) -> bool {
+pub(crate) fn is_plain(bytes: &[u8]) -> bool {
     !eight::any(bytes, |word| eight::up_to_blank(word) | eight::equal(word, b'&'))
 }
 

@@ -11,7 +11,7 @@ use smol_str::SmolStr;
 
 use super::checked::{Checks, Elsewhere, Kept};
 use super::classes::ClassIndex;
-use super::findings::Subject;
+use super::findings::{Subject, Written};
 use super::fleet::{Fleet, Kind, Member};
 use super::parameters::Parameters;
 use super::properties::{self, Giver};
@@ -46,7 +46,7 @@ impl Resolved<'_> {
     pub(super) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
         self.changed.iter().flat_map(|changed| changed.iter()).map(|one| {
             let (spec, Loop { name, properties, .. }) = (&self.specs[one.place], one.element);
-            let (values, elsewhere) = (&spec.values, &one.elsewhere);
+            let (values, elsewhere, properties) = (&spec.values, &one.elsewhere, Written::Loop(properties));
             (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, elsewhere })
         })
     }

@@ -1,0 +1,245 @@
+//! The properties of components.
+
+use std::fmt;
+use std::ops::{Deref, DerefMut};
+use std::sync::{Arc, OnceLock};
+
+use smol_str::SmolStr;
+
+use super::{Origin, Property};
+use crate::hash::Set;
+use crate::source::{Location, Text};
+use crate::xml::{Attribute, Document, Element, ElementId};
+
+/// The properties of a component, in order: a list of [`Property`].
+///
+/// Most components of a large file are written as one before them, but for names and values. Theirs become a list when somebody looks at it:
+/// until then it is known where they are written, which takes a tenth of the memory.
+#[derive(Clone)]
+pub struct Properties(Kept);
+
+#[derive(Clone)]
+enum Kept {
+    List(Vec<Property>),
+    Placed(Box<Placed>),
+}
+
+impl Properties {
+    /// None, with room for so many.
+    pub(crate) const fn none() -> Self {
+        Self(Kept::List(Vec::new()))
+    }
+
+    /// Those of an element in which they stand as a pattern says.
+    pub(crate) fn placed(pattern: &Arc<Pattern>, element: Element<'_>) -> Self {
+        let (element, value) = (element.id(), element.first_value());
+        Self(Kept::Placed(Box::new(Placed {
+            pattern: Arc::clone(pattern),
+            element,
+            value,
+            made: OnceLock::new(),
+        })))
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match &self.0 {
+            Kept::List(list) => list.len(),
+            Kept::Placed(placed) => placed.pattern.properties.len(),
+        }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Where they stand, for those that are no list yet.
+    pub(crate) fn as_placed(&self) -> Option<&Placed> {
+        match &self.0 {
+            Kept::List(_) => None,
+            Kept::Placed(placed) => Some(placed),
+        }
+    }
+}
+
+impl Default for Properties {
+    fn default() -> Self {
+        Self::none()
+    }
+}
+
+impl From<Vec<Property>> for Properties {
+    fn from(list: Vec<Property>) -> Self {
+        Self(Kept::List(list))
+    }
+}
+
+impl Deref for Properties {
+    type Target = Vec<Property>;
+
+    fn deref(&self) -> &Vec<Property> {
+        match &self.0 {
+            Kept::List(list) => list,
+            Kept::Placed(placed) => placed.made.get_or_init(|| placed.pattern.make(placed.element)),
+        }
+    }
+}
+
+impl DerefMut for Properties {
+    fn deref_mut(&mut self) -> &mut Vec<Property> {
+        if let Kept::Placed(placed) = &mut self.0 {
+            let made = placed.made.take().unwrap_or_else(|| placed.pattern.make(placed.element));
+            self.0 = Kept::List(made);
+        }
+        match &mut self.0 {
+            Kept::List(list) => list,
+            Kept::Placed(_) => unreachable!("what was no list was made one above"),
+        }
+    }
+}
+
+impl<'p> IntoIterator for &'p Properties {
+    type Item = &'p Property;
+    type IntoIter = std::slice::Iter<'p, Property>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl PartialEq for Properties {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl fmt::Debug for Properties {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        (**self).fmt(out)
+    }
+}
+
+/// The properties of a component whose parts stand as in another one.
+#[derive(Clone)]
+pub(crate) struct Placed {
+    pattern: Arc<Pattern>,
+    element: ElementId,
+    /// The first of the values of the component in its document.
+    value: u32,
+    made: OnceLock<Vec<Property>>,
+}
+
+impl Placed {
+    /// Where they stand in each such component.
+    pub(crate) fn pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
+    }
+
+    /// The value of a property as it is written, and where; `None` where it is the text of its element.
+    #[inline]
+    pub(crate) fn raw(&self, property: &Pair) -> Option<(&str, Location)> {
+        let Value::Attribute(place) = property.value else { return None };
+        let document = &*self.pattern.document;
+        let span = document.values_from(self.value)[place.nth as usize];
+        Some((&document.text()[span.start as usize..span.end as usize], span.in_file(document.file())))
+    }
+
+    /// The value of a property.
+    pub(crate) fn text(&self, property: &Pair) -> Option<Text> {
+        property.value.text(self.pattern.document.element(self.element), property.name_at)
+    }
+}
+
+/// Where the properties of components stand that are written alike, each with a name of its own and a text.
+pub(crate) struct Pattern {
+    document: Arc<Document>,
+    properties: Vec<Pair>,
+    /// Whether each name is there once.
+    has_distinct_names: bool,
+}
+
+/// A property with its value.
+pub(crate) struct Pair {
+    pub(crate) name: SmolStr,
+    pub(crate) name_at: Place,
+    pub(crate) value: Value,
+}
+
+impl Pattern {
+    pub(crate) fn new(document: &Arc<Document>, properties: Vec<Pair>) -> Self {
+        let mut names = Set::default();
+        let has_distinct_names = properties.iter().all(|one| names.insert(one.name.as_str()));
+        Self { document: Arc::clone(document), properties, has_distinct_names }
+    }
+
+    /// The properties in order.
+    pub(crate) fn properties(&self) -> &[Pair] {
+        &self.properties
+    }
+
+    /// Whether each name is there once.
+    pub(crate) fn has_distinct_names(&self) -> bool {
+        self.has_distinct_names
+    }
+
+    /// Whether properties are called as it says.
+    pub(crate) fn names(&self, properties: &[Property]) -> bool {
+        self.properties.iter().map(|one| &one.name).eq(properties.iter().map(|one| &one.name.value))
+    }
+
+    /// The properties of the component that an element is.
+    pub(crate) fn make(&self, element: ElementId) -> Vec<Property> {
+        let component = self.document.element(element);
+        let made = self.properties.iter().map(|one| Property {
+            origin: Origin::of(one.name_at.part(component)),
+            name: one.name_at.attribute(component).trimmed(),
+            simple: one.value.text(component, one.name_at),
+            is_attribute: matches!(one.value, Value::Attribute(_)),
+            details: None,
+        });
+        made.collect()
+    }
+}
+
+/// Where an attribute is in a component.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    /// Its element, counted from that of the component.
+    pub(crate) element: u32,
+    /// Its place among the attributes of that, and among all of the component, with the bit of that.
+    pub(crate) at: u32,
+    pub(crate) nth: u32,
+    pub(crate) bit: u64,
+}
+
+impl Place {
+    /// The element that has it.
+    #[inline]
+    pub(crate) fn part<'d>(&self, component: Element<'d>) -> Element<'d> {
+        component.document().element(ElementId(component.id().0 + self.element))
+    }
+
+    #[inline]
+    pub(crate) fn attribute<'d>(&self, component: Element<'d>) -> Attribute<'d> {
+        self.part(component).nth_attribute(self.at as usize)
+    }
+}
+
+/// Where a property has its value.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Value {
+    Attribute(Place),
+    /// In the text of its element.
+    Text,
+}
+
+impl Value {
+    /// The value of the property whose name is at a place of a component.
+    fn text(&self, component: Element<'_>, name: Place) -> Option<Text> {
+        match self {
+            Self::Attribute(place) => Some(place.attribute(component).trimmed()),
+            Self::Text => name.part(component).trimmed_text(),
+        }
+    }
+}
