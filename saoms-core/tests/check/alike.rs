@@ -88,9 +88,9 @@ fn a_sound_fleet_of_components_that_are_written_alike_comes_to_the_same() {
             String::from(r#"<component name="G"><implementation.java class="example.Gps"/></component>"#);
         for number in 1..40 {
             let (filler, speed) = (if is_like { 0 } else { number }, f64::from(number % 3) / 2.0);
-            let _ = write!(
+            let _ = writeln!(
                 inside,
-                "<component name=\"C{number}\"><!--{filler:04}--><implementation.rust class=\"example.Robot\"/><property name=\"period\" value=\"10ms\"/><property name=\"number\" value=\"{number}\"/><property name=\"speed\" value=\"{speed}\"/><property name=\"ID\">R{number}</property><reference name=\"gps\" target=\"G\"/></component>\n"
+                "<component name=\"C{number}\"><!--{filler:04}--><implementation.rust class=\"example.Robot\"/><property name=\"period\" value=\"10ms\"/><property name=\"number\" value=\"{number}\"/><property name=\"speed\" value=\"{speed}\"/><property name=\"ID\">R{number}</property><reference name=\"gps\" target=\"G\"/></component>"
             );
         }
         outcome(&[&part("fleet", "", &inside)], &[])
