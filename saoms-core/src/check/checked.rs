@@ -44,6 +44,9 @@ pub(super) struct Checked<'c> {
     values: &'c [(SmolStr, PropertyValue)],
     of_tasks: &'c [PropertyValue],
     given: &'c [Entry],
+    /// The place of the first of these among those of all components.
+    first: u32,
+    elsewhere: &'c [(u32, Option<Elsewhere>)],
     /// Whether there was no fault, so that the component can be constructed.
     pub(super) is_sound: bool,
 }
@@ -56,9 +59,9 @@ impl<'c> Checked<'c> {
 
     /// What is given for the property of this place.
     pub(super) fn at(&self, slot: usize) -> Option<Given<'c>> {
-        let entry = self.given.iter().find(|entry| entry.slot as usize == slot)?;
-        let Entry { place, elsewhere, .. } = entry;
-        Some(Given { value: self.value(entry), place: *place, elsewhere: elsewhere.as_deref() })
+        let (place, entry) = (self.first..).zip(self.given).find(|(_, entry)| entry.slot as usize == slot)?;
+        let elsewhere = elsewhere(self.elsewhere, place).and_then(|at| self.elsewhere[at].1.as_ref());
+        Some(Given { value: self.value(entry), place: entry.place, elsewhere })
     }
 
     fn value(&self, entry: &'c Entry) -> &'c PropertyValue {
@@ -78,13 +81,21 @@ impl<'c> Checked<'c> {
     }
 }
 
+/// What is said of the value of this place among those of all components, if anything: of few there is.
+#[inline]
+fn elsewhere(all: &[(u32, Option<Elsewhere>)], place: u32) -> Option<usize> {
+    if all.is_empty() {
+        return None;
+    }
+    all.binary_search_by_key(&place, |(of, _)| *of).ok()
+}
+
 /// A property that has a value.
 struct Entry {
+    place: Location,
     /// The place of the property in its class.
     slot: u32,
-    place: Location,
     value: Held,
-    elsewhere: Option<Box<Elsewhere>>,
 }
 
 /// Where a value is kept.
@@ -103,6 +114,10 @@ pub(super) struct Checks {
     all: Vec<One>,
     /// What is given by all of them, in the order in which it is written.
     given: Vec<Entry>,
+    /// What is to be said of few of these values, by their places there.
+    elsewhere: Vec<(u32, Option<Elsewhere>)>,
+    /// By the places of few of `all`, the places of the properties whose values cannot be known for faults.
+    unsure: Vec<(u32, Vec<usize>)>,
     /// The values that all of them give for properties of tasks alone.
     of_tasks: Vec<PropertyValue>,
     /// How many values the component before gives, and how many of own properties: most have as many.
@@ -118,8 +133,6 @@ struct One {
     /// Where what it gives starts, and where it ends.
     given: (u32, u32),
     is_sound: bool,
-    /// The places of the properties whose values cannot be known for faults.
-    unsure: Vec<usize>,
 }
 
 /// What is kept of [`Checked`] when all about it is looked at.
@@ -140,6 +153,8 @@ impl Checks {
             of: Vec::with_capacity(count),
             all: Vec::with_capacity(with_class),
             given: Vec::with_capacity(given),
+            elsewhere: Vec::new(),
+            unsure: Vec::new(),
             of_tasks: Vec::with_capacity(with_class),
             before: (0, 0),
         }
@@ -147,22 +162,23 @@ impl Checks {
 
     /// What the component at this place gives; `None` for one without a class.
     pub(super) fn get(&self, place: usize) -> Option<Checked<'_>> {
-        let One { values, given: (start, end), is_sound, .. } = self.all.get(self.of[place] as usize)?;
+        let One { values, given: (start, end), is_sound } = self.all.get(self.of[place] as usize)?;
         let given = &self.given[*start as usize..*end as usize];
-        Some(Checked { values, of_tasks: &self.of_tasks, given, is_sound: *is_sound })
+        let (of_tasks, elsewhere) = (&self.of_tasks[..], &self.elsewhere[..]);
+        Some(Checked { values, of_tasks, given, first: *start, elsewhere, is_sound: *is_sound })
     }
 
     /// Takes what the component at this place gives.
     pub(super) fn take(&mut self, place: usize) -> Option<Kept> {
-        let One { values, given: (start, end), unsure, .. } = self.all.get_mut(self.of[place] as usize)?;
-        let (values, unsure) = (std::mem::take(values), std::mem::take(unsure));
-        let given = &mut self.given[*start as usize..*end as usize];
-        let mut elsewhere = Vec::new();
-        for entry in given.iter_mut().filter(|entry| entry.elsewhere.is_some()) {
-            if let (Held::Own(_), Some(one)) = (&entry.value, entry.elsewhere.take()) {
-                elsewhere.push(*one);
-            }
-        }
+        let of = self.of[place];
+        let One { values, given: (start, end), .. } = self.all.get_mut(of as usize)?;
+        let values = std::mem::take(values);
+        let first = self.elsewhere.partition_point(|(of, _)| of < start);
+        let own = self.elsewhere[first..].iter_mut().take_while(|(of, _)| of < end);
+        let own = own.filter(|(of, _)| matches!(self.given[*of as usize].value, Held::Own(_)));
+        let elsewhere = own.filter_map(|(_, one)| one.take()).collect();
+        let unsure = self.unsure.binary_search_by_key(&of, |(of, _)| *of);
+        let unsure = unsure.map(|at| std::mem::take(&mut self.unsure[at].1)).unwrap_or_default();
         Some(Kept { values, elsewhere, unsure })
     }
 
@@ -193,13 +209,13 @@ pub(super) struct Open<'c> {
 
 impl Open<'_> {
     /// Adds the value of the property of this place, which has none yet.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add(
         &mut self,
         (place, slot): (usize, &Slot<'_>),
         value: PropertyValue,
         at: Location,
-        elsewhere: Option<Box<Elsewhere>>,
+        elsewhere: Option<Elsewhere>,
     ) {
         let value = match slot.own {
             None => {
@@ -219,7 +235,10 @@ impl Open<'_> {
             }
         };
         // Classes and fleets are limited to fewer.
-        self.checks.given.push(Entry { slot: place as u32, place: at, value, elsewhere });
+        if elsewhere.is_some() {
+            self.checks.elsewhere.push((self.checks.given.len() as u32, elsewhere));
+        }
+        self.checks.given.push(Entry { place: at, slot: place as u32, value });
     }
 
     /// Where the value of an own property belongs that stands before others, which move on.
@@ -242,12 +261,14 @@ impl Open<'_> {
         let Self { checks, start, task, .. } = self;
         checks.given.truncate(start);
         checks.of_tasks.truncate(task);
+        checks.elsewhere.truncate(checks.elsewhere.partition_point(|(of, _)| (*of as usize) < start));
     }
 
     /// What is given so far.
     pub(super) fn so_far(&self) -> Checked<'_> {
-        let Checks { given, of_tasks, .. } = &*self.checks;
-        Checked { values: &self.values, of_tasks, given: &given[self.start..], is_sound: false }
+        let Checks { given, of_tasks, elsewhere, .. } = &*self.checks;
+        let (given, first) = (&given[self.start..], self.start as u32);
+        Checked { values: &self.values, of_tasks, given, first, elsewhere, is_sound: false }
     }
 
     /// That is all; said with it is whether there was no fault, and which properties' values cannot be known for such.
@@ -256,7 +277,11 @@ impl Open<'_> {
         checks.before = (count, values.len());
         // Fleets are limited to fewer.
         let given = (start as u32, checks.given.len() as u32);
-        checks.of.push(checks.all.len() as u32);
-        checks.all.push(One { values, given, is_sound, unsure });
+        let of = checks.all.len() as u32;
+        checks.of.push(of);
+        checks.all.push(One { values, given, is_sound });
+        if !unsure.is_empty() {
+            checks.unsure.push((of, unsure));
+        }
     }
 }

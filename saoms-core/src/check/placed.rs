@@ -11,7 +11,7 @@ use super::fleet::Member;
 use super::slots::{Slot, Slots};
 use crate::hash::Map;
 use crate::model::{Pair, Pattern, Placed};
-use crate::source::Text;
+use crate::source::Location;
 use crate::xml::is_plain;
 
 /// What was found out about patterns of properties of components of classes.
@@ -26,14 +26,15 @@ pub(super) struct Patterns {
 /// A pattern together with a class.
 struct Known {
     of: (*const Pattern, *const ()),
-    /// The place of each of its properties in the class, with the value that it had last; `None` where the properties are to be looked at one by one.
+    /// The place of each of its properties in the class, with the value that it had last. `None` where the properties are to be looked at one by one.
     properties: Option<Vec<Last>>,
 }
 
 struct Last {
     slot: usize,
-    /// Of a value that is written as it is meant.
-    text: Option<SmolStr>,
+    text: SmolStr,
+    /// Whether that is how it is written, so that what is written so again is the same.
+    is_as_written: bool,
 }
 
 impl Patterns {
@@ -47,11 +48,11 @@ impl Patterns {
         let mut open = checks.start(properties.len());
         for (written, last) in placed.pattern().properties().iter().zip(known) {
             let slot = &slots.all[last.slot];
-            let Some(text) = last.value(slot, placed, written) else {
+            let Some(location) = last.take(slot, placed, written) else {
                 open.cancel();
                 return false;
             };
-            open.add((last.slot, slot), PropertyValue::Text(text.value), text.location, None);
+            open.add((last.slot, slot), PropertyValue::Text(last.text.clone()), location, None);
         }
         open.finish(true, Vec::new());
         true
@@ -79,23 +80,33 @@ fn regular(pattern: &Pattern, slots: &Slots<'_>) -> Option<Vec<Last>> {
         |place: usize| slots.all[place].main().is_some_and(|main| slots.preset(&main.name).is_some());
     let is_whole = slots.required.iter().all(|place| places.contains(place) || has_default(*place));
     let is_regular = is_whole && pattern.has_distinct_names();
-    is_regular.then(|| places.into_iter().map(|slot| Last { slot, text: None }).collect())
+    is_regular.then(|| {
+        places.into_iter().map(|slot| Last { slot, text: SmolStr::default(), is_as_written: false }).collect()
+    })
 }
 
 impl Last {
-    /// The value of a component, with its place; `None` where it is not what the class allows, or cannot be told yet.
+    /// Takes the value of a component; gives its place. `None` where it is not what the class allows, or cannot be told yet.
+    // It is kept here, and copied from here: a text that is moved on and on takes longer than all else about it.
     #[inline]
-    fn value(&mut self, slot: &Slot<'_>, placed: &Placed, written: &Pair) -> Option<Text> {
+    fn take(&mut self, slot: &Slot<'_>, placed: &Placed, written: &Pair) -> Option<Location> {
         let is_allowed =
             |text: &str| slot.is_plain(text) || slot.declarations().all(|one| one.allows(text).is_ok());
-        match (placed.raw(written), &self.text) {
-            (Some((raw, location)), Some(text)) if raw == text => Some(Text::new(text.clone(), location)),
-            (Some((raw, location)), _) if !raw.is_empty() && is_plain(raw.as_bytes()) => {
-                let text = is_allowed(raw).then(|| SmolStr::new(raw));
-                self.text.clone_from(&text);
-                Some(Text::new(text?, location))
+        if let Some((raw, location)) = placed.raw(written) {
+            if self.is_as_written && self.text == raw {
+                return Some(location);
             }
-            _ => placed.text(written).filter(|text| is_allowed(text)),
+            if !raw.is_empty() && is_plain(raw.as_bytes()) {
+                self.is_as_written = is_allowed(raw);
+                if !self.is_as_written {
+                    return None;
+                }
+                self.text = SmolStr::new(raw);
+                return Some(location);
+            }
         }
+        let text = placed.text(written).filter(|text| is_allowed(text))?;
+        (self.text, self.is_as_written) = (text.value, false);
+        Some(text.location)
     }
 }

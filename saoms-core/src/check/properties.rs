@@ -254,7 +254,7 @@ fn convert(
         [None, None] => None,
     };
     let elsewhere = Elsewhere { name: slot.1.name.clone(), places, source: used.source };
-    given.add(slot, value.ok_or(())?, place, Some(Box::new(elsewhere)));
+    given.add(slot, value.ok_or(())?, place, Some(elsewhere));
     Ok(())
 }
 

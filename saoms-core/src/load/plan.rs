@@ -86,7 +86,8 @@ impl Loader<'_> {
         }
         match &mut plans.0[form] {
             Known::Regular(plan) => {
-                plan.last = Some(place);
+                // An expression in its name makes one a replica.
+                plan.last = (read.details.is_none() && read.has_plain_parts).then_some(place);
                 plan.has_names = plan.pattern.names(&read.properties);
             }
             new @ Known::Nothing if self.tangle.is_none() => {

@@ -100,3 +100,12 @@ fn forms_are_found_again() {
     };
     assert_eq!((forms(true), forms(false)), ((60, 5), (60, 60)));
 }
+
+/// A name with an expression is one of replicas, also where the component before has the same.
+#[test]
+fn a_replica_is_never_made_as_what_is_none() {
+    let pieces: Vec<(usize, Vec<usize>)> = [0, 0, 11, 11, 0].map(|value| (0, vec![value])).into();
+    assert_eq!(VALUES[11], "${index}");
+    let fleet = (true, pieces);
+    assert_eq!(read(&written(&fleet, true)), read(&written(&fleet, false)));
+}
