@@ -15,6 +15,22 @@ use crate::xml::{Attribute, Document, Element, ElementId};
 ///
 /// Most components of a large file are written as one before them, but for names and values. Theirs become a list when somebody looks at it:
 /// until then it is known where they are written, which takes a tenth of the memory.
+///
+/// ```
+/// use saoms_core::{diagnostic::Diagnostics, load::load_file, source::Sources};
+///
+/// let text = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:fleet">
+///     <component name="Robot001"><implementation.rust class="saoms.Robot"/><property name="ID" value="R1"/></component>
+///     <component name="Robot002"><implementation.rust class="saoms.Robot"/><property name="ID" value="R2"/></component>
+/// </composite>"#;
+/// let mut sources = Sources::new();
+/// let file = sources.add("fleet.composite", text);
+/// let fleet = load_file(file, &sources, &mut Diagnostics::new()).unwrap();
+/// for (component, id) in fleet.components.iter().zip(["R1", "R2"]) {
+///     assert_eq!(component.properties.len(), 1);
+///     assert_eq!(component.properties[0].value().unwrap(), &id);
+/// }
+/// ```
 #[derive(Clone)]
 pub struct Properties(Kept);
 
