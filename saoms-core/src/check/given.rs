@@ -9,7 +9,7 @@ use super::offer::Side;
 use super::parameters::{Found, Parameters, Place};
 use super::raw::Piece;
 use super::report::{Report, list, replacing};
-use super::target::parts;
+use super::target::{has_several, parts};
 use super::value_type::{self, Match, Typed};
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::hash::Set;
@@ -174,6 +174,27 @@ pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> Set<(usize, &'a str, Option<&'a
         }
     }
     all
+}
+
+/// Whether all that is said about the references of a component that is taken as given is one target each, that there is nothing to be told of:
+/// what most say.
+pub(super) fn has_usual_targets(member: usize, fleet: &Fleet<'_>) -> bool {
+    let Member { component, scope, kind, is_usual, .. } = &fleet.members[member];
+    *kind == Kind::Given
+        && *is_usual
+        && !fleet.contribution.describes_any()
+        && component.references.iter().all(|reference| match &reference.targets[..] {
+            [] => true,
+            [only] => is_component(only, *scope, fleet),
+            _ => false,
+        })
+}
+
+/// Whether a text is nothing but the name of a component that has one service as far as anybody knows: what most targets are.
+pub(super) fn is_component(text: &str, scope: usize, fleet: &Fleet<'_>) -> bool {
+    let is_odd = |byte: u8| matches!(byte, b'/' | b':' | b'*' | b'$');
+    let is_plain = !text.bytes().fold(false, |odd, byte| odd | is_odd(byte));
+    is_plain && fleet.find(scope, text).is_some_and(|found| !has_several(found, fleet))
 }
 
 /// Reports the references that the component or a file says need a target, and have none: whoever runs the component may still find one.

@@ -312,7 +312,9 @@ fn properties<'a>(
     let mut all = Checks::with_capacity(fleet.members.len(), with_class().count(), given);
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
-        parameters.types(member, report);
+        if !member.is_usual {
+            parameters.types(member, report);
+        }
         if let Kind::Class(index) = member.kind {
             let (slots, described) = (&classes[index].slots, fleet.component_type(place));
             if described.is_some() || !patterns.take(member, slots, &mut all) {

@@ -256,9 +256,6 @@ impl<'a> Parameters<'a> {
 
     /// Checks that the properties of a component that say a type take their values from properties of types that fit.
     pub(super) fn types(&self, member: &Member<'a>, report: &mut Report<'_>) {
-        if member.is_usual {
-            return;
-        }
         for property in &member.component.properties {
             if let Some(source) = property.source()
                 && let Some(from) = self.declaration(member.unit, source)

@@ -16,13 +16,13 @@ use super::by_name::warm_targets;
 use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
-use super::fleet::{Fleet, Kind, Member};
+use super::fleet::{Fleet, Member};
 use super::given;
 use super::multiplicity::keeps_own;
 use super::promote::{Place, Promoted};
 use super::report::{Report, list};
 use super::room::Room;
-use super::target::{Provider, Target, has_several, parts, spread, target, uri};
+use super::target::{Provider, Target, parts, spread, target, uri};
 use super::wire::{Wire, wires};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
@@ -186,7 +186,7 @@ impl<'f, 'a> Wires<'f, 'a> {
     /// Looks at the targets of a component that has no class: whether they are there is all that can be known.
     fn given(&mut self, member: usize, report: &mut Report<'_>) {
         let fleet = self.fleet;
-        if self.has_usual_targets(member) {
+        if self.wires_of(member).is_empty() && given::has_usual_targets(member, fleet) {
             return;
         }
         let Some(names) = fleet.reference_names(member, self.classes) else {
@@ -331,7 +331,7 @@ impl<'f, 'a> Wires<'f, 'a> {
             }
             return;
         }
-        if interface.is_none() && self.is_component(text, scope) {
+        if interface.is_none() && given::is_component(text, scope, self.fleet) {
             // What it leads to there cannot be looked at.
             level.ends.is_unknown |= counts;
             if counts {
@@ -386,28 +386,6 @@ impl<'f, 'a> Wires<'f, 'a> {
         let provider = self.again(text, *scope, Some(&declared.interface)).filter(|_| is_plain)?;
         let is_alone = self.wires_of(member).is_empty() && !self.promoted.concerns(&(member, &declared.name));
         is_alone.then_some(End { provider, place: text.location })
-    }
-
-    /// Whether all that is said about the references of a component that is taken as given is one target each, that there is nothing to be told of:
-    /// what most say.
-    fn has_usual_targets(&self, member: usize) -> bool {
-        let Member { component, scope, kind, is_usual, .. } = &self.fleet.members[member];
-        *kind == Kind::Given
-            && *is_usual
-            && self.wires_of(member).is_empty()
-            && !self.fleet.contribution.describes_any()
-            && component.references.iter().all(|reference| match &reference.targets[..] {
-                [] => true,
-                [only] => self.is_component(only, *scope),
-                _ => false,
-            })
-    }
-
-    /// Whether a text is nothing but the name of a component that has one service as far as anybody knows: what most targets are.
-    fn is_component(&self, text: &str, scope: usize) -> bool {
-        let is_odd = |byte: u8| matches!(byte, b'/' | b':' | b'*' | b'$');
-        let is_plain = !text.bytes().fold(false, |odd, byte| odd | is_odd(byte));
-        is_plain && self.fleet.find(scope, text).is_some_and(|found| !has_several(found, self.fleet))
     }
 
     /// Whether targets are to be found by interface: said by the reference, its component, or the composite.

@@ -41,11 +41,6 @@ enum Kept {
 }
 
 impl Properties {
-    /// None, with room for so many.
-    pub(crate) const fn none() -> Self {
-        Self(Kept::List(Vec::new()))
-    }
-
     /// Those of an element in which they stand as a pattern says.
     pub(crate) fn placed(pattern: &Arc<Pattern>, element: Element<'_>) -> Self {
         let (element, value) = (element.id(), element.first_value());
@@ -81,7 +76,7 @@ impl Properties {
 
 impl Default for Properties {
     fn default() -> Self {
-        Self::none()
+        Vec::new().into()
     }
 }
 
