@@ -3,8 +3,10 @@
 use super::fault::Input;
 use crate::diagnostic::{Diagnostic, codes};
 
-/// Bytes that are looked at together.
-const CHUNK: usize = 128;
+/// Bytes that are looked at together, as many as the widest vectors hold.
+const LANES: usize = 32;
+/// Rows of as many that are counted before the counts of the lanes are added up: they fit into a byte each.
+const ROWS: usize = 128;
 
 /// What one look at all bytes of a text tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,21 +40,30 @@ fn survey_wide(text: &[u8]) -> Survey {
 fn survey_plain(text: &[u8]) -> Survey {
     let mut survey = Survey { forbidden: None, starts: 0, equals: 0 };
     let behind = text.get(1..).unwrap_or_default();
-    for (index, (chunk, behind)) in text.chunks(CHUNK).zip(behind.chunks(CHUNK)).enumerate() {
-        // The whole chunk without a branch first: the compiler makes vector instructions of it. 0xEF starts U+FFFE.
-        let (mut suspect, mut starts, mut equals) = (0, 0_u8, 0_u8);
-        for (&byte, &next) in chunk.iter().zip(behind) {
-            suspect |= u8::from(is_control(byte)) | u8::from(byte == 0xef);
-            starts += u8::from((byte == b'<') & (next != b'/'));
-            equals += u8::from(byte == b'=');
+    let before = &text[..behind.len()];
+    let mut start = 0;
+    for (block, behind) in before.chunks(ROWS * LANES).zip(behind.chunks(ROWS * LANES)) {
+        // Each lane by itself and without a branch: the compiler makes vector instructions of it.
+        let (mut suspect, mut starts, mut equals) = ([0_u8; LANES], [0_u8; LANES], [0_u8; LANES]);
+        let ((rows, rest), (behind, rest_behind)) = (block.as_chunks::<LANES>(), behind.as_chunks::<LANES>());
+        for (row, behind) in rows.iter().zip(behind) {
+            for lane in 0..LANES {
+                suspect[lane] |= is_suspect(row[lane]);
+                starts[lane] += is_start(row[lane], behind[lane]);
+                equals[lane] += u8::from(row[lane] == b'=');
+            }
         }
-        survey.starts += usize::from(starts);
-        survey.equals += usize::from(equals);
-        if suspect != 0 && survey.forbidden.is_none() {
-            let start = index * CHUNK;
-            survey.forbidden = (start..start + chunk.len())
-                .find(|&at| is_control(text[at]) || matches!(text[at..], [0xef, 0xbf, 0xbe | 0xbf, ..]));
+        for (lane, (&byte, &next)) in rest.iter().zip(rest_behind).enumerate() {
+            suspect[lane] |= is_suspect(byte);
+            starts[lane] += is_start(byte, next);
+            equals[lane] += u8::from(byte == b'=');
         }
+        survey.starts += starts.iter().map(|count| usize::from(*count)).sum::<usize>();
+        survey.equals += equals.iter().map(|count| usize::from(*count)).sum::<usize>();
+        if suspect != [0; LANES] && survey.forbidden.is_none() {
+            survey.forbidden = first_forbidden(text, start..start + block.len());
+        }
+        start += block.len();
     }
     // The last byte has none behind it.
     if let Some((&byte, before)) = text.split_last() {
@@ -64,6 +75,29 @@ fn survey_plain(text: &[u8]) -> Survey {
     survey
 }
 
+/// Whether a byte is a control, or may start U+FFFE or U+FFFF.
+#[inline(always)]
+fn is_suspect(byte: u8) -> u8 {
+    u8::from(is_control(byte)) | u8::from(byte == 0xef)
+}
+
+#[inline(always)]
+fn is_start(byte: u8, next: u8) -> u8 {
+    u8::from((byte == b'<') & (next != b'/'))
+}
+
+/// The first place of these that has a forbidden character.
+fn first_forbidden(text: &[u8], range: std::ops::Range<usize>) -> Option<usize> {
+    let is_forbidden =
+        |at: &usize| is_control(text[*at]) || matches!(text[*at..], [0xef, 0xbf, 0xbe | 0xbf, ..]);
+    // Of a language that has many characters that start as those do, most rows have none.
+    let rows = range.clone().step_by(LANES).map(|start| start..range.end.min(start + LANES));
+    let suspects =
+        rows.filter(|row| text[row.clone()].iter().fold(0, |all, byte| all | is_suspect(*byte)) != 0);
+    suspects.flatten().find(is_forbidden)
+}
+
+#[inline(always)]
 fn is_control(byte: u8) -> bool {
     (byte < b' ') & (byte != b'\t') & (byte != b'\n') & (byte != b'\r')
 }
