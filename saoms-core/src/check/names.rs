@@ -26,16 +26,31 @@ struct Name {
     mistyped: Option<Property>,
     /// Whether it has no value, and that is told.
     is_told: Cell<bool>,
+    /// Whether what gives it its value has a fault, which whoever collects the values of sources reports.
+    is_faulty: bool,
     /// The text of the value and where it stands.
     text: Option<Text>,
     value: Result<Value, Problem>,
 }
 
-/// Who gives the properties of a composite their values: the component that it implements, and the names that its sources lead to.
+/// Who gives the properties of a composite their values: the component that it implements, and what it gives by a name.
 #[derive(Clone, Copy)]
 pub(super) struct Outside<'n> {
     pub(super) component: &'n Component,
-    pub(super) names: &'n Names,
+    pub(super) supply: &'n dyn Fn(&str) -> Supplied,
+}
+
+/// What a component gives a property of the composite that it implements.
+#[derive(Clone)]
+pub(super) enum Supplied {
+    /// One text.
+    Text(Text),
+    /// What is no single text: parts of a complex value, or several values.
+    Other,
+    /// Nobody knows for a fault, which whoever collects the values of sources reports.
+    Faulty,
+    /// Nothing: what the composite says itself counts.
+    Nothing,
 }
 
 impl Names {
@@ -54,16 +69,23 @@ impl Names {
         for composite in &composites {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {
-                    let text = given(property, outside, options).or_else(|| property.simple_value().cloned());
-                    let value = value(property, text.as_ref());
+                    let given = given(property, outside, options);
+                    let is_faulty = matches!(given, Supplied::Faulty);
+                    let is_given = !matches!(given, Supplied::Nothing);
+                    let text = match given {
+                        Supplied::Text(text) => Some(text),
+                        Supplied::Nothing => property.simple_value().cloned(),
+                        Supplied::Other | Supplied::Faulty => None,
+                    };
+                    let value = value(property, text.as_ref(), is_given);
                     let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
                     // What has to be supplied and is not is told where it should be.
                     let must = property.must_supply().is_some_and(|must| must.value);
-                    let is_unset = text.is_none() && !property.has_value();
+                    let is_unset = text.is_none() && !is_given && !property.has_value();
                     let is_misspelt =
                         |outside: Outside<'_>| is_misspelt(&property.name, outside.component, is_declared);
-                    let is_told = Cell::new(is_unset && (must || outside.is_some_and(is_misspelt)));
-                    Name { mistyped, is_told, text, value }
+                    let is_told = is_faulty || is_unset && (must || outside.is_some_and(is_misspelt));
+                    Name { mistyped, is_told: Cell::new(is_told), is_faulty, text, value }
                 });
             }
         }
@@ -98,6 +120,23 @@ impl Names {
         Some(self.all.get(name)?.text.as_ref()?.location)
     }
 
+    /// What a name gives whoever takes its value whole, where that is known without a look at complex values.
+    pub(super) fn supply(&self, name: &str) -> Option<Supplied> {
+        let found = self.all.get(name)?;
+        let supplied = match &found.text {
+            Some(text) => Supplied::Text(text.clone()),
+            None if found.is_faulty => Supplied::Faulty,
+            None => return None,
+        };
+        self.used.borrow_mut().insert(name.to_owned());
+        Some(supplied)
+    }
+
+    /// Whether what gives a name its value has a fault.
+    pub(super) fn is_faulty(&self, name: &str) -> bool {
+        self.all.get(name).is_some_and(|found| found.is_faulty)
+    }
+
     /// The names that were asked for.
     pub(super) fn used(&self) -> Vec<String> {
         self.used.borrow().iter().cloned().collect()
@@ -130,7 +169,7 @@ impl Names {
 }
 
 /// A composite and what it includes, directly or not.
-fn with_included<'a>(main: &'a Composite, contribution: &'a Contribution) -> Vec<&'a Composite> {
+pub(super) fn with_included<'a>(main: &'a Composite, contribution: &'a Contribution) -> Vec<&'a Composite> {
     let mut all = vec![main];
     let mut next = 0;
     while let Some(composite) = all.get(next).copied() {
@@ -148,32 +187,32 @@ fn with_included<'a>(main: &'a Composite, contribution: &'a Contribution) -> Vec
 }
 
 /// What counts in place of the property's own value.
-fn given(property: &Property, outside: Option<Outside<'_>>, options: &Options) -> Option<Text> {
+fn given(property: &Property, outside: Option<Outside<'_>>, options: &Options) -> Supplied {
     let name = property.name.as_str();
+    let of_text = |text: &Text| Supplied::Text(text.clone());
     let by_outside = match outside {
-        None => options.settings.iter().find(|setting| setting.name == *name).map(|set| set.value.clone()),
-        Some(outside) => outside.component.property(name).and_then(|given| match given.source() {
-            Some(source) => {
-                let name = source.strip_prefix('$')?;
-                let found = outside.names.all.get(name)?;
-                outside.names.used.borrow_mut().insert(name.to_owned());
-                found.text.clone()
-            }
-            None => given.simple_value().or(given.from_file()).cloned(),
-        }),
+        None => options.settings.iter().find(|setting| setting.name == *name).map(|set| of_text(&set.value)),
+        Some(outside) => Some((outside.supply)(name)),
     };
-    by_outside.or_else(|| options.variable(property.env()?).cloned())
+    match by_outside {
+        Some(Supplied::Nothing) | None => {
+            let variable = property.env().and_then(|variable| options.variable(variable));
+            variable.map_or(Supplied::Nothing, of_text)
+        }
+        Some(given) => given,
+    }
 }
 
 /// The value of a property as its type has it; without a type, as what it looks like.
-fn value(property: &Property, text: Option<&Text>) -> Result<Value, Problem> {
+fn value(property: &Property, text: Option<&Text>, is_given: bool) -> Result<Value, Problem> {
     let name = quoted(&property.name);
     let Some(text) = text else {
-        if !property.has_value() {
+        if !is_given && !property.has_value() {
             let help = "write it in the file, or give it with `--set`, or in the component that the composite implements";
             return Err(Problem::new(format!("the property {name} has no value")).help(help));
         }
-        return Err(Problem::new(format!("the property {name} has no simple value")));
+        let help = "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`";
+        return Err(Problem::new(format!("the property {name} has no simple value")).help(help));
     };
     let of = property.r#type().filter(|of| !value_type::is_misspelt(of));
     let of = of.map(|of| of.rsplit(':').next().unwrap_or(of)).unwrap_or_default();

@@ -37,7 +37,7 @@ pub(super) struct Parameters<'a> {
 }
 
 /// Parts of values that sources look at that are more than a path: what would take much longer is a mistake.
-const MOST_PARTS: usize = 4_000_000;
+pub(super) const MOST_PARTS: usize = 4_000_000;
 
 /// Values that sources with several can lead to: each component that takes all of a list has each of its values.
 const MOST_VALUES: usize = 4_000_000;
@@ -145,13 +145,7 @@ impl<'a> Parameters<'a> {
             parameter.given = variable.map(Given::Variable);
         }
         parameters.judge_outside(fleet, report);
-        for (unit, names) in fleet.names.iter().enumerate() {
-            for name in names.iter().flat_map(|names| names.used()) {
-                if let Some(parameter) = parameters.units[unit].by_name.get_mut(name.as_str()) {
-                    parameter.is_used = true;
-                }
-            }
-        }
+        parameters.take_for_expressions(fleet, report);
         parameters
     }
 

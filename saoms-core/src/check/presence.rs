@@ -1,6 +1,10 @@
 //! What conditions and replicas ask of the composites that are being unfolded.
 
+mod known;
+
 use std::rc::Rc;
+
+pub(super) use known::Known;
 
 use super::fleet::Unit;
 use super::instance::{Instance, all_complex_texts};
@@ -33,18 +37,24 @@ impl<'a> Unfolding<'a> {
     /// What expressions in a unit can name.
     pub(super) fn names(&mut self, unit: usize) -> Rc<Names> {
         if let Some(Some(known)) = self.fleet.names.get(unit) {
-            return Rc::clone(known);
+            return Rc::clone(&known.names);
         }
         let owner = self.fleet.scopes[self.fleet.units[unit].scope].owner;
-        let outer = owner.map(|owner| self.names(self.fleet.members[owner].unit));
+        if let Some(owner) = owner {
+            self.names(self.fleet.members[owner].unit);
+        }
+        let unfolding = &*self;
+        let supply = owner.map(|owner| move |name: &str| unfolding.supplied(owner, name));
         let component = owner.map(|owner| self.fleet.members[owner].component);
-        let outside = component.zip(outer.as_deref()).map(|(component, names)| Outside { component, names });
+        let outside = component.zip(supply.as_ref());
+        let outside = outside.map(|(component, supply)| Outside { component, supply });
         let main = self.fleet.units[unit].main();
         let names = Rc::new(Names::of(main, self.fleet.contribution, outside, self.options));
+        let known = Known::of(Rc::clone(&names), main, self);
         if self.fleet.names.len() <= unit {
-            self.fleet.names.resize(unit + 1, None);
+            self.fleet.names.resize_with(unit + 1, || None);
         }
-        self.fleet.names[unit] = Some(Rc::clone(&names));
+        self.fleet.names[unit] = Some(known);
         names
     }
 

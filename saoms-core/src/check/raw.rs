@@ -96,6 +96,48 @@ pub(super) fn raw<'a>(
     instance: Option<&'a Instance>,
     report: &mut Report<'_>,
 ) -> Result<Raw<'a>, ()> {
+    let Ok(ways) = ways(property, document, instance) else {
+        // As a rule it was reported by who tried to read it.
+        if let Some(file) = property.file().filter(|_| !report.has_errors()) {
+            let message = "the file was not read";
+            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, message));
+        }
+        return Err(());
+    };
+    let mut ways = ways.into_iter();
+    let Some((first, raw)) = ways.next() else { return Ok(Raw(Vec::new())) };
+    if let Some((second, _)) = ways.next() {
+        let message = format!("the property {} is given a value in two ways", quoted(&property.name));
+        report.push(
+            Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other one").help(
+                "write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
+            ),
+        );
+        return Err(());
+    }
+    Ok(raw)
+}
+
+/// The same, where faults are reported by whoever takes the values.
+pub(super) fn unreported<'a>(
+    property: &'a Property,
+    document: &'a Document,
+    instance: Option<&'a Instance>,
+) -> Result<Raw<'a>, ()> {
+    let mut ways = ways(property, document, instance)?.into_iter();
+    match (ways.next(), ways.next()) {
+        (None, _) => Ok(Raw(Vec::new())),
+        (Some((_, raw)), None) => Ok(raw),
+        _ => Err(()),
+    }
+}
+
+/// The values of each way in which a property gives some, and where that begins; `Err` where it names a file that was not read.
+fn ways<'a>(
+    property: &'a Property,
+    document: &'a Document,
+    instance: Option<&'a Instance>,
+) -> Result<Vec<(Location, Raw<'a>)>, ()> {
     let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
     if let Some(value) = property.value() {
         ways.push((value.location, Raw::one(value)));
@@ -121,28 +163,9 @@ pub(super) fn raw<'a>(
     {
         ways.push((file.location, document_value(from, property, instance)));
     } else if let Some(file) = property.file() {
-        let Some(value) = property.from_file() else {
-            // As a rule it was reported by who tried to read it.
-            if !report.has_errors() {
-                let message = "the file was not read";
-                report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, message));
-            }
-            return Err(());
-        };
-        ways.push((file.location, Raw::one(value)));
+        ways.push((file.location, Raw::one(property.from_file().ok_or(())?)));
     }
-    let mut ways = ways.into_iter();
-    let Some((first, raw)) = ways.next() else { return Ok(Raw(Vec::new())) };
-    if let Some((second, _)) = ways.next() {
-        let message = format!("the property {} is given a value in two ways", quoted(&property.name));
-        report.push(
-            Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other one").help(
-                "write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
-            ),
-        );
-        return Err(());
-    }
-    Ok(raw)
+    Ok(ways)
 }
 
 /// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's property has no value of its own, it

@@ -27,6 +27,7 @@ mod promotions;
 mod properties;
 mod reference;
 mod rules;
+mod several;
 mod severities;
 mod slips;
 mod slips_of_wires;

@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::{Given, Parameters};
+use crate::check::fleet::Fleet;
 use crate::check::levels::Levels;
 use crate::check::path::{Fault, expression, one_of};
 use crate::check::raw::{Piece, Raw, raw};
@@ -16,6 +17,33 @@ use crate::source::Text;
 use crate::xml::{Element, escaped};
 
 impl<'a> Parameters<'a> {
+    /// Notes what expressions use, and what they have it from. What is wrong with that is reported.
+    pub(super) fn take_for_expressions(&mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+        for (unit, known) in fleet.names.iter().enumerate() {
+            let Some(known) = known else { continue };
+            let owner = fleet.scopes[fleet.units[unit].scope].owner;
+            for name in known.names.used() {
+                let Some(parameter) = self.units[unit].by_name.get_mut(name.as_str()) else { continue };
+                parameter.is_used = true;
+                let Some(Given::Component(place, given)) = parameter.given else { continue };
+                let Some(source) = given.source() else { continue };
+                // A name as a whole was looked up as one.
+                if !known.names.is_faulty(&name) && self.declaration(place.unit, source).is_some() {
+                    continue;
+                }
+                owner.into_iter().for_each(|owner| report.about(&fleet.members[owner]));
+                if self.values(place, given, report).is_ok() && known.names.is_faulty(&name) {
+                    let message = "what this looks at is more than there is room for";
+                    let one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message);
+                    report.push(
+                        one.help("look at fewer parts of values: a path such as `$name/part[2]` is free"),
+                    );
+                }
+                report.about_all();
+            }
+        }
+    }
+
     /// What a `source` stands for. Faults are reported.
     pub(super) fn follow(
         &mut self,
