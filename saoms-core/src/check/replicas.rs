@@ -188,9 +188,10 @@ impl<'a> Plan<'a> {
                 };
                 // Fewer robots than the table knows are no mistake where the number is set from outside.
                 let severity = if is_possible { Severity::Warning } else { Severity::Error };
-                report.push(one.severity(severity));
+                report.line_of_none(one.severity(severity));
                 continue;
             };
+            report.line(row.key.location);
             if let Some(first) = seen.get(&index) {
                 let message = format!("there are two lines about the replica {}", quoted(&row.key));
                 let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);

@@ -33,12 +33,16 @@ pub(super) struct Report<'a> {
     /// The prefixes of types that are bound to nothing, by their files.
     unbound: HashSet<(FileId, String)>,
     /// What was said where: a composite that implements several components has its faults once.
-    said: HashSet<(&'static str, Location, u64)>,
+    said: HashSet<Said>,
     /// The replica that is looked at.
     copy: Option<Copied>,
     /// What was said of replicas, by its code and place: of the first, and of how many more.
     copies: Vec<Told>,
     known_copies: HashMap<(&'static str, Location), usize>,
+    /// The lines of tables that are about replicas that are there.
+    lines: HashSet<Location>,
+    /// What was said of lines that are about none: the same composite may have it where it is there another time.
+    lines_of_none: Vec<Diagnostic>,
 }
 
 /// A component that is a replica, or inside one.
@@ -56,6 +60,9 @@ struct Told {
     /// Of how many more than the first.
     more: usize,
 }
+
+/// The code of a diagnostic, its place, and what stands for its message.
+type Said = (&'static str, Location, u64);
 
 /// How many diagnostics about replicas are kept together; further ones are told as they come.
 const MOST_COPIES: usize = 2000;
@@ -79,6 +86,8 @@ impl<'a> Report<'a> {
             copy: None,
             copies: Vec::new(),
             known_copies: HashMap::new(),
+            lines: HashSet::new(),
+            lines_of_none: Vec::new(),
         }
     }
 
@@ -147,9 +156,29 @@ impl<'a> Report<'a> {
         said
     }
 
-    /// Tells what was said of replicas.
+    /// Notes that there is a replica that the line of a table is about which has its name or index here.
+    pub(super) fn line(&mut self, key: Location) {
+        self.lines.insert(key);
+    }
+
+    /// Adds what is told of a line of a table that is about no replica of this composite, unless it is about one elsewhere.
+    pub(super) fn line_of_none(&mut self, diagnostic: Diagnostic) {
+        self.lines_of_none.push(diagnostic);
+    }
+
+    /// Tells what was said of replicas and lines of tables.
     pub(super) fn finish(&mut self) {
+        for one in std::mem::take(&mut self.lines_of_none) {
+            // Said once of each line.
+            if self.lines.insert(one.location) {
+                self.diagnostics.push(one);
+            }
+        }
         for Told { mut one, first: Copied { path, index }, more, .. } in std::mem::take(&mut self.copies) {
+            // What a component around them is told at this place is the same mistake.
+            if self.said.contains(&said(&one)) {
+                continue;
+            }
             let path = quoted(&path);
             let mut about = if one.message.contains(&path) { Vec::new() } else { vec![format!("in {path}")] };
             about.extend(index.map(|index| format!("index {index}")));
@@ -198,9 +227,7 @@ impl<'a> Report<'a> {
         if let Some(copy) = &self.copy {
             return self.push_copy(diagnostic, copy.clone());
         }
-        let message = BuildHasherDefault::<DefaultHasher>::default().hash_one(&diagnostic.message);
-        let said = (diagnostic.code.id, diagnostic.location, message);
-        if self.said.len() >= REMEMBERED || self.said.insert(said) {
+        if self.said.len() >= REMEMBERED || self.said.insert(said(&diagnostic)) {
             self.diagnostics.push(diagnostic);
         }
     }
@@ -229,7 +256,9 @@ impl<'a> Report<'a> {
     /// How many errors there are, as far as they are told.
     pub(super) fn errors(&self) -> usize {
         let of_copies = self.copies.iter().filter(|told| told.one.severity == Severity::Error);
-        self.diagnostics.errors() + of_copies.count()
+        let of_lines = self.lines_of_none.iter().filter(|one| one.severity == Severity::Error);
+        let of_lines = of_lines.filter(|one| !self.lines.contains(&one.location));
+        self.diagnostics.errors() + of_copies.count() + of_lines.count()
     }
 
     /// The place of a part of `text`, in bytes of the text as it is meant.
@@ -250,6 +279,11 @@ impl<'a> Report<'a> {
     /// Whether what stands in the file is XML, and not the bare text of a value.
     pub(super) fn is_xml(&self, file: FileId) -> bool {
         self.sources.get(file).text().trim_start_matches('\u{feff}').trim_start().starts_with('<')
+    }
+
+    /// Whether what is written at a place has expressions in it.
+    pub(super) fn has_expression_at(&self, at: Location) -> bool {
+        has_expression(self.sources.snippet(at))
     }
 
     /// Whether there are so many diagnostics of this code at this place's file that one more is counted and not shown.
@@ -287,6 +321,11 @@ impl<'a> Report<'a> {
             None => one.help(format!("{known_as} {}", list(candidates))),
         }
     }
+}
+
+fn said(one: &Diagnostic) -> Said {
+    let message = BuildHasherDefault::<DefaultHasher>::default().hash_one(&one.message);
+    (one.code.id, one.location, message)
 }
 
 /// The places of the parts of a text.

@@ -226,6 +226,10 @@ impl<'a> Unique<'a> {
         let own = later.component.properties.iter().filter_map(Property::only_text);
         let is_own = own.clone().any(|text| text.location == seen.place);
         report.push(match first.place == seen.place {
+            // Of replicas, whose expression is not different for each.
+            true if later.instance.is_some() && is_own && report.has_expression_at(seen.place) => one.help(
+                "what stands here comes to the same for several replicas: `${index}` is different for each",
+            ),
             // Of replicas.
             true if later.instance.is_some() && is_own => {
                 let meant = match value {

@@ -243,6 +243,16 @@ fn what_is_said_of_many_replicas_is_told_once() {
 <component name="X${index:02}" saoms:count="3"><implementation.java class="example.Robott"/></component>"#,
         &[],
     ));
+    // An expression that is not different enough is not mended by another one behind what it came to.
+    expect![[r#"
+        3:21-34 error S3013: components `R2` and `R3` have the same `ID` `R1` (index 3)
+          help: every robot needs its own
+          help: what stands here comes to the same for several replicas: `${index}` is different for each
+    "#]].assert_eq(&of(
+        r#"<component name="R${index}" saoms:count="3"><implementation.java class="example.Robot"/>
+<property name="ID">R${index / 2}</property><property name="period">1</property><property name="number">${index % 2 + 1}</property></component>"#,
+        &[],
+    ));
 }
 
 #[test]

@@ -1,9 +1,37 @@
-//! Composites that are given what they need from outside.
+//! Composites that are there several times, or are given what they need from outside.
+
+use std::fs;
 
 use expect_test::expect;
+use saoms_core::check::{Options, check};
+use saoms_core::diagnostic::Diagnostics;
+use saoms_core::load::{MAX_SIZE, load_file, load_named, read};
+use saoms_core::model::Contribution;
+use saoms_core::source::Sources;
 
+use crate::classes::registry;
 use crate::fleets::fleet;
-use crate::support::{outcome, part};
+use crate::support::{outcome, part, shown};
+
+/// Writes files into a folder, checks the first of them, and gives what is wrong without that folder's name.
+fn found(files: &[(&str, &str)]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = read(&folder.path().join(files[0].0), MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
+    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    let mut fleet = Contribution::of(vec![composite]);
+    load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
+    let assembly = check(&fleet, &registry(), &Options::default(), &sources, &mut diagnostics);
+    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+    let numbers = assembly.into_iter().flat_map(|assembly| assembly.components).map(|one| {
+        let number = one.values.iter().find(|(name, _)| name == "number").map(|(_, value)| value.clone());
+        format!("{} {number:?}\n", one.path)
+    });
+    found.replace(&format!("{}/", folder.path().display()), "") + &numbers.collect::<String>()
+}
 
 /// What a component gives the composite that it implements counts for expressions as it does for sources, however it is given.
 #[test]
@@ -76,4 +104,57 @@ fn expressions_inside_of_composites_take_what_sources_lead_to() {
         Hall/Hall2/G2 (example.Gps) other->
     "#]]
     .assert_eq(&outcome(&[&through, &wing, &hall], &[]));
+}
+
+/// A composite that is there several times has one table: each of its lines may be about a replica in one of them.
+#[test]
+fn lines_of_tables_are_about_a_replica_in_any_of_the_places_of_a_composite() {
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="first">1</property>
+<component name="R${index}" saoms:count="2" saoms:from="first" saoms:overrides="table.csv"><implementation.java class="example.Robot"/>
+<property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property></component>"#,
+    );
+    let halls = fleet(
+        r#"<component name="A"><implementation.composite name="t:hall"/></component>
+<component name="B"><implementation.composite name="t:hall"/><property name="first">11</property></component>"#,
+    );
+    let with =
+        |table: &str| found(&[("a.composite", &halls), ("hall.composite", &hall), ("table.csv", table)]);
+    expect![[r#"
+        table.csv:4:1-2 warning S2047: there is no replica `7`
+          help: the indices go from 1 to 2
+        table.csv:5:1-2 error S2047: there is no replica `x`
+          help: the indices go from 1 to 2
+    "#]]
+    .assert_eq(&with("index,number\n1,5\n12,6\n7,7\nx,8\n"));
+    expect![[r#"
+        A/R1 Some(Text("5"))
+        A/R2 Some(Text("2"))
+        B/R11 Some(Text("11"))
+        B/R12 Some(Text("6"))
+    "#]]
+    .assert_eq(&with("name,number\nR1,5\nR12,6\n"));
+}
+
+/// What is wrong outside of a composite is told there, and not again of each replica inside that has it from there.
+#[test]
+fn what_replicas_have_from_outside_is_told_once() {
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<reference name="gps" promote="R*/gps" multiplicity="0..1"/>
+<component name="R${index}" saoms:count="3"><implementation.java class="example.Robot"/>
+<property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property></component>"#,
+    );
+    let halls = fleet(
+        r#"<component name="A"><implementation.composite name="t:hall"/><reference name="gps" target="Gsp"/></component>
+<component name="Gps"><implementation.java class="example.Gps"/></component>"#,
+    );
+    expect![[r#"
+        2:92-95 error S2011: there is no component `Gsp`
+          fix: replace `Gsp` with `Gps` [2:92-95 "Gps"]
+    "#]]
+    .assert_eq(&outcome(&[&halls, &hall], &[]));
 }
