@@ -87,11 +87,14 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
         }
         Symbol::Composite { file } => {
             let one = &scene.files[*file];
-            let count = one.outline.components.len();
+            let count = match one.outline.components.len() {
+                1 => "1 component".to_owned(),
+                count => format!("{count} components"),
+            };
             let namespace = &one.outline.namespace;
             let name = composite_name(scene, *file);
             let path = one.path.display();
-            Some(format!("**{name}**, a composite of `{namespace}`\n\n{count} components, in `{path}`"))
+            Some(format!("**{name}**, a composite of `{namespace}`\n\n{count}, in `{path}`"))
         }
         Symbol::Loop { .. } => {
             let component = scene.component_around(scene.file().tree.innermost(start + 1)?)?;

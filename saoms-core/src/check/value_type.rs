@@ -8,6 +8,21 @@ use crate::model::{Part, Property};
 use crate::source::{Location, Span, Text};
 use crate::xml::Document;
 
+/// What other languages call types of XML Schema.
+const OTHER_NAMES: &[(&str, &str)] = &[
+    ("bool", "boolean"),
+    ("str", "string"),
+    ("text", "string"),
+    ("number", "double"),
+    ("real", "double"),
+    ("uint", "unsignedInt"),
+    ("int32", "int"),
+    ("int64", "long"),
+    ("float32", "float"),
+    ("float64", "double"),
+    ("uri", "anyURI"),
+];
+
 /// Which type of XML Schema is made of which other one.
 const DERIVED: &[(&str, &str)] = &[
     ("integer", "decimal"),
@@ -148,8 +163,20 @@ fn is_of(
         kind.1
     );
     let one = Diagnostic::new(code, at, message).label(of.location, "the type");
-    report.push(one.help("change the value, or the type"));
+    report.push(match meant_boolean(value).filter(|_| kind.0 == "boolean") {
+        Some(meant) => one.suggest(replacing(value, meant), at, meant),
+        None => one.help("change the value, or the type"),
+    });
     false
+}
+
+/// What a text stands for that is nearly a boolean.
+fn meant_boolean(text: &str) -> Option<&'static str> {
+    match text.to_ascii_lowercase().as_str() {
+        "yes" | "y" | "on" | "t" => Some("true"),
+        "no" | "n" | "off" | "f" => Some("false"),
+        other => nearest(other, ["true", "false"]),
+    }
 }
 
 /// Whether it is told that a value is none for the class that takes it, which says more.
@@ -278,7 +305,9 @@ pub(super) fn named(property: &Property, document: &Document, report: &mut Repor
     }
     let message = format!("XML Schema has no type {}", quoted(local));
     let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message);
-    report.push(match nearest(local, BUILT_IN_TYPES.iter().copied()) {
+    // What other languages call it.
+    let other = OTHER_NAMES.iter().find(|(name, _)| *name == local).map(|(_, meant)| *meant);
+    report.push(match other.or_else(|| nearest(local, BUILT_IN_TYPES.iter().copied())) {
         Some(meant) => {
             let meant = if prefix.is_empty() { meant.to_owned() } else { format!("{prefix}:{meant}") };
             one.suggest(replacing(of, &meant), of.location, meant)

@@ -85,7 +85,7 @@ fn two(
             }
         }
         "==" | "!=" => {
-            let other = value(right, lookup)?;
+            let other = value(right, lookup).map_err(|fault| unquoted(fault, &left, right))?;
             if std::mem::discriminant(&left) != std::mem::discriminant(&other) {
                 let message = format!("{left} cannot be compared with {other}");
                 return Err(Problem::new(message)
@@ -99,6 +99,16 @@ fn two(
             calculated(whole, one, operator, other, right)
         }
     }
+}
+
+/// A fault of what a text is compared with: a name that stands for nothing is probably a text without its quotes.
+fn unquoted(fault: Fault, text: &Value, of: &Expression) -> Fault {
+    let (Value::Text(_), Node::Name(name, _), None) = (text, &of.node, &fault.problem.instead) else {
+        return fault;
+    };
+    let also = fault.problem.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
+    let help = format!("a text stands between two `'`, as {}{also}", quoted(&format!("'{name}'")));
+    Fault { problem: fault.problem.help(help), ..fault }
 }
 
 fn calculated(

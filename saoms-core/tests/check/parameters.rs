@@ -331,6 +331,11 @@ fn types_that_xml_schema_does_not_have_are_told_with_the_nearest() {
           fix: replace `xsd:itn` with `xsd:int` [2:30-37 "xsd:int"]
     "#]]
     .assert_eq(&property("xsd:itn"));
+    expect![[r#"
+        2:30-38 error S2050: XML Schema has no type `bool`
+          fix: replace `xsd:bool` with `xsd:boolean` [2:30-38 "xsd:boolean"]
+    "#]]
+    .assert_eq(&property("xsd:bool"));
     assert_eq!(property("own:itn") + &property("xsd:unsignedByte"), "");
 }
 
