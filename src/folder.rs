@@ -1,7 +1,7 @@
 //! Folders on the command line: contributions, with the fleets in them.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use saoms_core::check::Options;
@@ -9,7 +9,7 @@ use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
 use saoms_core::load::{Finder, FolderFleet, SideFile};
 use saoms_core::model::Contribution;
 use saoms_core::registry::Registry;
-use saoms_core::source::{Sources, Span};
+use saoms_core::source::{Sources, Span, identity};
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
@@ -106,13 +106,20 @@ pub(crate) fn checked_each<T>(
         _ = check(&beside, &registry, &options, &sources, &mut diagnostics);
     }
     let mut merged = Merged::default();
-    let count = fleets.len();
+    let mut count = fleets.len();
     merged.add(diagnostics.into_all(), true, &sources);
     let mut contribution = Contribution::default();
     let mut made = Vec::new();
     // Composites in one folder have the same plugins, whose faults are told once.
     let mut registries: HashMap<Vec<PathBuf>, Registry> = HashMap::new();
+    // What a contribution exports is a fleet of its own only where no other one that is checked takes it.
+    fleets.sort_by_key(|fleet| fleet.is_exported);
+    let mut taken: HashSet<PathBuf> = HashSet::new();
     for FolderFleet { files, is_deployable, is_exported } in fleets {
+        if is_exported && files.iter().all(|file| taken.contains(&identity(file))) {
+            count -= 1;
+            continue;
+        }
         let beside: Vec<PathBuf> =
             files.iter().filter_map(|file| file.parent().map(Path::to_owned)).collect();
         let registry = match registries.entry(beside) {
@@ -134,6 +141,8 @@ pub(crate) fn checked_each<T>(
         let is_whole = is_deployable || count == 1 && !is_exported;
         merged.add(found.diagnostics, is_whole, &sources);
         contribution = found.contribution;
+        let named = contribution.composites().iter().skip(files.len());
+        taken.extend(named.map(|one| identity(Path::new(sources.get(one.file()).path()))));
         made.extend(files.into_iter().next().zip(found.made));
     }
     let diagnostics = merged.finish(count);

@@ -195,6 +195,36 @@ fn the_only_composite_of_a_library_may_lack_what_others_give_it() {
     assert_eq!(described("<export namespace=\"urn:a\"/><deployable composite=\"a:hall\"/>"), 2);
 }
 
+/// A part that another contribution includes counts as a part of that, as within one contribution.
+#[test]
+fn what_a_contribution_exports_is_checked_where_another_one_takes_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    let described = |inside: &str| {
+        format!(
+            "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:f=\"urn:f\">{inside}</contribution>"
+        )
+    };
+    let world = "<include name=\"a:part\"/><component name=\"World\"><implementation.rust class=\"saoms.World\"/><property name=\"ID\">World</property><property name=\"period\">100</property></component>";
+    let fleet = composite("fleet", world).replace("targetNamespace=\"urn:a\"", "targetNamespace=\"urn:f\"");
+    write("fleet/fleet.composite", &fleet);
+    write(
+        "fleet/sca-contribution.xml",
+        &described("<import namespace=\"urn:a\"/><deployable composite=\"f:fleet\"/>"),
+    );
+    write("a/sca-contribution.xml", &described("<export namespace=\"urn:a\"/>"));
+    write("a/part.composite", &composite("part", &robot(1, "<reference name=\"world\" target=\"World\"/>")));
+    let (code, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
+    assert_eq!((code, stdout.as_str()), (0, "2 components: 0 errors, 0 warnings\n"), "{stderr}");
+    // Nobody else takes it here.
+    let (code, _, stderr) = saoms(folder.path(), &["check", "a"], "");
+    assert!(code == 2 && stderr.contains("there is no component `World`"), "{stderr}");
+}
+
 #[test]
 fn files_beside_composites_are_checked_by_themselves() {
     let folder = tempfile::tempdir().unwrap();
