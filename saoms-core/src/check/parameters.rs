@@ -1,5 +1,6 @@
 //! The properties of composites: what `source="$name"` and `source="$name/path"` stand for.
 
+mod settings;
 mod sources;
 
 use std::cell::{Cell, OnceCell};
@@ -164,51 +165,6 @@ impl<'a> Parameters<'a> {
                 if parameter.is_some_and(|parameter| std::ptr::eq(parameter.property, property)) {
                     value_type::given(Typed { property, document }, value, report);
                 }
-            }
-        }
-    }
-
-    /// The places of the units of composites that run by themselves.
-    fn outermost<'f>(fleet: &'f Fleet<'_>) -> impl Iterator<Item = usize> + use<'f> {
-        fleet.scopes.first().into_iter().flat_map(|scope| scope.units.iter().copied())
-    }
-
-    fn set(&mut self, fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) {
-        let mut first: HashMap<&str, &Setting> = HashMap::new();
-        for setting in &options.settings {
-            if let Some(earlier) = first.insert(&setting.name, setting) {
-                let message = format!("{} is set twice", quoted(&setting.name));
-                report.push(
-                    Diagnostic::new(&codes::SETTING_REPEATED, setting.name.location, message)
-                        .label(earlier.name.location, "first here")
-                        .help("keep one of them"),
-                );
-                continue;
-            }
-            let mut is_known = false;
-            for unit in Self::outermost(fleet) {
-                if let Some(parameter) = self.units[unit].by_name.get_mut(setting.name.as_str()) {
-                    parameter.given = Some(Given::Setting(setting));
-                    is_known = true;
-                }
-            }
-            // One that could not be read may have it.
-            if !is_known && !is_any_unread(fleet, report) {
-                let mut names: Vec<&str> =
-                    Self::outermost(fleet).flat_map(|unit| self.units[unit].names()).copied().collect();
-                names.sort_unstable();
-                names.dedup();
-                let message = format!("no composite has a property {}", quoted(&setting.name));
-                let at = setting.name.location;
-                let known = ("the properties of the composite are", names.iter().copied());
-                let mut one = report.unknown(&codes::UNKNOWN_SETTING, at, message, &setting.name, known);
-                if options.shared_settings {
-                    one = one.severity(Severity::Note);
-                }
-                report.push(match names.is_empty() {
-                    true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
-                    false => one,
-                });
             }
         }
     }
@@ -445,15 +401,6 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
 pub(super) fn is_misspelt(name: &str, owner: &Component, is_declared: impl Fn(&str) -> bool) -> bool {
     let unknown = owner.properties.iter().filter(|given| !is_declared(&given.name));
     unknown.take(MOST_MISSPELT).any(|given| nearest(&given.name, [name]).is_some())
-}
-
-/// Whether a file could not be read that may hold a composite, which is reported.
-fn is_any_unread(fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
-    let composites = fleet.contribution.composites();
-    let is_of_files = |one: &&Diagnostic| one.code.id.starts_with("S00") || one.code.id.starts_with("S01");
-    let faults = report.diagnostics().iter().filter(|one| one.severity == Severity::Error);
-    let mut files = faults.filter(is_of_files).map(|one| one.location.file);
-    files.any(|file| composites.iter().all(|composite| composite.file() != file))
 }
 
 /// A composite property that has to be given a value, by the component that the composite implements where there is one.

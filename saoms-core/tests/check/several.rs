@@ -158,3 +158,19 @@ fn what_replicas_have_from_outside_is_told_once() {
     "#]]
     .assert_eq(&outcome(&[&halls, &hall], &[]));
 }
+
+/// Settings are for the outermost composite: those of others have their values from the components that they implement.
+#[test]
+fn a_setting_of_a_property_inside_is_told_with_who_gives_it() {
+    let hall = part(
+        "hall",
+        "",
+        r#"<property name="count">7</property>
+<component name="R"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1</property><property name="number" source="$count"/></component>"#,
+    );
+    let outer = fleet(r#"<component name="Hall"><implementation.composite name="t:hall"/></component>"#);
+    expect![[r#"
+        --set:1:1-6 error S2029: the outermost composite has no property `count`
+          help: the composite `hall` inside has one, and has its value from component `Hall`: let that take it from a property of the outermost composite, `<property name="count" source="$..."/>`, and set this one
+    "#]].assert_eq(&outcome(&[&outer, &hall], &["count=3"]));
+}
