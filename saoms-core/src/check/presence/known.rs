@@ -52,22 +52,26 @@ impl<'a> Known<'a> {
         Self { names, properties, found: RefCell::default(), sizes: RefCell::default(), left }
     }
 
-    /// Counts what a path looks at in a value; `Err` where there is no room for it.
-    fn look(&self, name: &str, path: &str, whole: &Raw<'a>) -> Result<(), ()> {
-        let known = self.sizes.borrow().get(name).copied();
-        let size = known.unwrap_or_else(|| {
-            let elements = whole.0.iter().flat_map(|piece| match piece {
-                Piece::Text(_) => &[],
-                Piece::Elements(elements, _) => &elements[..],
-                Piece::Whole(_, root, _) => std::slice::from_ref(root),
-            });
-            let size = elements.map(|element| 1 + element.descendants().count()).sum();
-            self.sizes.borrow_mut().insert(name.to_owned(), size);
-            size
-        });
+    /// Counts what a path looks at in a value that was measured; `Err` where there is no room for it.
+    fn look(&self, name: &str, path: &str) -> Result<(), ()> {
+        let size = self.sizes.borrow().get(name).copied().unwrap_or_default();
         let cost = size.saturating_mul(1 + path.matches('/').count());
         self.left.elements.set(self.left.elements.get().checked_sub(cost).ok_or(())?);
         Ok(())
+    }
+
+    /// Counts the elements in a value, before the second path leads into it.
+    fn measure(&self, name: &str, whole: &Raw<'a>) {
+        if self.sizes.borrow().contains_key(name) {
+            return;
+        }
+        let elements = whole.0.iter().flat_map(|piece| match piece {
+            Piece::Text(_) => &[],
+            Piece::Elements(elements, _) => &elements[..],
+            Piece::Whole(_, root, _) => std::slice::from_ref(root),
+        });
+        let size = elements.map(|element| 1 + element.descendants().count()).sum();
+        self.sizes.borrow_mut().insert(name.to_owned(), size);
     }
 }
 
@@ -124,12 +128,13 @@ impl<'a> Unfolding<'a> {
         let known = self.known(unit).ok_or(())?;
         let Some((name, path)) = expression(source) else { return self.by_xpath(unit, source) };
         let Some(&(_, property)) = known.properties.get(name) else { return self.by_xpath(unit, source) };
+        let Some(path) = path else { return Ok(self.whole(unit, name)?.inside_elements_of(property)) };
+        known.look(name, path)?;
         let whole = self.whole(unit, name)?;
-        let Some(path) = path else { return Ok(whole.inside_elements_of(property)) };
         if whole.0.is_empty() {
             return Ok(whole);
         }
-        known.look(name, path, &whole)?;
+        known.measure(name, &whole);
         let whole = match one_of(whole.split_into_elements_of(property), path) {
             Err(Fault { is_understood: false, .. }) => return self.by_xpath(unit, source),
             found => found.map_err(drop)?,
