@@ -1,6 +1,7 @@
 //! What components give the composites that they implement, as far as expressions ask for it before there are
 //! [`Parameters`](crate::check::parameters::Parameters), which report what is wrong with it.
 
+use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -178,8 +179,13 @@ impl<'a> Unfolding<'a> {
         let mut variables = Vec::new();
         for (name, _) in xpath.variables() {
             let &(_, property) = known.properties.get(name.as_str()).ok_or(())?;
-            let whole = self.whole(unit, &name)?.split_into_elements_of(property);
-            variables.push((name, whole));
+            // A text was found when the names of the unit were: around composites inside each other it is not put together anew for each.
+            let whole = match known.names.supply(&name) {
+                Some(Supplied::Text(text)) => Raw(vec![Piece::Text(Cow::Owned(text))]),
+                Some(Supplied::Faulty) => return Err(()),
+                _ => self.whole(unit, &name)?,
+            };
+            variables.push((name, whole.split_into_elements_of(property)));
         }
         if !source.contains(['$', '(']) {
             return Err(());
