@@ -30,7 +30,9 @@ struct Known {
     properties: Option<Vec<Last>>,
 }
 
+/// A property with the value that it had last.
 struct Last {
+    /// Its place in the class.
     slot: usize,
     text: SmolStr,
     /// Whether that is how it is written, so that what is written so again is the same.
@@ -76,9 +78,9 @@ impl Patterns {
 fn regular(pattern: &Pattern, slots: &Slots<'_>) -> Option<Vec<Last>> {
     let place = |one: &Pair| slots.place(&one.name).filter(|place| slots.all[*place].takes_text);
     let places: Vec<usize> = pattern.properties().iter().map(place).collect::<Option<_>>()?;
-    let has_default =
+    let has_preset =
         |place: usize| slots.all[place].main().is_some_and(|main| slots.preset(&main.name).is_some());
-    let is_whole = slots.required.iter().all(|place| places.contains(place) || has_default(*place));
+    let is_whole = slots.required.iter().all(|place| places.contains(place) || has_preset(*place));
     let is_regular = is_whole && pattern.has_distinct_names();
     is_regular.then(|| {
         places.into_iter().map(|slot| Last { slot, text: SmolStr::default(), is_as_written: false }).collect()

@@ -190,13 +190,13 @@ impl Plan {
             && self.references.iter().all(|(_, target)| target.is_none_or(is_word))
     }
 
-    /// Those of another name than in the first one are a list at once.
+    /// The properties of a component. Where some are called otherwise than in the first one they are a list at once.
     fn properties(&mut self, copy: &Copy<'_>) -> Properties {
-        let mut all = self.pattern.properties().iter();
-        if self.pattern.properties().is_empty() {
+        let all = self.pattern.properties();
+        if all.is_empty() {
             return Properties::default();
         }
-        if self.has_names && all.all(|one| copy.is_same(one.name_at)) {
+        if self.has_names && all.iter().all(|one| copy.is_same(one.name_at)) {
             return Properties::placed(&self.pattern, copy.element);
         }
         let made = self.pattern.make(copy.element.id());

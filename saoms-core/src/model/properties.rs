@@ -105,7 +105,8 @@ impl DerefMut for Properties {
         }
         match &mut self.0 {
             Kept::List(list) => list,
-            Kept::Placed(_) => unreachable!("what was no list was made one above"),
+            // What was no list was made one above.
+            Kept::Placed(_) => unreachable!("properties that were placed are a list"),
         }
     }
 }
