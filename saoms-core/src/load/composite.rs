@@ -45,7 +45,7 @@ impl Loader<'_> {
         let mut plans = Plans::default();
         for child in root.children() {
             let alike = alike.next_if(|one| one.element == child.id());
-            if let Some(made) = alike.and_then(|one| plans.make(*one, document, &composite)) {
+            if let Some(made) = alike.and_then(|one| plans.make(*one, child, &composite)) {
                 composite.components.push(made);
                 continue;
             }

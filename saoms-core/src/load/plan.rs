@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use super::Loader;
 use crate::model::{
-    Component, Composite, Implementation, ImplementationKind, Origin, Pair, Pattern, Place, Policy,
+    Component, Composite, Copied, Implementation, ImplementationKind, Pair, Pattern, Place, Policy,
     Properties, Property, Reference, Service, Value,
 };
-use crate::source::{Located, Span, Text};
+use crate::source::{Located, Text};
 use crate::xml::{Alike, Attribute, Document, Element, ElementId};
 
 /// What the components of one form consist of.
@@ -51,13 +51,12 @@ impl Plans {
     pub(super) fn make(
         &mut self,
         alike: Alike,
-        document: &Document,
+        element: Element<'_>,
         composite: &Composite,
     ) -> Option<Component> {
         let Known::Regular(plan) = self.0.get_mut(alike.form as usize)? else { return None };
         let last = plan.last.take().and_then(|last| composite.components.get(last))?;
-        let element = document.element(alike.element);
-        let made = plan.make(&Copy { alike, element, values: element.values(), last })?;
+        let made = plan.make(&Next { copy: Copied::new(element), alike, last })?;
         plan.last = Some(composite.components.len());
         Some(made)
     }
@@ -128,13 +127,10 @@ impl Loader<'_> {
         if count != 2 + properties.len() + services.len() + references.len() {
             return None;
         }
-        let first = element.id().0;
         let mut place = |part: ElementId, names: &[&str], name: &str| {
             let part = element.document().element(part);
             let at = self.only_of(part, names, name)?;
-            let nth = part.values_behind(element) + at as u32;
-            let bit = 1_u64.checked_shl(nth).unwrap_or_default();
-            Some(Place { element: part.id().0 - first, at: at as u32, nth, bit })
+            Some(Place::of(element, part, at))
         };
         let name = place(element.id(), &["name"], "name")?;
         let class = place(implementation.origin.element, &["class"], "class")?;
@@ -169,73 +165,70 @@ impl Loader<'_> {
 }
 
 /// An element that becomes a component as the last of its form did.
-struct Copy<'c> {
+struct Next<'c> {
+    copy: Copied<'c>,
     alike: Alike,
-    element: Element<'c>,
-    /// Where its values are, and those behind them.
-    values: &'c [Span],
     last: &'c Component,
 }
 
 impl Plan {
     /// Whether a component of the form has nothing in other places than the last one that is to be told of, or read in another way.
-    fn is_plain(&self, copy: &Copy<'_>) -> bool {
+    fn is_plain(&self, next: &Next<'_>) -> bool {
         let has_expression =
-            |place| memchr::memchr(b'$', copy.attribute(place).raw_value().as_bytes()).is_some();
-        let is_word = |place| copy.attribute(place).plain_word().is_some();
-        let mut names = self.names.iter().filter(|place| !copy.is_same(**place));
-        names.all(|place| is_silent_name(copy.attribute(*place)))
-            && (copy.is_same(self.name) || !has_expression(self.name))
-            && (copy.is_same(self.class) || is_word(self.class))
+            |place| memchr::memchr(b'$', next.copy.attribute(place).raw_value().as_bytes()).is_some();
+        let is_word = |place| next.copy.attribute(place).plain_word().is_some();
+        let mut names = self.names.iter().filter(|place| !next.is_same(**place));
+        names.all(|place| is_silent_name(next.copy.attribute(*place)))
+            && (next.is_same(self.name) || !has_expression(self.name))
+            && (next.is_same(self.class) || is_word(self.class))
             && self.references.iter().all(|(_, target)| target.is_none_or(is_word))
     }
 
     /// The properties of a component. Where some are called otherwise than in the first one they are a list at once.
-    fn properties(&mut self, copy: &Copy<'_>) -> Properties {
-        let all = self.pattern.properties();
-        if all.is_empty() {
+    fn properties(&mut self, next: &Next<'_>) -> Properties {
+        if self.pattern.properties().is_empty() {
             return Properties::default();
         }
-        if self.has_names && all.iter().all(|one| copy.is_same(one.name_at)) {
-            return Properties::placed(&self.pattern, copy.element);
+        if self.has_names && self.pattern.has_names_of(next.alike.same) {
+            return Properties::placed(&self.pattern, next.copy.element());
         }
-        let made = self.pattern.make(copy.element.id());
+        let made = self.pattern.make(next.copy.element().id());
         self.has_names = self.pattern.names(&made);
         made.into()
     }
 
-    fn make(&mut self, copy: &Copy<'_>) -> Option<Component> {
-        if !self.is_plain(copy) {
+    fn make(&mut self, next: &Next<'_>) -> Option<Component> {
+        if !self.is_plain(next) {
             return None;
         }
-        let properties = self.properties(copy);
-        let last = copy.last;
-        let class = Some(copy.word(self.class, last.class()?));
+        let properties = self.properties(next);
+        let last = next.last;
+        let class = Some(next.word(self.class, last.class()?));
         let kind = match &last.implementation.as_ref()?.kind {
             ImplementationKind::Java { .. } => ImplementationKind::Java { class },
             _ => ImplementationKind::Rust { class, library: None },
         };
         let services = self.services.iter().zip(&last.services).map(|(name, last)| Service {
-            origin: copy.origin(*name),
-            name: copy.word(*name, &last.name),
+            origin: next.copy.origin(*name),
+            name: next.word(*name, &last.name),
             promote: None,
             contract: None,
         });
         let references = self.references.iter().zip(&last.references).map(|((name, target), last)| {
-            let target = target.and_then(|target| Some(vec![copy.word(target, last.targets.first()?)]));
+            let target = target.and_then(|target| Some(vec![next.word(target, last.targets.first()?)]));
             Reference {
-                origin: copy.origin(*name),
-                name: copy.word(*name, &last.name),
+                origin: next.copy.origin(*name),
+                name: next.word(*name, &last.name),
                 targets: target.unwrap_or_default(),
                 details: None,
                 contract: None,
             }
         });
         Some(Component {
-            origin: copy.origin(self.name),
-            name: copy.word(self.name, &last.name),
+            origin: next.copy.origin(self.name),
+            name: next.word(self.name, &last.name),
             implementation: Some(Implementation {
-                origin: copy.origin(self.class),
+                origin: next.copy.origin(self.class),
                 kind,
                 policy: Policy::NONE,
             }),
@@ -259,19 +252,7 @@ pub(super) fn starts_wrongly(name: &str) -> bool {
     matches!(name.as_bytes(), [b'0'..=b'9' | b'-' | b'.', ..])
 }
 
-impl<'c> Copy<'c> {
-    fn part(&self, place: Place) -> Element<'c> {
-        self.element.document().element(ElementId(self.alike.element.0 + place.element))
-    }
-
-    fn origin(&self, place: Place) -> Origin {
-        Origin::of(self.part(place))
-    }
-
-    fn attribute(&self, place: Place) -> Attribute<'c> {
-        self.part(place).nth_attribute(place.at as usize)
-    }
-
+impl Next<'_> {
     /// Whether the value at a place is as the last one had it.
     fn is_same(&self, place: Place) -> bool {
         self.alike.same & place.bit != 0
@@ -280,10 +261,10 @@ impl<'c> Copy<'c> {
     /// What stands at a place, white space at its ends left out.
     #[inline(always)]
     fn text(&self, place: Place, last: &Text) -> Text {
-        let location = self.values[place.nth as usize].in_file(last.location.file);
+        let location = self.copy.value(place).in_file(last.location.file);
         match self.is_same(place) && location.span.len() == last.location.span.len() {
             true => Located::new(last.value.clone(), location),
-            false => self.attribute(place).trimmed(),
+            false => self.copy.attribute(place).trimmed(),
         }
     }
 
@@ -293,7 +274,7 @@ impl<'c> Copy<'c> {
         match self.is_same(place) {
             true => self.text(place, last),
             false => {
-                let attribute = self.attribute(place);
+                let attribute = self.copy.attribute(place);
                 attribute.as_it_is(attribute.raw_value())
             }
         }

@@ -6,10 +6,10 @@ use std::sync::{Arc, OnceLock};
 
 use smol_str::SmolStr;
 
-use super::{Origin, Property};
+use super::{Copied, Place, Property};
 use crate::hash::Set;
 use crate::source::{Location, Text};
-use crate::xml::{Attribute, Document, Element, ElementId};
+use crate::xml::{Document, Element, ElementId};
 
 /// The properties of a component, in order: a list of [`Property`].
 ///
@@ -159,7 +159,7 @@ impl Placed {
 
     /// The value of a property.
     pub(crate) fn text(&self, property: &Pair) -> Option<Text> {
-        property.value.text(self.pattern.document.element(self.element), property.name_at)
+        property.value.text(&Copied::new(self.pattern.document.element(self.element)), property.name_at)
     }
 }
 
@@ -169,6 +169,8 @@ pub(crate) struct Pattern {
     properties: Vec<Pair>,
     /// Whether each name is there once.
     has_distinct_names: bool,
+    /// The bits of the places of all names; `None` where some have none.
+    names: Option<u64>,
 }
 
 /// A property with its value.
@@ -182,7 +184,9 @@ impl Pattern {
     pub(crate) fn new(document: &Arc<Document>, properties: Vec<Pair>) -> Self {
         let mut names = Set::default();
         let has_distinct_names = properties.iter().all(|one| names.insert(one.name.as_str()));
-        Self { document: Arc::clone(document), properties, has_distinct_names }
+        let bits = properties.iter().map(|one| Some(one.name_at.bit).filter(|bit| *bit != 0));
+        let names = bits.reduce(|all, bit| Some(all? | bit?)).unwrap_or(Some(0));
+        Self { document: Arc::clone(document), properties, has_distinct_names, names }
     }
 
     /// The properties in order.
@@ -195,6 +199,11 @@ impl Pattern {
         self.has_distinct_names
     }
 
+    /// Whether all names are as in the component before, of which these values are the same.
+    pub(crate) fn has_names_of(&self, same: u64) -> bool {
+        self.names.is_some_and(|names| names & !same == 0)
+    }
+
     /// Whether properties are called as it says.
     pub(crate) fn names(&self, properties: &[Property]) -> bool {
         self.properties.iter().map(|one| &one.name).eq(properties.iter().map(|one| &one.name.value))
@@ -202,39 +211,15 @@ impl Pattern {
 
     /// The properties of the component that an element is.
     pub(crate) fn make(&self, element: ElementId) -> Vec<Property> {
-        let component = self.document.element(element);
+        let component = Copied::new(self.document.element(element));
         let made = self.properties.iter().map(|one| Property {
-            origin: Origin::of(one.name_at.part(component)),
-            name: one.name_at.attribute(component).trimmed(),
-            simple: one.value.text(component, one.name_at),
+            origin: component.origin(one.name_at),
+            name: component.attribute(one.name_at).trimmed(),
+            simple: one.value.text(&component, one.name_at),
             is_attribute: matches!(one.value, Value::Attribute(_)),
             details: None,
         });
         made.collect()
-    }
-}
-
-/// Where an attribute is in a component.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    /// Its element, counted from that of the component.
-    pub(crate) element: u32,
-    /// Its place among the attributes of that, and among all of the component, with the bit of that.
-    pub(crate) at: u32,
-    pub(crate) nth: u32,
-    pub(crate) bit: u64,
-}
-
-impl Place {
-    /// The element that has it.
-    #[inline]
-    pub(crate) fn part<'d>(&self, component: Element<'d>) -> Element<'d> {
-        component.document().element(ElementId(component.id().0 + self.element))
-    }
-
-    #[inline]
-    pub(crate) fn attribute<'d>(&self, component: Element<'d>) -> Attribute<'d> {
-        self.part(component).nth_attribute(self.at as usize)
     }
 }
 
@@ -248,10 +233,10 @@ pub(crate) enum Value {
 
 impl Value {
     /// The value of the property whose name is at a place of a component.
-    fn text(&self, component: Element<'_>, name: Place) -> Option<Text> {
+    fn text(&self, component: &Copied<'_>, name: Place) -> Option<Text> {
         match self {
-            Self::Attribute(place) => Some(place.attribute(component).trimmed()),
-            Self::Text => name.part(component).trimmed_text(),
+            Self::Attribute(place) => Some(component.attribute(*place).trimmed()),
+            Self::Text => component.element().inner(name.element).trimmed_text(),
         }
     }
 }

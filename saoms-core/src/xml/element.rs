@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
+use super::arena::{Place, Seen};
 use super::shape::{Part, Shape};
-use super::tree::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, Node, XMLNS};
+use super::tree::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, XMLNS};
 use super::value;
 use crate::source::{Located, Location, Span, Text};
 
@@ -12,28 +13,45 @@ use crate::source::{Located, Location, Span, Text};
 pub struct Element<'a> {
     document: &'a Document,
     id: ElementId,
+    place: Place,
 }
 
 impl<'a> Element<'a> {
     #[inline]
     pub(super) fn new(document: &'a Document, id: ElementId) -> Self {
-        assert!((id.0 as usize) < document.nodes.len(), "the element is of this document");
-        Self { document, id }
+        assert!(id.0 < document.arena.len(), "the element is of this document");
+        Self { document, id, place: document.arena.place(id.0) }
     }
 
     #[inline]
-    fn node(self) -> &'a Node {
-        &self.document.nodes[self.id.0 as usize]
+    fn node(self) -> Seen<'a> {
+        self.document.arena.get(self.id.0, self.place)
     }
 
     #[inline]
     fn tag(self) -> &'a Shape {
-        self.document.shapes.get(self.node().shape)
+        self.document.shapes.get(self.node().shape())
     }
 
+    /// Another element of this one, or one that this one is in.
     #[inline]
-    fn at(self, id: u32) -> Option<Self> {
-        (id != NONE).then_some(Self { document: self.document, id: ElementId(id) })
+    fn near(self, id: u32) -> Self {
+        let Self { document, id: ElementId(own), place } = self;
+        match (own, id) {
+            (0, _) => Self::new(document, ElementId(id)),
+            (_, 0) => Self { document, id: ElementId::ROOT, place: Place::ROOT },
+            _ => Self { document, id: ElementId(id), place: place.moved(id.wrapping_sub(own)) },
+        }
+    }
+
+    /// The one behind it.
+    #[inline]
+    fn sibling(self, id: u32) -> Self {
+        let Self { document, place, .. } = self;
+        match self.node().parent() {
+            0 => Self { document, id: ElementId(id), place: document.arena.place_behind(id, place) },
+            _ => self.near(id),
+        }
     }
 
     /// Its identifier in its document.
@@ -78,18 +96,18 @@ impl<'a> Element<'a> {
 
     /// From the `<` of the start tag to behind the `>` of the end tag.
     pub fn span(self) -> Span {
-        Span::new(self.node().start, self.node().end)
+        Span::new(self.node().start(), self.node().end())
     }
 
     /// From the `<` to behind the `>` of the start tag.
     pub fn start_tag_span(self) -> Span {
-        Span::new(self.node().start, self.node().tag_end)
+        Span::new(self.node().start(), self.node().tag_end())
     }
 
     /// The name in the start tag.
     #[inline]
     pub fn name_span(self) -> Span {
-        let start = self.node().start + 1;
+        let start = self.node().start() + 1;
         Span::new(start, start + self.tag().name_len)
     }
 
@@ -102,8 +120,8 @@ impl<'a> Element<'a> {
     /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
     #[inline]
     pub fn content_span(self) -> Span {
-        let Node { tag_end, end, is_closed, .. } = *self.node();
-        if tag_end == end || !is_closed {
+        let (tag_end, end) = (self.node().tag_end(), self.node().end());
+        if tag_end == end || !self.is_closed() {
             return Span::new(tag_end, end);
         }
         // Most end tags have no white space before their `>`.
@@ -120,45 +138,50 @@ impl<'a> Element<'a> {
     /// Whether it was read to its end; only those that were open at a fault were not.
     #[inline]
     pub fn is_closed(self) -> bool {
-        self.node().is_closed
+        self.node().is_closed()
     }
 
     /// The element it is in.
     pub fn parent(self) -> Option<Self> {
-        self.at(self.node().parent)
+        let parent = self.node().parent();
+        (parent != NONE).then(|| self.near(parent))
     }
 
     /// The elements directly inside, in order.
     #[inline]
     pub fn children(self) -> impl Iterator<Item = Self> + use<'a> {
-        let next = self.id.0 + 1;
-        let first = match self.document.nodes.get(next as usize) {
-            Some(node) if node.parent == self.id.0 => self.at(next),
-            _ => None,
-        };
-        std::iter::successors(first, |child| child.at(child.node().next))
+        let end = self.node().after();
+        let first = self.id.0 + 1;
+        std::iter::successors((first < end).then(|| self.near(first)), move |child| {
+            let next = child.node().after();
+            (next < end).then(|| child.sibling(next))
+        })
     }
 
     /// Itself and everything inside, in document order.
     pub fn descendants(self) -> impl Iterator<Item = Self> + use<'a> {
-        let end = self.node().end;
-        (self.id.0..self.document.nodes.len() as u32)
-            .map_while(move |id| self.at(id).filter(|inner| inner.node().start < end))
+        (self.id.0..self.node().after()).map(move |id| self.near(id))
+    }
+
+    /// The one of its [`descendants`](Self::descendants) at a place among them.
+    #[inline]
+    pub(crate) fn inner(self, place: u32) -> Self {
+        self.near(self.id.0 + place)
     }
 
     /// A number that elements have in common whose start tags are the same but for the values, white space and the namespaces included.
     #[inline]
     pub(crate) fn shape(self) -> usize {
-        self.node().shape as usize
+        self.node().shape() as usize
     }
 
     /// How many values of attributes there are from the start of another element, which starts before it, to its own.
     pub(crate) fn values_behind(self, other: Self) -> u32 {
-        self.node().values - other.node().values
+        self.node().values() - other.node().values()
     }
 
     pub(super) fn count_of_attributes(self) -> usize {
-        self.document.shapes.parts(self.node().shape).len()
+        self.document.shapes.parts(self.node().shape()).len()
     }
 
     /// Whether it has neither attributes nor anything inside.
@@ -174,13 +197,13 @@ impl<'a> Element<'a> {
     pub(crate) fn nth_attribute(self, at: usize) -> Attribute<'a> {
         let node = self.node();
         // As many as its shape has attributes stand there.
-        let value = self.document.values[node.values as usize + at];
-        Attribute { document: self.document, shape: node.shape, at: at as u32, value }
+        let value = self.document.arena.values[node.values() as usize + at];
+        Attribute { document: self.document, shape: node.shape(), at: at as u32, value }
     }
 
     /// The place of the first of its values among those of the document.
     pub(crate) fn first_value(self) -> u32 {
-        self.node().values
+        self.node().values()
     }
 
     /// Where the values of all attributes are from its own on, those of inner elements and of all behind it included.
@@ -244,22 +267,20 @@ impl<'a> Element<'a> {
 
     /// The name in the end tag; `None` for `<a/>` and where the end tag was not read.
     pub fn end_name_span(self) -> Option<Span> {
-        let Node { tag_end, end, is_closed, .. } = *self.node();
         let start = self.content_span().end + 2;
-        (is_closed && tag_end < end).then(|| Span::new(start, start + self.tag().name_len))
+        (!self.is_empty() && self.is_closed()).then(|| Span::new(start, start + self.tag().name_len))
     }
 
     /// Whether there is nothing between its tags, or no end tag as in `<a/>`.
     #[inline]
     pub(crate) fn is_empty(self) -> bool {
-        let Node { tag_end, end, is_closed, .. } = *self.node();
-        tag_end == end && is_closed
+        self.node().tag_end() == self.node().end() && self.is_closed()
     }
 
     /// Whether text other than white space is directly inside.
     #[inline]
     pub fn has_text(self) -> bool {
-        self.node().has_text
+        self.node().has_text()
     }
 
     /// The stretches of its content that hold text, comments and instructions but no elements.
@@ -337,6 +358,12 @@ pub struct Attribute<'a> {
 }
 
 impl<'a> Attribute<'a> {
+    /// The one whose value this is, by the shape of the tag that it is in and its place there.
+    #[inline]
+    pub(crate) fn of(document: &'a Document, (shape, at): (u32, u32), value: Span) -> Self {
+        Self { document, shape, at, value }
+    }
+
     /// What its shape says of it.
     #[inline]
     fn part(self) -> &'a Part {

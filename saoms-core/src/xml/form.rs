@@ -5,10 +5,12 @@
 
 use std::hash::{BuildHasher, Hasher};
 
+use super::arena::{Alike, Arena, Node};
 use super::eight::{blanks, first_of, same_start};
 use super::fault::Input;
+use super::parse::Open;
 use super::shape::Shapes;
-use super::tree::{Alike, ElementId, NONE, Node};
+use super::tree::{ElementId, NONE};
 use crate::hash::{Map, Seeded};
 use crate::source::Span;
 
@@ -24,15 +26,13 @@ const MOST_OF_KEY: usize = 160;
 /// An element as it is written, told by the last of the form.
 #[derive(Clone, Copy, Debug)]
 struct Form {
-    /// Where that is, with its elements and its values.
+    /// Where that is.
     span: Span,
-    node: u32,
-    nodes: u32,
-    value: u32,
-    /// The first of its holes, and of its marks: there is one for each of its elements.
+    /// How many elements it has.
+    elements: u32,
+    /// The first of its holes.
     hole: u32,
     holes: u32,
-    mark: u32,
     /// The form that came behind the last of this one.
     next: u32,
     /// Whether some of its holes are texts.
@@ -41,19 +41,11 @@ struct Form {
 
 /// What differs from one element of a form to another.
 #[derive(Clone, Copy, Debug)]
-struct Hole {
+pub(super) struct Hole {
     /// In the last of the form.
-    span: Span,
+    pub(super) span: Span,
     /// Whether it is a text, and no value of an attribute.
-    is_text: bool,
-}
-
-/// How many holes come before places of an element.
-#[derive(Clone, Copy, Debug)]
-struct Mark {
-    start: u16,
-    tag_end: u16,
-    end: u16,
+    pub(super) is_text: bool,
 }
 
 /// Finds the forms of elements.
@@ -61,7 +53,6 @@ struct Mark {
 pub(super) struct Forms {
     all: Vec<Form>,
     holes: Vec<Hole>,
-    marks: Vec<Mark>,
     /// The form of the element before.
     last: u32,
     /// By some bytes at its start, the form of the last element that has them there.
@@ -69,15 +60,8 @@ pub(super) struct Forms {
     /// By a hash of all that makes a form.
     numbers: Map<u64, u32>,
     hasher: Seeded,
-    /// The holes of the element at hand, and how far what comes behind each of them is moved from where it is in the last of the form.
+    /// The holes of the element at hand.
     found: Vec<Span>,
-    moved: Vec<u32>,
-}
-
-/// What a parser has read so far.
-pub(super) struct Read<'r> {
-    pub(super) nodes: &'r mut Vec<Node>,
-    pub(super) values: &'r mut Vec<Span>,
 }
 
 impl Forms {
@@ -85,19 +69,17 @@ impl Forms {
         Self {
             all: Vec::new(),
             holes: Vec::new(),
-            marks: Vec::new(),
             last: NONE,
             at_hand: Box::new([NONE; AT_HAND]),
             numbers: Map::default(),
             hasher: Seeded::default(),
             found: Vec::new(),
-            moved: Vec::new(),
         }
     }
 
-    /// Reads the element whose `<` is at `start`, as a child of the root, when it is like one that was read; gives it, and where it ends.
+    /// Reads the element whose `<` is at `start`, as a child of the root, when it is like one that was read; gives where it ends.
     #[inline]
-    pub(super) fn read(&mut self, input: Input<'_>, start: u32, read: &mut Read<'_>) -> Option<(Alike, u32)> {
+    pub(super) fn read(&mut self, input: Input<'_>, start: u32, arena: &mut Arena) -> Option<u32> {
         let expected = self.all.get(self.last as usize)?.next;
         let mut form = expected;
         let mut found = self.matched(expected, input, start);
@@ -106,10 +88,9 @@ impl Forms {
             found = if form == expected { None } else { self.matched(form, input, start) };
         }
         let (end, same) = found?;
-        let element = read.nodes.len() as u32;
-        self.make(form, Span::new(start, end), read);
+        self.copy((form, same), Span::new(start, end), arena);
         self.follow(form, input, start);
-        Some((Alike { element: ElementId(element), form, same }, end))
+        Some(end)
     }
 
     /// Remembers which form came behind the one before.
@@ -162,82 +143,51 @@ impl Forms {
         }
     }
 
-    /// Appends the elements and values of the element that was found to be of a form, which is the last of it now. The first of the elements
-    /// is not linked with others.
-    fn make(&mut self, form: u32, span: Span, read: &mut Read<'_>) {
-        let form = &mut self.all[form as usize];
-        let holes = &mut self.holes[form.hole as usize..(form.hole + form.holes) as usize];
-        self.moved.clear();
-        self.moved.push(span.start.wrapping_sub(form.span.start));
-        let ends = holes.iter().zip(&self.found);
-        self.moved.extend(ends.map(|(hole, found)| found.end.wrapping_sub(hole.span.end)));
+    /// Appends the element that was found to be of a form, which is the last of it now.
+    fn copy(&mut self, (form, same): (u32, u64), span: Span, arena: &mut Arena) {
+        let last = &mut self.all[form as usize];
+        last.span = span;
+        let holes = &mut self.holes[last.hole as usize..(last.hole + last.holes) as usize];
         holes.iter_mut().zip(&self.found).for_each(|(hole, found)| hole.span = *found);
-        let first = read.nodes.len();
-        let further = first as u32 - form.node;
-        let values = read.values.len() as u32;
-        let values_further = values - form.value;
-        match form.has_texts {
-            true => read.values.extend(holes.iter().filter(|hole| !hole.is_text).map(|hole| hole.span)),
-            false => read.values.extend_from_slice(&self.found),
+        arena.alike.push(Alike {
+            element: ElementId(arena.len()),
+            form,
+            same,
+            start: span.start,
+            values: arena.values.len() as u32,
+            kept: arena.kept.len() as u32,
+            copied: last.elements,
+        });
+        arena.copied += last.elements;
+        if last.has_texts {
+            let of = |is_text| holes.iter().filter(move |hole| hole.is_text == is_text).map(|hole| hole.span);
+            arena.values.extend(of(false).chain(of(true)));
+        } else {
+            arena.values.extend_from_slice(&self.found);
         }
-        read.nodes.extend_from_within(form.node as usize..(form.node + form.nodes) as usize);
-        let made = &mut read.nodes[first..];
-        let moved = |at: u32, holes: u16| at.wrapping_add(self.moved[usize::from(holes)]);
-        for (made, mark) in made.iter_mut().zip(&self.marks[form.mark as usize..]) {
-            made.start = moved(made.start, mark.start);
-            made.tag_end = moved(made.tag_end, mark.tag_end);
-            made.end = moved(made.end, mark.end);
-            made.parent += further;
-            // None stays what it is.
-            made.next = if made.next == NONE { NONE } else { made.next + further };
-            made.values += values_further;
-        }
-        made[0].parent -= further;
-        made[0].next = NONE;
-        (form.span, form.node, form.value) = (span, first as u32, values);
     }
-}
 
-impl Forms {
-    /// Takes an element that was read tag by tag, the last of all so far, for the last of its form. `None` for one of which those like it are to be
-    /// read so as well.
-    pub(super) fn take(
-        &mut self,
-        input: Input<'_>,
-        node: u32,
-        shapes: &Shapes,
-        read: &Read<'_>,
-    ) -> Option<Alike> {
-        let all = &read.nodes[node as usize..];
+    /// Takes an element that was read tag by tag, the last of all so far, for the last of its form; unless those like it are to be read so as
+    /// well.
+    pub(super) fn take(&mut self, input: Input<'_>, open: &Open, shapes: &Shapes, arena: &mut Arena) {
+        let all = &arena.kept[open.kept..];
         if all.len() < 2 || all.len() > MOST_NODES || all.iter().any(|one| shapes.get(one.shape).declares) {
-            return None;
+            return;
         }
         let span = Span::new(all[0].start, all[0].end);
-        let (hole, mark) = (self.holes.len(), self.marks.len());
+        let hole = self.holes.len();
         for one in all {
             let count = shapes.parts(one.shape).len();
-            let start = self.holes.len() - hole;
-            let values = &read.values[one.values as usize..one.values as usize + count];
+            let values = &arena.values[one.values as usize..one.values as usize + count];
             self.holes.extend(values.iter().map(|span| Hole { span: *span, is_text: false }));
-            let tag_end = self.holes.len() - hole;
             self.holes.extend(text(input, one).map(|span| Hole { span, is_text: true }));
-            // More than there can be of them are not kept.
-            let [start, tag_end] = [start, tag_end].map(|count| u16::try_from(count).unwrap_or(u16::MAX));
-            self.marks.push(Mark { start, tag_end, end: 0 });
         }
         let holes = &self.holes[hole..];
-        for (mark, one) in self.marks[mark..].iter_mut().zip(all) {
-            let count = holes.partition_point(|hole| hole.span.start < one.end);
-            mark.end = u16::try_from(count).unwrap_or(u16::MAX);
-        }
         let made = Form {
             span,
-            node,
-            nodes: all.len() as u32,
-            value: all[0].values,
+            elements: all.len() as u32,
             hole: hole as u32,
             holes: holes.len() as u32,
-            mark: mark as u32,
             next: NONE,
             has_texts: holes.iter().any(|hole| hole.is_text),
         };
@@ -247,27 +197,34 @@ impl Forms {
         let form = match known {
             None if is_small && self.all.len() < MOST_FORMS => {
                 let form = self.all.len() as u32;
+                arena.add_model(open, &self.holes[hole..]);
                 self.all.push(made);
                 self.numbers.insert(hash, form);
                 form
             }
             None => {
                 self.holes.truncate(hole);
-                self.marks.truncate(mark);
-                return None;
+                return;
             }
             Some(number) => {
                 // It is the last of the form now.
                 let form = &mut self.all[number as usize];
                 self.holes.copy_within(hole.., form.hole as usize);
-                (form.span, form.node, form.value) = (made.span, made.node, made.value);
+                form.span = made.span;
                 self.holes.truncate(hole);
-                self.marks.truncate(mark);
                 number
             }
         };
         self.follow(form, input, span.start);
-        Some(Alike { element: ElementId(node), form, same: 0 })
+        arena.alike.push(Alike {
+            element: ElementId(open.element),
+            form,
+            same: 0,
+            start: span.start,
+            values: arena.kept[open.kept].values,
+            kept: open.kept as u32,
+            copied: 0,
+        });
     }
 
     /// What stands around the holes of a form, in its first, each with whether the hole behind it is a text.

@@ -3,6 +3,7 @@
 //! The tree is an array of elements in document order; nothing of it is recursive, so depth costs no stack. Names and
 //! values stay in the text: only spans are stored. Comments and processing instructions are checked and not kept.
 
+mod arena;
 mod characters;
 mod curly;
 mod eight;
@@ -26,11 +27,11 @@ mod tree;
 mod unbound;
 mod value;
 
+pub(crate) use arena::Alike;
 pub use element::{Attribute, Element};
 pub use escape::escaped;
 pub(crate) use node::Node;
 pub use parse::{Parsed, Tangle, parse};
-pub(crate) use tree::Alike;
 pub use tree::{Document, ElementId};
 pub(crate) use value::{Writing, is_plain};
 

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
+use super::arena::{Arena, Node};
 use super::characters::{Survey, forbidden, is_blank, survey};
 use super::eight::{blanks, first_of, same};
 use super::fault::{Checked, Fault, Input};
-use super::form::{Forms, Read};
+use super::form::Forms;
 use super::namespaces::{Namespaces, refusal};
 use super::shape::Known;
 use super::tag::RawAttribute;
-use super::tree::{Alike, Declared, Document, ElementId, NO_NAMESPACE, NONE, Node, XMLNS};
+use super::tree::{Declared, Document, ElementId, NO_NAMESPACE, NONE, XMLNS};
 use super::{prolog, reference, tag, unbound, value};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{FileId, Span};
@@ -69,9 +70,9 @@ pub fn parse(file: FileId, text: &Arc<String>) -> Parsed {
 /// An element whose end tag has not come yet.
 #[derive(Debug)]
 pub(super) struct Open {
-    pub(super) node: u32,
-    /// The last of its children so far.
-    pub(super) last_child: u32,
+    pub(super) element: u32,
+    /// Its place among the elements that are kept.
+    pub(super) kept: usize,
     /// Declarations of namespaces in scope outside it.
     outside: u32,
 }
@@ -80,12 +81,9 @@ pub(super) struct Parser<'a> {
     pub(super) input: Input<'a>,
     /// Where the event being read starts.
     start: u32,
-    pub(super) nodes: Vec<Node>,
-    values: Vec<Span>,
+    pub(super) arena: Arena,
     shapes: Known,
     forms: Forms,
-    /// The children of the root that have a form.
-    alike: Vec<Alike>,
     /// Those of the tag at hand, when it is read name by name.
     attributes: Vec<RawAttribute>,
     namespaces: Namespaces<'a>,
@@ -102,11 +100,9 @@ impl<'a> Parser<'a> {
         Self {
             input,
             start: 0,
-            nodes: Vec::with_capacity(elements),
-            values: Vec::with_capacity(values),
+            arena: Arena::with_capacity(elements, values),
             shapes: Known::new(),
             forms: Forms::new(),
-            alike: Vec::new(),
             attributes: Vec::new(),
             namespaces: Namespaces::new(),
             open: Vec::new(),
@@ -153,60 +149,39 @@ impl<'a> Parser<'a> {
     /// Gives where it ends.
     fn start_tag(&mut self, start: u32) -> Checked<u32> {
         if self.open.len() == 1
-            && let Some(end) = self.like_before(start)
+            && let Some(end) = self.forms.read(self.input, start, &mut self.arena)
         {
             return Ok(end);
         }
         let outside = self.namespaces.depth();
-        let values = self.values.len() as u32;
-        let known = self.shapes.find(self.input, start, self.namespaces.scope(), &mut self.values);
+        let values = self.arena.values.len() as u32;
+        let known = self.shapes.find(self.input, start, self.namespaces.scope(), &mut self.arena.values);
         let (shape, end) = match known {
             Some(known) if !self.open.is_empty() => known,
             _ => {
-                self.values.truncate(values as usize);
+                self.arena.values.truncate(values as usize);
                 self.new_shape(start)?
             }
         };
-        let is_empty = self.shapes.shapes.get(shape).is_empty;
-        let id = self.nodes.len() as u32;
-        let parent = self.link(id);
-        self.nodes.push(Node {
+        let is_closed = self.shapes.shapes.get(shape).is_empty;
+        let (element, kept) = (self.arena.len(), self.arena.kept.len());
+        self.arena.kept.push(Node {
             start,
             end,
             tag_end: end,
             shape,
-            parent,
-            next: NONE,
+            parent: self.open.last().map_or(NONE, |open| open.element),
+            after: element + 1,
             values,
             has_text: false,
-            is_closed: is_empty,
+            is_closed,
         });
-        if is_empty {
+        if is_closed {
             self.namespaces.leave(outside);
         } else {
-            self.open.push(Open { node: id, last_child: NONE, outside });
+            self.open.push(Open { element, kept, outside });
         }
         Ok(end)
-    }
-
-    /// Makes an element, which comes next, the last child of the one that is open; gives that.
-    fn link(&mut self, id: u32) -> u32 {
-        let Some(open) = self.open.last_mut() else { return NONE };
-        if open.last_child != NONE {
-            self.nodes[open.last_child as usize].next = id;
-        }
-        open.last_child = id;
-        open.node
-    }
-
-    /// Reads a child of the root as a whole, where it is like one before; gives where it ends.
-    fn like_before(&mut self, start: u32) -> Option<u32> {
-        let id = self.nodes.len() as u32;
-        let mut read = Read { nodes: &mut self.nodes, values: &mut self.values };
-        let (one, end) = self.forms.read(self.input, start, &mut read)?;
-        self.link(id);
-        self.alike.push(one);
-        Some(end)
     }
 
     /// Reads a start tag name by name; gives its shape, and where it ends.
@@ -214,7 +189,7 @@ impl<'a> Parser<'a> {
         self.attributes.clear();
         let tag = tag::start_tag(self.input, start, &mut self.attributes)?;
         let name = Span::new(start + 1, start + 1 + tag.name_len);
-        if self.open.is_empty() && !self.nodes.is_empty() {
+        if self.open.is_empty() && !self.arena.kept.is_empty() {
             return Err(self.second_root(name));
         }
         if tag.has_prefixes {
@@ -231,7 +206,7 @@ impl<'a> Parser<'a> {
         }
         let scope = self.namespaces.scope();
         let shape = self.shapes.take(self.input, start, &tag, namespace, &self.attributes, scope);
-        self.values.extend(self.attributes.iter().map(|one| one.value));
+        self.arena.values.extend(self.attributes.iter().map(|one| one.value));
         Ok((shape, tag.end))
     }
 
@@ -280,7 +255,7 @@ impl<'a> Parser<'a> {
             Some(number) => Ok(number),
             None => {
                 let prefixes = self.namespaces.prefixes();
-                let root = self.nodes.first().map_or(self.start, |root| root.start);
+                let root = self.arena.kept.first().map_or(self.start, |root| root.start);
                 Err(unbound::prefix(self.input, prefix, name.start, &prefixes, root).into())
             }
         }
@@ -289,7 +264,7 @@ impl<'a> Parser<'a> {
     fn end_tag(&mut self, start: u32) -> Checked<u32> {
         if let Some(open) = self.open.last() {
             // Nearly every end tag has the name of its start tag, and nothing behind it.
-            let name = self.name_span(&self.nodes[open.node as usize]);
+            let name = self.name_span(&self.arena.kept[open.kept]);
             let bytes = self.input.bytes();
             let (from, end) = (start as usize + 2, (start + 2 + name.len()) as usize);
             let is_it = |found| same(found, &bytes[name.start as usize..name.end as usize]);
@@ -304,7 +279,7 @@ impl<'a> Parser<'a> {
             let one = self.input.fault(&codes::XML_TAG_MISMATCH, start, end, message);
             return Err(one.into());
         };
-        if self.name(&self.nodes[open.node as usize]) != found {
+        if self.name(&self.arena.kept[open.kept]) != found {
             return Err(self.mismatch(found, start, end));
         }
         Ok(self.close(end))
@@ -313,13 +288,12 @@ impl<'a> Parser<'a> {
     /// Closes the element that was opened last, with an end tag that ends at `end`; gives that.
     fn close(&mut self, end: u32) -> u32 {
         if let Some(open) = self.open.pop() {
-            let node = &mut self.nodes[open.node as usize];
-            node.end = end;
-            node.is_closed = true;
+            let after = self.arena.len();
+            let node = &mut self.arena.kept[open.kept];
+            (node.end, node.after, node.is_closed) = (end, after, true);
             self.namespaces.leave(open.outside);
             if self.open.len() == 1 {
-                let read = Read { nodes: &mut self.nodes, values: &mut self.values };
-                self.alike.extend(self.forms.take(self.input, open.node, &self.shapes.shapes, &read));
+                self.forms.take(self.input, &open, &self.shapes.shapes, &mut self.arena);
             }
         }
         end
@@ -331,8 +305,12 @@ impl<'a> Parser<'a> {
     }
 
     pub(super) fn name_span(&self, node: &Node) -> Span {
-        let start = node.start + 1;
-        Span::new(start, start + self.shapes.shapes.get(node.shape).name_len)
+        self.name_at(node.start, node.shape)
+    }
+
+    /// The name in a start tag.
+    pub(super) fn name_at(&self, start: u32, shape: u32) -> Span {
+        Span::new(start + 1, start + 1 + self.shapes.shapes.get(shape).name_len)
     }
 
     fn text(&mut self, start: u32) -> Checked<u32> {
@@ -346,7 +324,7 @@ impl<'a> Parser<'a> {
             && let Some(length) = first_of(rest, [b'<', b'&', b']'])
             && rest[length] != b']'
         {
-            self.nodes[open.node as usize].has_text = true;
+            self.arena.kept[open.kept].has_text = true;
             return Ok(start + length as u32);
         }
         let end = start + memchr::memchr2(b'<', b'&', rest).unwrap_or(rest.len()) as u32;
@@ -356,7 +334,7 @@ impl<'a> Parser<'a> {
             let from = end - text.trim_start_matches(blank).len() as u32;
             return Err(self.outside(from, start + text.trim_end_matches(blank).len() as u32));
         };
-        self.nodes[open.node as usize].has_text = true;
+        self.arena.kept[open.kept].has_text = true;
         if let Some(at) = text.find("]]>") {
             let at = start + at as u32;
             let place = Span::new(at, at + 3).in_file(self.input.file);
@@ -379,7 +357,7 @@ impl<'a> Parser<'a> {
             return Err(self.outside(start, end));
         };
         if !is_blank(&self.input.bytes()[start as usize + 9..end as usize - 3]) {
-            self.nodes[open.node as usize].has_text = true;
+            self.arena.kept[open.kept].has_text = true;
         }
         Ok(())
     }
@@ -389,13 +367,13 @@ impl<'a> Parser<'a> {
         let Some(open) = self.open.last() else {
             return Err(self.outside(start, end));
         };
-        self.nodes[open.node as usize].has_text = true;
+        self.arena.kept[open.kept].has_text = true;
         Ok(end)
     }
 
     fn outside(&self, start: u32, end: u32) -> Fault {
         let one = self.input.fault(&codes::XML_OUTSIDE_ROOT, start, end, "text outside of the root element");
-        match self.nodes.first() {
+        match self.arena.kept.first() {
             None => {
                 one.help("a file is one element; before it only comments and instructions can stand").into()
             }
@@ -407,7 +385,7 @@ impl<'a> Parser<'a> {
     }
 
     fn second_root(&self, name: Span) -> Fault {
-        let Some(root) = self.nodes.first() else { return self.outside(name.start, name.end) };
+        let Some(root) = self.arena.kept.first() else { return self.outside(name.start, name.end) };
         let first = self.name_span(root).in_file(self.input.file);
         self.input
             .fault(
@@ -423,12 +401,12 @@ impl<'a> Parser<'a> {
     fn finish(&mut self) -> Checked<()> {
         let input = self.input;
         if let Some(open) = self.open.last() {
-            let Span { start, end } = self.name_span(&self.nodes[open.node as usize]);
+            let Span { start, end } = self.name_span(&self.arena.kept[open.kept]);
             let name = quoted(input.slice(start, end));
             self.tangle = Some(Tangle::LeftOpen);
             return Err(input.ended(&codes::XML_UNCLOSED, start, end, format!("{name} is never closed")));
         }
-        if self.nodes.is_empty() {
+        if self.arena.kept.is_empty() {
             let at = input.text.len() as u32;
             return Err(input.ended(&codes::XML_SYNTAX, at, at, "the file holds no element"));
         }
@@ -437,16 +415,17 @@ impl<'a> Parser<'a> {
 
     fn into_document(mut self, text: &Arc<String>) -> Option<Document> {
         // Behind a fault the open elements end where reading ended.
+        let after = self.arena.len();
         for open in &self.open {
-            self.nodes[open.node as usize].end = self.start;
+            let node = &mut self.arena.kept[open.kept];
+            (node.end, node.after) = (self.start, after);
         }
-        (!self.nodes.is_empty()).then(|| Document {
+        self.arena.finish();
+        (!self.arena.kept.is_empty()).then(|| Document {
             file: self.input.file,
             text: Arc::clone(text),
-            nodes: self.nodes,
-            values: self.values,
+            arena: self.arena,
             shapes: self.shapes.shapes,
-            alike: self.alike,
             namespaces: self.namespaces.into_names(),
             declared: Declared::default(),
         })

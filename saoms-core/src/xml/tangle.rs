@@ -1,8 +1,9 @@
 //! End tags that do not fit.
 
+use super::arena::Node;
 use super::fault::Fault;
 use super::parse::{Parser, Tangle};
-use super::tree::{ElementId, NONE, Node};
+use super::tree::ElementId;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::source::Span;
 
@@ -13,7 +14,7 @@ impl Parser<'_> {
     /// An end tag with another name than the element has that is open.
     pub(super) fn mismatch(&mut self, found: &str, start: u32, end: u32) -> Fault {
         let names = || {
-            let open = self.open.iter().rev().map(|open| &self.nodes[open.node as usize]);
+            let open = self.open.iter().rev().map(|open| &self.arena.kept[open.kept]);
             open.map(|node| (self.name(node), node.start))
         };
         let (expected, at) = names().next().unwrap_or_default();
@@ -33,12 +34,12 @@ impl Parser<'_> {
             return self.unclosed(one, start).into();
         }
         if !is_near && let Some(same) = self.closed(found) {
-            let node = &self.nodes[same as usize];
-            let name = self.name_span(node).in_file(file);
-            let is_empty = node.tag_end == node.end;
-            if is_empty && !self.input.slice(node.end, start).trim().is_empty() {
+            let node = self.arena.get(same, self.arena.place(same));
+            let name = self.name_at(node.start(), node.shape()).in_file(file);
+            let (is_empty, closed) = (node.tag_end() == node.end(), node.end());
+            if is_empty && !self.input.slice(closed, start).trim().is_empty() {
                 self.tangle = Some(Tangle::ClosedEarly(ElementId(same)));
-                let slash = Span::new(node.end - 2, node.end - 1).in_file(file);
+                let slash = Span::new(closed - 2, closed - 1).in_file(file);
                 let one = one.label(name, format!("this {} ends with `/>`", quoted(found)));
                 return one.suggest("remove its `/`", slash, "").into();
             }
@@ -52,9 +53,9 @@ impl Parser<'_> {
     /// With what closes the element that is open, before the end tag at `end` of one around it.
     fn unclosed(&self, one: Diagnostic, end: u32) -> Diagnostic {
         let Some(open) = self.open.last() else { return one };
-        let node @ Node { tag_end, has_text, .. } = &self.nodes[open.node as usize];
+        let node @ Node { tag_end, has_text, .. } = &self.arena.kept[open.kept];
         let (name, file) = (self.name(node), self.input.file);
-        if open.last_child == NONE && !has_text {
+        if open.element + 1 == self.arena.len() && !has_text {
             let slash = Span::empty(tag_end - 1).in_file(file);
             return one.suggest(format!("end {} with `/>`", quoted(name)), slash, "/");
         }
@@ -63,10 +64,15 @@ impl Parser<'_> {
     }
 
     /// The last element of this name that is directly inside the one that is open, and closed.
-    fn closed(&self, name: &str) -> Option<u32> {
+    fn closed(&mut self, name: &str) -> Option<u32> {
+        // This fault is the last of all: there come no more elements.
+        self.arena.finish();
         let open = self.open.last()?;
-        let inside = self.nodes.iter().enumerate().rev().take(NEAR);
-        let mut same = inside.filter(|(_, node)| node.parent == open.node && self.name(node) == name);
-        same.next().map(|(place, _)| place as u32)
+        let mut inside = (0..self.arena.len()).rev().take(NEAR);
+        inside.find(|element| {
+            let node = self.arena.get(*element, self.arena.place(*element));
+            let found = self.name_at(node.start(), node.shape());
+            node.parent() == open.element && self.input.slice(found.start, found.end) == name
+        })
     }
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use super::Element;
+use super::arena::{Alike, Arena};
 use super::shape::Shapes;
 use crate::source::{FileId, Span};
 
@@ -14,6 +15,12 @@ pub struct ElementId(pub u32);
 impl ElementId {
     /// The root of every document.
     pub const ROOT: Self = Self(0);
+
+    /// The one so many behind it.
+    #[inline]
+    pub(crate) const fn further(self, by: u32) -> Self {
+        Self(self.0 + by)
+    }
 }
 
 /// No element; also no attribute.
@@ -23,48 +30,13 @@ pub(super) const NO_NAMESPACE: u32 = 0;
 /// The number of the namespace of declarations.
 pub(super) const XMLNS: u32 = 2;
 
-/// 32 bytes: a file of nothing but `<a/>` costs eight times its size.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
-    /// At the `<` of the start tag.
-    pub(super) start: u32,
-    /// Behind the `>` of the end tag.
-    pub(super) end: u32,
-    /// Behind the `>` of the start tag.
-    pub(super) tag_end: u32,
-    /// How the start tag is written.
-    pub(super) shape: u32,
-    pub(super) parent: u32,
-    pub(super) next: u32,
-    /// The first of its attributes' values; there are as many as its shape has attributes.
-    pub(super) values: u32,
-    /// Whether text other than white space is directly inside.
-    pub(super) has_text: bool,
-    /// Whether its end tag was read; only those around a fault are not.
-    pub(super) is_closed: bool,
-}
-
-/// A child of the root that is written as others are, but for the values of attributes and for texts.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Alike {
-    pub(crate) element: ElementId,
-    /// A number that it has in common with those.
-    pub(crate) form: u32,
-    /// A bit for each of its first 64 values of attributes, those of inner elements included, that is the same as in the last one before.
-    pub(crate) same: u64,
-}
-
 /// A well-formed XML text with its elements.
 #[derive(Debug)]
 pub struct Document {
     pub(super) file: FileId,
     pub(super) text: Arc<String>,
-    pub(super) nodes: Vec<Node>,
-    /// The values of all attributes, declarations of namespaces included, without their quotes.
-    pub(super) values: Vec<Span>,
+    pub(super) arena: Arena,
     pub(super) shapes: Shapes,
-    /// The children of the root that have a form, in order.
-    pub(super) alike: Vec<Alike>,
     pub(super) namespaces: Vec<Box<str>>,
     pub(super) declared: Declared,
 }
@@ -100,12 +72,12 @@ impl Document {
 
     /// Where the values of all attributes are from a place among them on.
     pub(crate) fn values_from(&self, first: u32) -> &[Span] {
-        &self.values[first as usize..]
+        &self.arena.values[first as usize..]
     }
 
     /// Children of the root in order.
     pub(crate) fn alike(&self) -> &[Alike] {
-        &self.alike
+        &self.arena.alike
     }
 
     /// The one element that holds all others.
@@ -123,7 +95,7 @@ impl Document {
 
     /// All elements in document order.
     pub fn elements(&self) -> impl Iterator<Item = Element<'_>> {
-        (0..self.nodes.len() as u32).map(|id| self.element(ElementId(id)))
+        (0..self.arena.len()).map(|id| self.element(ElementId(id)))
     }
 
     /// The place of the declaration of a prefix among the attributes of an element with many of them.
@@ -140,8 +112,15 @@ impl Document {
 
     /// The innermost element that byte `at` is in, the root for a place outside.
     pub fn element_at(&self, at: u32) -> Element<'_> {
-        let started = self.nodes.partition_point(|node| node.start < at);
-        let mut here = self.element(ElementId(started.saturating_sub(1) as u32));
+        let (mut started, mut end) = (0, self.arena.len());
+        while started < end {
+            let middle = started + (end - started) / 2;
+            match self.element(ElementId(middle)).span().start < at {
+                true => started = middle + 1,
+                false => end = middle,
+            }
+        }
+        let mut here = self.element(ElementId(started.saturating_sub(1)));
         while at >= here.span().end
             && let Some(outer) = here.parent()
         {
