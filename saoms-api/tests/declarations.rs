@@ -249,8 +249,8 @@ fn absent_properties_take_their_defaults() {
 
 #[test]
 fn given_properties_are_read() {
-    let charger = PropertyValue::Complex(vec![text("x", "-3")]);
-    let stops = PropertyValue::Many(vec!["1".into(), " 2 ".into()]);
+    let charger = PropertyValue::Complex([text("x", "-3")].into());
+    let stops = PropertyValue::Many(["1".into(), " 2 ".into()].into());
     let read = robot(&[
         text("discharge", "99.5"),
         text("late", "ask-me"),
@@ -306,7 +306,7 @@ fn wrong_properties_say_what_was_found_and_expected() {
         (text("title", ""), "property `title`: the value is empty: expected a text that is not empty"),
         (text("chargeAt", "3"), "property `chargeAt`: found `3`: expected the properties x, y"),
         (
-            ("chargeAt".into(), PropertyValue::Complex(vec![text("y", "1")])),
+            ("chargeAt".into(), PropertyValue::Complex([text("y", "1")].into())),
             "property `chargeAt`: property `x` is missing: expected a whole number from -2147483648 to 2147483647",
         ),
         (

@@ -252,7 +252,7 @@ impl PropertyView {
             let value = match view.kind {
                 0 => text.into(),
                 1 => PropertyValue::Many(children.into_iter().map(|(_, value)| value).collect()),
-                2 => PropertyValue::Complex(children),
+                2 => PropertyValue::Complex(children.into()),
                 other => {
                     return Err(Failure::new(format!(
                         "found {other} for the kind of a property value, expected 0 to 2"

@@ -12,16 +12,18 @@ pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits
 
 use crate::{Failure, SmolStr};
 
-/// A value as the composite gives it, once `source` and `file` are resolved.
+/// A value as the composite gives it, once `source` and `file` are resolved: as large as a [`SmolStr`], as nearly all values are texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PropertyValue {
     /// The text of an attribute or element.
     Text(SmolStr),
     /// The values of a property that takes many.
-    Many(Vec<PropertyValue>),
+    Many(Box<[PropertyValue]>),
     /// The named values of a complex property.
-    Complex(Vec<(SmolStr, PropertyValue)>),
+    Complex(Box<[(SmolStr, PropertyValue)]>),
 }
+
+const _: () = assert!(size_of::<PropertyValue>() == size_of::<SmolStr>(), "large fleets have many values");
 
 impl PropertyValue {
     /// The text; `None` where it is not one.

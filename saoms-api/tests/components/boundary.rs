@@ -150,12 +150,12 @@ type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>
 fn values(panics: &str) -> Vec<(SmolStr, PropertyValue)> {
     let text = |text: &str| PropertyValue::from(text);
     let part = |name, weight| {
-        PropertyValue::Complex(vec![("name".into(), text(name)), ("weight".into(), text(weight))])
+        PropertyValue::Complex([("name".into(), text(name)), ("weight".into(), text(weight))].into())
     };
     vec![
         ("panics".into(), text(panics)),
-        ("parts".into(), PropertyValue::Many(vec![part("arm", "1.5"), part("leg", "2")])),
-        ("names".into(), PropertyValue::Many(vec![text(""), text("ü")])),
+        ("parts".into(), PropertyValue::Many([part("arm", "1.5"), part("leg", "2")].into())),
+        ("names".into(), PropertyValue::Many([text(""), text("ü")].into())),
     ]
 }
 

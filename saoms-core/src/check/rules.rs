@@ -16,6 +16,9 @@ use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, Severity, codes};
 use crate::registry::{Class, Rule};
 
+/// No place among those that rules look at.
+const NONE: u32 = u32::MAX;
+
 /// The declaration of a class and of those that it extends.
 fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
     std::iter::once(class.class.declaration_json()).chain(class.class.extended_json()).collect()
@@ -31,7 +34,9 @@ pub(super) fn check<'s>(
     rules: impl Iterator<Item = &'s Rule>,
     report: &mut Report<'_>,
 ) {
-    let mut places = Vec::with_capacity(fleet.members.len());
+    // Fleets are limited to fewer components than a `u32` counts.
+    let mut parts: Vec<u32> = Vec::with_capacity(fleet.members.len());
+    let mut indices: Vec<u32> = Vec::with_capacity(fleet.members.len());
     // One of each class is enough, and one for all of which nobody knows the class.
     let mut missing: Vec<Option<Vec<&'s str>>> = Vec::new();
     let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
@@ -45,53 +50,56 @@ pub(super) fn check<'s>(
     if fleet.scopes.iter().any(|scope| scope.is_faulty) {
         miss(&mut missing, None);
     }
-    let mut parts: Vec<(usize, &'s Resolved<'_>, &'s ClassIndex<'_>)> =
-        Vec::with_capacity(fleet.members.len());
     for (place, (member, resolved)) in fleet.members.iter().zip(resolved).enumerate() {
         let class = fleet.class_of(place, classes);
         // Of two components of one name nobody can say which is meant.
-        let resolved = resolved.as_ref().filter(|_| !member.is_repeated);
-        let (true, Some(resolved), Some(class)) = (member.runs(), resolved, class) else {
-            places.push(None);
-            if member.runs() {
-                miss(&mut missing, class);
-            }
+        if member.runs() && !member.is_repeated && resolved.is_some() && class.is_some() {
+            indices.push(parts.len() as u32);
+            parts.push(place as u32);
             continue;
-        };
-        places.push(Some(parts.len()));
-        parts.push((place, resolved, class));
+        }
+        indices.push(NONE);
+        if member.runs() {
+            miss(&mut missing, class);
+        }
     }
+    let part = |place: &u32| {
+        let place = *place as usize;
+        Some((place, resolved[place].as_deref()?, fleet.class_of(place, classes)?))
+    };
     let subject = |index: usize| {
-        let (place, resolved, _) = parts.get(index)?;
-        let member = &fleet.members[*place];
+        let (place, resolved, _) = part(parts.get(index)?)?;
+        let member = &fleet.members[place];
         Some(Subject { name: member.path(), ..resolved.subject(member) })
     };
     let Some(first) = subject(0) else { return };
     let is_whole = missing.is_empty();
+    let all = || parts.iter().filter_map(part);
     if has_open_wires {
-        let open = parts.iter().filter(|(place, ..)| wiring.of(*place).any(<[_]>::is_empty));
+        let open = all().filter(|(place, ..)| wiring.of(*place).any(<[_]>::is_empty));
         open.for_each(|(.., class)| miss(&mut missing, Some(class)));
     }
     let mut before = Before::default();
-    let mut wires: Vec<(&str, usize)> = Vec::new();
+    let mut wires: Vec<(&str, usize)> = Vec::with_capacity(wiring.count());
     let mut ends = Vec::with_capacity(parts.len());
-    for (place, _, class) in &parts {
-        for (reference, providers) in class.references.iter().zip(wiring.of(*place)) {
-            let known = providers.iter().filter_map(|provider| places[provider.member]);
-            wires.extend(known.map(|place| (reference.name.as_str(), place)));
+    for (place, _, class) in all() {
+        for (reference, providers) in class.references.iter().zip(wiring.of(place)) {
+            let known =
+                providers.iter().map(|provider| indices[provider.member]).filter(|index| *index != NONE);
+            wires.extend(known.map(|index| (reference.name.as_str(), index as usize)));
         }
         ends.push(wires.len());
     }
     let mut start = 0;
-    let views = parts.iter().zip(ends).map(|((place, resolved, class), end)| ComponentView {
-        path: fleet.members[*place].path(),
+    let mut views: Vec<ComponentView<'_>> = Vec::with_capacity(parts.len());
+    views.extend(all().zip(ends).map(|((place, resolved, class), end)| ComponentView {
+        path: fleet.members[place].path(),
         class: before.of(class, resolved),
         values: &resolved.values,
         period: resolved.task.as_ref().map(Settled::period),
         has_broker: resolved.task.as_ref().is_some_and(Settled::has_broker),
         wires: &wires[std::mem::replace(&mut start, end)..end],
-    });
-    let views: Vec<ComponentView<'_>> = views.collect();
+    }));
     let view = FleetView::new(&views).without(&missing);
     for rule in rules.filter(|rule| rule.judges_parts() || is_whole) {
         let findings = match rule.check(&view) {
@@ -107,7 +115,7 @@ pub(super) fn check<'s>(
             let severity = finding.own_severity().unwrap_or(rule.code().severity);
             let own = finding.place().component_index().and_then(subject).unwrap_or(first);
             match finding.place().component_index().and_then(|index| parts.get(index)) {
-                Some((place, ..)) => report.about(&fleet.members[*place]),
+                Some(place) => report.about(&fleet.members[*place as usize]),
                 None => report.about_all(),
             }
             let Some(one) = diagnostic(rule.code(), severity, finding, own, &subject, report) else {

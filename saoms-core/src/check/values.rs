@@ -129,7 +129,7 @@ impl<'a> Values<'a> {
             let values = pieces.into_iter().map(|piece| self.piece(piece, path, declarations, used, report));
             // All are looked at, so that all faults are found.
             let values: Vec<Option<PropertyValue>> = values.collect();
-            return values.into_iter().collect::<Option<Vec<_>>>().map(PropertyValue::Many);
+            return values.into_iter().collect::<Option<_>>().map(PropertyValue::Many);
         }
         if let Some(second) = pieces.get(1) {
             let message =
@@ -281,7 +281,7 @@ impl<'a> Values<'a> {
                 None => is_sound = false,
             }
         }
-        is_sound.then_some(PropertyValue::Complex(values))
+        is_sound.then_some(PropertyValue::Complex(values.into()))
     }
 
     /// Reports a fault, with what there is to know about the property.

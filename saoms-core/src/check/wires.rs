@@ -55,6 +55,11 @@ pub(super) struct Wiring {
 }
 
 impl Wiring {
+    /// How many providers all references have together.
+    pub(super) fn count(&self) -> usize {
+        self.providers.len()
+    }
+
     /// The providers of each reference of a component.
     pub(super) fn of(&self, member: usize) -> impl Iterator<Item = &[Provider]> {
         let before = |place: usize, ends: &[usize]| place.checked_sub(1).map_or(0, |before| ends[before]);

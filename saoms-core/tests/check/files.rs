@@ -249,8 +249,8 @@ fn values_of_a_file_are_in_elements() {
         assert_eq!(found, "");
         let assembly = assembly.unwrap();
         assert_eq!(value(&assembly, "number"), "7".into());
-        assert_eq!(value(&assembly, "stops"), PropertyValue::Many(vec!["1".into(), "2".into()]));
-        assert_eq!(value(&assembly, "charger"), PropertyValue::Complex(vec![("x".into(), "3".into())]));
+        assert_eq!(value(&assembly, "stops"), PropertyValue::Many(["1".into(), "2".into()].into()));
+        assert_eq!(value(&assembly, "charger"), PropertyValue::Complex([("x".into(), "3".into())].into()));
     }
     let (_, found) =
         outcome(&values("<s:value>1</s:value><s:value>two</s:value>"), "<at>\n<x>three</x><z>4</z></at>");
