@@ -1,11 +1,12 @@
 //! All components of all composites as one fleet.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::rc::Rc;
 
 use super::by_name::ByName;
 use super::classes::ClassIndex;
 use super::instance::Instance;
-use super::presence::Known;
+use super::names::Names;
 use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Reference, Service, Wire};
 use crate::source::{FileId, Location};
@@ -31,7 +32,7 @@ pub(super) struct Fleet<'a> {
     /// The includes and wires with conditions, and whether any of them is there.
     pub(super) conditional: HashMap<(FileId, ElementId), bool>,
     /// What the expressions in units can name, where there are any.
-    pub(super) names: Vec<Option<Known<'a>>>,
+    pub(super) names: Vec<Option<Rc<Names>>>,
 }
 
 /// Components that can be wired to each other.

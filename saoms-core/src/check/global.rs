@@ -27,15 +27,18 @@ impl<'a> Raw<'a> {
 }
 
 impl<'a> Raw<'a> {
+    /// Whether they can be others as those of a property that takes several of an `element`.
+    pub(super) fn is_split_by(&self, property: &Property) -> bool {
+        property.element().is_some() && property.many().is_some_and(|many| many.value)
+    }
+
     /// The values of a property that takes several of an `element`, one each, where they are written beside each other.
     pub(super) fn split_into_elements_of(self, property: &Property) -> Self {
-        let Some(of) = property.element().filter(|_| property.many().is_some_and(|many| many.value)) else {
-            return self;
-        };
+        let Some(of) = property.element().filter(|_| self.is_split_by(property)) else { return self };
         let name = local(of);
         let pieces = self.0.into_iter().flat_map(|piece| match piece {
             Piece::Elements(elements, instance) if elements.iter().all(|one| one.local_name() == name) => {
-                elements.into_iter().map(|one| Piece::Elements(vec![one], instance)).collect()
+                elements.iter().map(|one| Piece::Elements([*one].into(), instance)).collect()
             }
             other => vec![other],
         });

@@ -43,15 +43,15 @@ struct Level<'a> {
 type ByValue<'a> = Rc<HashMap<String, Vec<Element<'a>>>>;
 
 impl<'a> Levels<'a> {
-    pub(super) fn of(whole: Raw<'a>) -> Self {
+    pub(super) fn of(whole: &Raw<'a>) -> Self {
         let (mut here, mut instance, mut is_one) = (Vec::new(), None, true);
-        for piece in whole.0 {
+        for piece in &whole.0 {
             let (elements, of) = match piece {
-                Piece::Elements(elements, of) => (elements, of),
-                Piece::Whole(_, root, of) => (vec![root], of),
+                Piece::Elements(elements, of) => (&elements[..], of),
+                Piece::Whole(_, root, of) => (std::slice::from_ref(root), of),
                 Piece::Text(_) => continue,
             };
-            instance = of;
+            instance = *of;
             is_one &= elements.len() == 1;
             here.extend(elements);
         }

@@ -68,6 +68,7 @@ mod unique;
 mod value_type;
 mod values;
 mod variable;
+mod whole;
 mod wire;
 mod wires;
 mod written;

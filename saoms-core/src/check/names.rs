@@ -1,9 +1,8 @@
 //! What the names in expressions stand for: the properties of a composite.
 
 use std::cell::{Cell, RefCell};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
-use super::options::Options;
 use super::parameters::is_misspelt;
 use super::report::{Report, list};
 use super::value_type;
@@ -16,7 +15,7 @@ use crate::source::{Location, Text};
 #[derive(Default)]
 pub(super) struct Names {
     all: HashMap<String, Name>,
-    used: RefCell<HashSet<String>>,
+    used: RefCell<BTreeSet<String>>,
     /// Those that the component gives values to and the composite does not have, which is reported.
     undeclared: HashSet<String>,
 }
@@ -33,14 +32,7 @@ struct Name {
     value: Result<Value, Problem>,
 }
 
-/// Who gives the properties of a composite their values: the component that it implements, and what it gives by a name.
-#[derive(Clone, Copy)]
-pub(super) struct Outside<'n> {
-    pub(super) component: &'n Component,
-    pub(super) supply: &'n dyn Fn(&str) -> Supplied,
-}
-
-/// What a component gives a property of the composite that it implements.
+/// What an expression takes of a property.
 #[derive(Clone)]
 pub(super) enum Supplied {
     /// One text.
@@ -49,17 +41,17 @@ pub(super) enum Supplied {
     Other,
     /// Nobody knows for a fault, which whoever collects the values of sources reports.
     Faulty,
-    /// Nothing: what the composite says itself counts.
+    /// Nobody gives a value.
     Nothing,
 }
 
 impl Names {
-    /// The names that the expressions in a composite can use.
+    /// The names that the expressions in a composite can use, with what is taken of each. `owner` is the component that it implements.
     pub(super) fn of(
         main: &Composite,
         contribution: &Contribution,
-        outside: Option<Outside<'_>>,
-        options: &Options,
+        owner: Option<&Component>,
+        supply: &dyn Fn(&str) -> Supplied,
     ) -> Self {
         let mut names = Self::default();
         let composites = with_included(main, contribution);
@@ -69,27 +61,21 @@ impl Names {
         for composite in &composites {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {
-                    let given = given(property, outside, options);
-                    let is_faulty = matches!(given, Supplied::Faulty);
-                    let is_given = !matches!(given, Supplied::Nothing);
-                    let text = match given {
-                        Supplied::Text(text) => Some(text),
-                        Supplied::Nothing => property.simple_value().cloned(),
-                        Supplied::Other | Supplied::Faulty => None,
-                    };
-                    let value = value(property, text.as_ref(), is_given);
+                    let supplied = supply(&property.name);
+                    let is_faulty = matches!(supplied, Supplied::Faulty);
+                    let is_unset = matches!(supplied, Supplied::Nothing);
+                    let value = value(property, &supplied);
+                    let text = if let Supplied::Text(text) = supplied { Some(text) } else { None };
                     let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
                     // What has to be supplied and is not is told where it should be.
                     let must = property.must_supply().is_some_and(|must| must.value);
-                    let is_unset = text.is_none() && !is_given && !property.has_value();
-                    let is_misspelt =
-                        |outside: Outside<'_>| is_misspelt(&property.name, outside.component, is_declared);
-                    let is_told = is_faulty || is_unset && (must || outside.is_some_and(is_misspelt));
+                    let is_misspelt = |owner: &Component| is_misspelt(&property.name, owner, is_declared);
+                    let is_told = is_faulty || is_unset && (must || owner.is_some_and(is_misspelt));
                     Name { mistyped, is_told: Cell::new(is_told), is_faulty, text, value }
                 });
             }
         }
-        let given = outside.into_iter().flat_map(|outside| &outside.component.properties);
+        let given = owner.into_iter().flat_map(|owner| &owner.properties);
         let undeclared = given.filter(|given| !is_declared(&given.name));
         names.undeclared = undeclared.map(|given| given.name.to_string()).collect();
         names
@@ -98,7 +84,7 @@ impl Names {
     /// The value of a name.
     pub(super) fn value(&self, name: &str) -> Result<Value, Problem> {
         let Some(found) = self.all.get(name) else { return Err(self.unknown(name)) };
-        self.used.borrow_mut().insert(name.to_owned());
+        self.ask(name);
         found.value.clone()
     }
 
@@ -120,16 +106,9 @@ impl Names {
         Some(self.all.get(name)?.text.as_ref()?.location)
     }
 
-    /// What a name gives whoever takes its value whole, where that is known without a look at complex values.
-    pub(super) fn supply(&self, name: &str) -> Option<Supplied> {
-        let found = self.all.get(name)?;
-        let supplied = match &found.text {
-            Some(text) => Supplied::Text(text.clone()),
-            None if found.is_faulty => Supplied::Faulty,
-            None => return None,
-        };
+    /// Notes that a name is asked for.
+    pub(super) fn ask(&self, name: &str) {
         self.used.borrow_mut().insert(name.to_owned());
-        Some(supplied)
     }
 
     /// Whether what gives a name its value has a fault.
@@ -186,33 +165,19 @@ pub(super) fn with_included<'a>(main: &'a Composite, contribution: &'a Contribut
     all
 }
 
-/// What counts in place of the property's own value.
-fn given(property: &Property, outside: Option<Outside<'_>>, options: &Options) -> Supplied {
-    let name = property.name.as_str();
-    let of_text = |text: &Text| Supplied::Text(text.clone());
-    let by_outside = match outside {
-        None => options.settings.iter().find(|setting| setting.name == *name).map(|set| of_text(&set.value)),
-        Some(outside) => Some((outside.supply)(name)),
-    };
-    match by_outside {
-        Some(Supplied::Nothing) | None => {
-            let variable = property.env().and_then(|variable| options.variable(variable));
-            variable.map_or(Supplied::Nothing, of_text)
-        }
-        Some(given) => given,
-    }
-}
-
 /// The value of a property as its type has it; without a type, as what it looks like.
-fn value(property: &Property, text: Option<&Text>, is_given: bool) -> Result<Value, Problem> {
+fn value(property: &Property, supplied: &Supplied) -> Result<Value, Problem> {
     let name = quoted(&property.name);
-    let Some(text) = text else {
-        if !is_given && !property.has_value() {
+    let text = match supplied {
+        Supplied::Text(text) => text,
+        Supplied::Nothing => {
             let help = "write it in the file, or give it with `--set`, or in the component that the composite implements";
             return Err(Problem::new(format!("the property {name} has no value")).help(help));
         }
-        let help = "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`";
-        return Err(Problem::new(format!("the property {name} has no simple value")).help(help));
+        Supplied::Other | Supplied::Faulty => {
+            let help = "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`";
+            return Err(Problem::new(format!("the property {name} has no simple value")).help(help));
+        }
     };
     let of = property.r#type().filter(|of| !value_type::is_misspelt(of));
     let of = of.map(|of| of.rsplit(':').next().unwrap_or(of)).unwrap_or_default();
@@ -238,8 +203,8 @@ fn value(property: &Property, text: Option<&Text>, is_given: bool) -> Result<Val
         "" => Ok(match (boolean, text.parse()) {
             (Some(value), _) => Value::Boolean(value),
             (None, Ok(number)) => Value::Integer(number),
-            _ => Value::Text(text.as_str().to_owned()),
+            _ => Value::Text(text.value.clone()),
         }),
-        _ => Ok(Value::Text(text.as_str().to_owned())),
+        _ => Ok(Value::Text(text.value.clone())),
     }
 }

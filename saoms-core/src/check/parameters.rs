@@ -1,5 +1,6 @@
 //! The properties of composites: what `source="$name"` and `source="$name/path"` stand for.
 
+mod missing;
 mod settings;
 mod sources;
 
@@ -7,16 +8,18 @@ use std::cell::{Cell, OnceCell};
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
+use missing::{from_outside, is_asked_for};
+
 use super::fleet::{Fleet, Member, Unit};
 use super::instance::Instance;
-use super::levels::Levels;
 use super::options::Options;
 use super::path::expression;
 use super::raw::{Raw, beside_source, raw};
 use super::report::Report;
 use super::value_type::{self, Match, Typed};
+use super::whole::Whole;
 use super::{Setting, Variable};
-use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
 use crate::xml::escaped;
@@ -30,7 +33,7 @@ pub(super) struct Parameters<'a> {
     /// How many more bytes of text sources can lead to.
     bytes_left: usize,
     /// What sources that are more than a path came to, by their units, and where the first of each stands.
-    found: HashMap<(usize, String), (Location, Raw<'a>)>,
+    found: HashMap<(usize, String), (Location, Rc<Whole<'a>>)>,
     /// How many more parts of values these can look at.
     parts_left: Cell<usize>,
     /// Whether the values of properties that have an `element` stay as they are written.
@@ -67,11 +70,15 @@ struct Parameter<'a> {
     composite: &'a Composite,
     property: &'a Property,
     given: Option<Given<'a>>,
+    /// The variable that counts where nobody else gives a value.
+    variable: Option<&'a Variable>,
+    /// Whether it has to be given a value, and what the component says that the composite implements comes to none.
+    is_unset: bool,
     is_used: bool,
     /// Whether what a component gives was held to its type.
     is_judged: bool,
-    /// What is in its value, once a path led into it.
-    levels: Option<Rc<Levels<'a>>>,
+    /// Its values, once somebody asked for them.
+    whole: Option<Rc<Whole<'a>>>,
 }
 
 /// What counts in place of the value that a composite gives its property itself.
@@ -139,11 +146,11 @@ impl<'a> Parameters<'a> {
         }
         parameters.set(fleet, options, report);
         let declared = parameters.units.iter_mut().flat_map(|unit| unit.by_name.values_mut());
-        for parameter in declared.filter(|parameter| parameter.given.is_none()) {
+        for parameter in declared {
             let named = parameter.property.env();
-            let variable =
+            parameter.variable =
                 named.and_then(|named| options.variables.iter().find(|one| one.name == named.as_str()));
-            parameter.given = variable.map(Given::Variable);
+            parameter.given = parameter.given.or(parameter.variable.map(Given::Variable));
         }
         parameters.judge_outside(fleet, report);
         parameters.take_for_expressions(fleet, report);
@@ -176,21 +183,32 @@ impl<'a> Parameters<'a> {
         property: &'a Property,
         report: &mut Report<'_>,
     ) -> Result<Found<'a>, ()> {
+        let (whole, source) = self.shared(place, property, report)?;
+        Ok(Found { raw: whole.into_raw(), source })
+    }
+
+    /// The same, with the `source`, as all share them who take them.
+    fn shared(
+        &mut self,
+        place: Place<'a>,
+        property: &'a Property,
+        report: &mut Report<'_>,
+    ) -> Result<(Rc<Whole<'a>>, Option<Location>), ()> {
         if place.instance.is_some_and(|instance| instance.hides(property, &place.composite.document)) {
             return Err(());
         }
         if let Some(source) = property.source() {
-            let raw = self.resolve(place.unit, source, report)?;
-            if !raw.0.is_empty() {
+            let whole = self.resolve(place.unit, source, report)?;
+            if !whole.raw().0.is_empty() {
                 let named = expression(source).and_then(|(name, _)| self.units[place.unit].by_name.get(name));
                 if named.is_some_and(|named| named.property.has_value()) {
                     beside_source(property, source, &place.composite.document, report);
                 }
-                return Ok(Found { raw, source: Some(source.location) });
+                return Ok((whole, Some(source.location)));
             }
             // A source without a value leaves what stands in the property itself, as SCA says.
         }
-        Ok(Found { raw: raw(property, &place.composite.document, place.instance, report)?, source: None })
+        Ok((Whole::new(raw(property, &place.composite.document, place.instance, report)?), None))
     }
 
     /// The values of a component's property as its class takes them: what is inside of an `element`. Faults are reported.
@@ -293,8 +311,9 @@ impl<'a> Parameters<'a> {
         unit: usize,
         source: &Text,
         report: &mut Report<'_>,
-    ) -> Result<Raw<'a>, ()> {
-        let raw = self.follow(unit, source, report)?;
+    ) -> Result<Rc<Whole<'a>>, ()> {
+        let whole = self.follow(unit, source, report)?;
+        let raw = whole.raw();
         let (left, count) = (self.left, raw.0.len());
         if count > 1 {
             self.left = left.saturating_sub(count);
@@ -317,17 +336,19 @@ impl<'a> Parameters<'a> {
             }
             return Err(());
         }
-        Ok(raw)
+        Ok(whole)
     }
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
     pub(super) fn finish(mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+        self.follow_all(fleet, report);
         self.pass_on(fleet);
         // A composite may be there several times; what is used in one of them is used.
         let all = self.units.iter().flat_map(|declared| declared.by_name.values());
         let used = all.filter(|parameter| parameter.is_used).map(|parameter| parameter.property.origin);
         let used: HashSet<_> = used.map(|origin| (origin.file(), origin.element)).collect();
-        for (unit, declared) in fleet.units.iter().zip(&self.units).filter(|(unit, _)| !unit.is_absent) {
+        for (place, unit) in fleet.units.iter().enumerate().filter(|(_, unit)| !unit.is_absent) {
+            let declared = &self.units[place];
             let owner = fleet.scopes[unit.scope].owner.map(|owner| &fleet.members[owner]);
             for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
                 let Some(parameter) = declared.by_name.get(property.name.as_str()) else { continue };
@@ -335,13 +356,12 @@ impl<'a> Parameters<'a> {
                     continue;
                 }
                 let name = &property.name;
-                let must = property.must_supply().is_some_and(|must| must.value);
                 let is_declared = |name: &str| declared.by_name.contains_key(name);
-                let is_given = parameter.given.is_some()
+                let is_given = parameter.given.is_some() && !parameter.is_unset
                     || owner.is_some_and(|owner| is_misspelt(name, owner.component, is_declared));
-                if must && !property.has_value() && !is_given {
+                if is_asked_for(property) && !is_given {
                     owner.into_iter().for_each(|owner| report.about(owner));
-                    report.push(missing(property, owner.map(|owner| owner.component), report.assumes));
+                    report.push(self.missing(place, property, report.assumes));
                     report.about_all();
                 }
                 let origin = property.origin;
@@ -391,7 +411,16 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
         }
         all.by_name.insert(
             &property.name,
-            Parameter { composite, property, given: None, is_used: false, is_judged: false, levels: None },
+            Parameter {
+                composite,
+                property,
+                given: None,
+                variable: None,
+                is_unset: false,
+                is_used: false,
+                is_judged: false,
+                whole: None,
+            },
         );
     }
     all
@@ -401,41 +430,4 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
 pub(super) fn is_misspelt(name: &str, owner: &Component, is_declared: impl Fn(&str) -> bool) -> bool {
     let unknown = owner.properties.iter().filter(|given| !is_declared(&given.name));
     unknown.take(MOST_MISSPELT).any(|given| nearest(&given.name, [name]).is_some())
-}
-
-/// A composite property that has to be given a value, by the component that the composite implements where there is one.
-fn missing(property: &Property, owner: Option<&Component>, assumes: bool) -> Diagnostic {
-    let name = &property.name;
-    let Some(owner) = owner else {
-        let message = format!("the property {} of the composite has to be given a value", quoted(name));
-        let one = Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, name.location, message)
-            .help(from_outside(property));
-        // Where classes are taken as given, so is the component that this composite may implement.
-        return match assumes {
-            true => one
-                .severity(Severity::Warning)
-                .help("as an implementation, it takes the value that its component gives it"),
-            false => one,
-        };
-    };
-    let message = format!(
-        "component {} has to give the property {} of its composite a value",
-        quoted(&owner.name),
-        quoted(name)
-    );
-    Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, owner.name.location, message)
-        .label(name.location, "declared here, without a value")
-        .help(format!("add `<property name=\"{}\">...</property>`", escaped(name)))
-}
-
-/// How a property of a composite that runs by itself gets a value.
-fn from_outside(property: &Property) -> String {
-    let name = &property.name;
-    match property.env() {
-        Some(variable) => format!(
-            "write it in the file, give `--set {name}=...`, or set {} in the environment",
-            quoted(variable)
-        ),
-        None => format!("write it in the file, or give `--set {name}=...`"),
-    }
 }

@@ -58,17 +58,16 @@ pub(super) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
     (!name.is_empty()).then_some((name, (!path.is_empty()).then_some(path)))
 }
 
-/// The value that `[2]` behind the name means.
-pub(super) fn one_of<'a>(mut whole: Raw<'a>, path: &str) -> Result<Raw<'a>, Fault> {
-    let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(whole) };
+/// The place of the value that `[2]` behind the name means, of so many; `None` where the path starts from all of them.
+pub(super) fn one_of(count: usize, path: &str) -> Result<Option<usize>, Fault> {
+    let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(None) };
     let Some(Predicate::Place(wanted)) = predicate(step) else {
         return Err(Fault::unknown(at, NO_PATH));
     };
-    let count = whole.0.len();
-    let Some(place) = wanted.of(count) else {
-        return Err(Fault::new(at, format!("the property has {}", counted(count, "value"))));
-    };
-    Ok(Raw(vec![whole.0.swap_remove(place)]))
+    match wanted.of(count) {
+        Some(place) => Ok(Some(place)),
+        None => Err(Fault::new(at, format!("the property has {}", counted(count, "value")))),
+    }
 }
 
 /// Where a step leads that is no element, such as `@name` or `text()`.

@@ -8,7 +8,7 @@ pub(super) use known::Known;
 
 use super::fleet::Unit;
 use super::instance::{Instance, all_complex_texts};
-use super::names::{Names, Outside};
+use super::names::Names;
 use super::replicas::{condition, tell};
 use super::report::Report;
 use super::unfold::{MOST_MEMBERS, Unfolding};
@@ -36,25 +36,23 @@ impl Presence {
 impl<'a> Unfolding<'a> {
     /// What expressions in a unit can name.
     pub(super) fn names(&mut self, unit: usize) -> Rc<Names> {
-        if let Some(Some(known)) = self.fleet.names.get(unit) {
-            return Rc::clone(&known.names);
+        if let Some(Some(names)) = self.fleet.names.get(unit) {
+            return Rc::clone(names);
         }
         let owner = self.fleet.scopes[self.fleet.units[unit].scope].owner;
         if let Some(owner) = owner {
             self.names(self.fleet.members[owner].unit);
         }
-        let unfolding = &*self;
-        let supply = owner.map(|owner| move |name: &str| unfolding.supplied(owner, name));
-        let component = owner.map(|owner| self.fleet.members[owner].component);
-        let outside = component.zip(supply.as_ref());
-        let outside = outside.map(|(component, supply)| Outside { component, supply });
         let main = self.fleet.units[unit].main();
-        let names = Rc::new(Names::of(main, self.fleet.contribution, outside, self.options));
-        let known = Known::of(Rc::clone(&names), main, self);
         if self.fleet.names.len() <= unit {
-            self.fleet.names.resize_with(unit + 1, || None);
+            self.fleet.names.resize(unit + 1, None);
+            self.known.resize_with(unit + 1, || None);
         }
-        self.fleet.names[unit] = Some(known);
+        self.known[unit] = Some(Known::of(main, owner, self));
+        let component = owner.map(|owner| self.fleet.members[owner].component);
+        let supply = |name: &str| self.supplied(unit, name);
+        let names = Rc::new(Names::of(main, self.fleet.contribution, component, &supply));
+        self.fleet.names[unit] = Some(Rc::clone(&names));
         names
     }
 

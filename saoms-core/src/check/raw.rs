@@ -1,6 +1,7 @@
 //! Values as files give them, before anybody asks what they should be.
 
 use std::borrow::Cow;
+use std::rc::Rc;
 
 use super::instance::Instance;
 use super::report::Report;
@@ -19,7 +20,7 @@ pub(super) enum Piece<'a> {
     /// A text.
     Text(Cow<'a, Text>),
     /// Elements: the named values of a complex property, and the replica whose numbers are in their texts.
-    Elements(Vec<Element<'a>>, Option<&'a Instance>),
+    Elements(Rc<[Element<'a>]>, Option<&'a Instance>),
     /// The root of XML in a file, with the whole text: what counts is for the one who takes it to say.
     Whole(&'a Text, Element<'a>, Option<&'a Instance>),
 }
@@ -61,7 +62,7 @@ impl<'a> Raw<'a> {
 impl<'a> Piece<'a> {
     /// What is inside an element.
     pub(super) fn inside(element: Element<'a>, instance: Option<&'a Instance>) -> Self {
-        let children: Vec<Element<'a>> = element.children().collect();
+        let children: Rc<[Element<'a>]> = element.children().collect();
         if !children.is_empty() {
             return Self::Elements(children, instance);
         }
@@ -203,6 +204,6 @@ fn document_value<'a>(
     let children: Vec<Element<'a>> = root.children().collect();
     match children.iter().all(is_value) {
         true => Raw::of_elements(&children, instance),
-        false => Raw(vec![Piece::Elements(children, instance)]),
+        false => Raw(vec![Piece::Elements(children.into(), instance)]),
     }
 }

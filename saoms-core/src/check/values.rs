@@ -141,7 +141,7 @@ impl<'a> Values<'a> {
         match pieces.pop() {
             Some(piece) => self.piece(piece, path, declarations, used, report),
             None if main.kind == PropertyKind::Complex => {
-                self.piece(Piece::Elements(Vec::new(), None), path, declarations, used, report)
+                self.piece(Piece::Elements([].into(), None), path, declarations, used, report)
             }
             None => {
                 let nothing = Text::new("".into(), used.property);

@@ -24,6 +24,8 @@ mod token;
 use std::fmt;
 use std::ops::Range;
 
+use smol_str::SmolStr;
+
 pub use evaluate::{boolean, integer};
 pub use parse::{Expression, parse};
 pub use template::{has_expression, inside, names, pattern, render};
@@ -42,7 +44,7 @@ pub enum Value {
     /// True or false.
     Boolean(bool),
     /// A text.
-    Text(String),
+    Text(SmolStr),
 }
 
 impl fmt::Display for Value {

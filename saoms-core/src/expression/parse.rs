@@ -162,7 +162,7 @@ impl Parser<'_> {
         };
         let node = match token {
             Token::Integer(number) => Node::Value(Value::Integer(*number)),
-            Token::Text(text) => Node::Value(Value::Text(text.clone())),
+            Token::Text(text) => Node::Value(Value::Text(text.as_str().into())),
             Token::Word(word) => match word.as_str() {
                 "true" => Node::Value(Value::Boolean(true)),
                 "false" => Node::Value(Value::Boolean(false)),

@@ -6,7 +6,7 @@ fn lookup(name: &str) -> Result<Value, Problem> {
     match name {
         "index" => Ok(Value::Integer(7)),
         "robots" => Ok(Value::Integer(40)),
-        "site" => Ok(Value::Text("north".to_owned())),
+        "site" => Ok(Value::Text("north".into())),
         "simulated" => Ok(Value::Boolean(true)),
         _ => Err(Problem::new(format!("no `{name}`"))),
     }

@@ -15,6 +15,7 @@ mod expanded_given;
 mod files;
 mod findings;
 mod fleets;
+mod given_on;
 mod loop_classes;
 mod loops;
 mod meant;

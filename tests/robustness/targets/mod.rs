@@ -81,7 +81,7 @@ pub(crate) fn expression(bytes: &[u8]) {
     let mut lookup = |name: &str| match name {
         "index" => Ok(Value::Integer(7)),
         "large" => Ok(Value::Integer(i64::MAX)),
-        "site" => Ok(Value::Text("north".to_owned())),
+        "site" => Ok(Value::Text("north".into())),
         "is" => Ok(Value::Boolean(true)),
         _ => Err(Problem::new("there is none")),
     };

@@ -71,7 +71,7 @@ fn valued(node: Node, property: &Property, Raw(pieces): Raw<'_>) -> Node {
             Piece::Text(text) if text.is_empty() => Node::new("value"),
             Piece::Text(text) => Node::new("value").text(&text),
             Piece::Elements(elements, instance) => {
-                let all = elements.into_iter().map(|one| copied(one, instance));
+                let all = elements.iter().map(|one| copied(*one, instance));
                 if is_one {
                     return node.children(all);
                 }

@@ -4,11 +4,11 @@ use std::rc::Rc;
 
 use super::{Given, Parameters};
 use crate::check::fleet::Fleet;
-use crate::check::levels::Levels;
-use crate::check::path::{Fault, expression, one_of};
+use crate::check::path::{Fault, expression, steps};
 use crate::check::raw::{Piece, Raw, raw};
 use crate::check::report::{Report, replacing};
 use crate::check::value_type::{self, Typed};
+use crate::check::whole::Whole;
 use crate::check::xpath::XPath;
 use crate::check::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -19,20 +19,34 @@ use crate::xml::{Element, escaped};
 impl<'a> Parameters<'a> {
     /// Notes what expressions use, and what they have it from. What is wrong with that is reported.
     pub(super) fn take_for_expressions(&mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
-        for (unit, known) in fleet.names.iter().enumerate() {
-            let Some(known) = known else { continue };
+        // From the inside out: what a name takes as a whole from a composite around is asked for there as well.
+        for (unit, names) in fleet.names.iter().enumerate().rev() {
+            for name in names.iter().flat_map(|names| names.used()) {
+                if let Some((around, source)) = self.source_of(unit, &name)
+                    && let Some((whole, None)) = expression(source)
+                    && let Some(around) = &fleet.names[around]
+                {
+                    around.ask(whole);
+                }
+            }
+        }
+        let mut is_room_told = false;
+        for (unit, names) in fleet.names.iter().enumerate() {
+            let Some(names) = names else { continue };
             let owner = fleet.scopes[fleet.units[unit].scope].owner;
-            for name in known.names.used() {
+            for name in names.used() {
                 let Some(parameter) = self.units[unit].by_name.get_mut(name.as_str()) else { continue };
                 parameter.is_used = true;
-                let Some(Given::Component(place, given)) = parameter.given else { continue };
-                let Some(source) = given.source() else { continue };
-                // A name as a whole was looked up as one.
-                if !known.names.is_faulty(&name) && self.declaration(place.unit, source).is_some() {
+                let source = self.source_of(unit, &name);
+                let is_simple = source.is_none_or(|(unit, source)| self.declaration(unit, source).is_some());
+                if !names.is_faulty(&name) && is_simple {
                     continue;
                 }
                 owner.into_iter().for_each(|owner| report.about(&fleet.members[owner]));
-                if self.values(place, given, report).is_ok() && known.names.is_faulty(&name) {
+                let found = self.whole(unit, &name, report);
+                let is_for_room = found.is_ok() && names.is_faulty(&name);
+                if let Some((_, source)) = source.filter(|_| is_for_room && !is_room_told) {
+                    is_room_told = true;
                     let message = "what this looks at is more than there is room for";
                     let one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message);
                     report.push(
@@ -44,59 +58,51 @@ impl<'a> Parameters<'a> {
         }
     }
 
+    /// The `source` that gives a property its value, and the unit that it is written in.
+    fn source_of(&self, unit: usize, name: &str) -> Option<(usize, &'a Text)> {
+        match self.units[unit].by_name.get(name)?.given? {
+            Given::Component(place, given) => Some((place.unit, given.source()?)),
+            _ => None,
+        }
+    }
+
     /// What a `source` stands for. Faults are reported.
     pub(super) fn follow(
         &mut self,
         place: usize,
         source: &Text,
         report: &mut Report<'_>,
-    ) -> Result<Raw<'a>, ()> {
+    ) -> Result<Rc<Whole<'a>>, ()> {
         let known = &self.units[place].by_name;
         let simple = expression(source).filter(|(name, _)| known.contains_key(name) || is_name(name));
         let Some((name, path)) = simple else { return self.by_xpath(place, source, report) };
         self.named(place, source, (name, 1), report)?;
-        let start = name.len() + 1;
-        let parameter = &self.units[place].by_name[name];
-        let (property, given) = (parameter.property, parameter.given);
-        if let (Some(levels), Some(path)) = (&parameter.levels, path.filter(|path| path.starts_with('/'))) {
-            return match levels.walk(path) {
-                Err(Fault { is_understood: false, .. }) => self.by_xpath(place, source, report),
-                found => found.or_else(|one| malformed(source, start, one, report)),
-            };
-        }
         let whole = self.whole(place, name, report)?;
+        let parameter = &self.units[place].by_name[name];
+        let property = parameter.property;
         let Some(path) = path else {
             // Where the composite does not say it, the component that it implements may.
-            let typed = match given {
+            let typed = match parameter.given {
                 Some(Given::Component(_, outside)) if property.element().is_none() => outside,
                 _ => property,
             };
             return Ok(self.taken_as(typed, whole));
         };
-        if whole.0.is_empty() {
+        if whole.raw().0.is_empty() {
             // What has no value has no parts either.
             return Ok(whole);
         }
-        let whole = match one_of(whole.split_into_elements_of(property), path) {
-            Err(Fault { is_understood: false, .. }) => return self.by_xpath(place, source, report),
-            found => found.or_else(|one| malformed(source, start, one, report))?,
-        };
-        // Without more steps it is the value itself.
-        let Some(from) = path.find('/') else { return Ok(self.taken_as(property, whole)) };
-        let levels = Rc::new(Levels::of(whole));
-        if from == 0
-            && let Some(parameter) = self.units[place].by_name.get_mut(name)
-        {
-            parameter.levels = Some(Rc::clone(&levels));
-        }
-        match levels.walk(path) {
+        match whole.part(path) {
+            // Without more steps it is the value itself.
+            Ok(raw) if steps(path).nth(1).is_none() => Ok(self.taken_as(property, Whole::new(raw))),
+            Ok(raw) => Ok(Whole::new(raw)),
             Err(Fault { is_understood: false, .. }) => self.by_xpath(place, source, report),
-            found => found.or_else(|one| malformed(source, start, one, report)),
+            Err(fault) => malformed(source, name.len() + 1, fault, report),
         }
     }
 
     /// What is taken of the values of a property.
-    fn taken_as(&self, property: &Property, values: Raw<'a>) -> Raw<'a> {
+    fn taken_as(&self, property: &Property, values: Rc<Whole<'a>>) -> Rc<Whole<'a>> {
         if self.keeps_elements { values } else { values.inside_elements_of(property) }
     }
 
@@ -171,9 +177,18 @@ impl<'a> Parameters<'a> {
     }
 
     /// The whole value of a property that is there.
-    fn whole(&mut self, place: usize, name: &str, report: &mut Report<'_>) -> Result<Raw<'a>, ()> {
+    pub(super) fn whole(
+        &mut self,
+        place: usize,
+        name: &str,
+        report: &mut Report<'_>,
+    ) -> Result<Rc<Whole<'a>>, ()> {
         let Some(parameter) = self.units[place].by_name.get_mut(name) else { return Err(()) };
+        if let Some(known) = &parameter.whole {
+            return Ok(Rc::clone(known));
+        }
         let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
+        let variable = parameter.variable;
         let is_judged = std::mem::replace(&mut parameter.is_judged, true);
         let typed = Typed { property, document: &composite.document };
         let mut whole = match given {
@@ -182,33 +197,54 @@ impl<'a> Parameters<'a> {
                 if !value_type::is_right(typed, value) {
                     return Err(());
                 }
-                Raw::one(value)
+                Whole::new(Raw::one(value))
             }
             Some(Given::Component(outside, outer)) => {
-                let raw = self.values(outside, outer, report)?.raw;
-                for piece in raw.0.iter().filter(|_| !is_judged) {
+                let (whole, _) = self.shared(outside, outer, report)?;
+                for piece in whole.raw().0.iter().filter(|_| !is_judged) {
                     if let Piece::Text(text) = piece
                         && !report.has_told(&codes::COMPOSITE_VALUE_TYPE, text.location)
                     {
                         value_type::given(typed, text, report);
                     }
                 }
-                raw
+                whole
             }
-            None => Raw(Vec::new()),
+            None => Whole::new(Raw(Vec::new())),
         };
-        if whole.0.is_empty() {
-            whole = raw(property, &composite.document, None, report)?;
+        if whole.raw().0.is_empty() {
+            whole = Whole::new(match variable {
+                Some(Variable { value, .. }) => {
+                    if !value_type::is_right(typed, value) {
+                        value_type::given(typed, value, report);
+                        return Err(());
+                    }
+                    Raw::one(value)
+                }
+                None => raw(property, &composite.document, None, report)?,
+            });
         }
-        if whole.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
+        if whole.raw().0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
             // Reported where it should have been supplied.
+            if let Some(parameter) = self.units[place].by_name.get_mut(name) {
+                parameter.is_unset = true;
+            }
             return Err(());
+        }
+        let whole = whole.given_to(property);
+        if let Some(parameter) = self.units[place].by_name.get_mut(name) {
+            parameter.whole = Some(Rc::clone(&whole));
         }
         Ok(whole)
     }
 
     /// What a `source` stands for that is more than a path.
-    fn by_xpath(&mut self, place: usize, source: &Text, report: &mut Report<'_>) -> Result<Raw<'a>, ()> {
+    fn by_xpath(
+        &mut self,
+        place: usize,
+        source: &Text,
+        report: &mut Report<'_>,
+    ) -> Result<Rc<Whole<'a>>, ()> {
         if !source.contains(['$', '(']) {
             let unit = &mut self.units[place];
             unit.has_wrong_source = true;
@@ -223,7 +259,7 @@ impl<'a> Parameters<'a> {
         }
         let key = (place, source.to_string());
         if let Some((first, found)) = self.found.get(&key) {
-            return Ok(found.clone().moved(*first, source.location));
+            return Ok(Rc::clone(found).moved(*first, source.location));
         }
         let xpath = match XPath::parse(source) {
             Ok(xpath) => xpath,
@@ -234,24 +270,32 @@ impl<'a> Parameters<'a> {
         };
         let named = xpath.variables();
         let mut variables = Vec::with_capacity(named.len());
-        for (name, at) in &named {
-            self.named(place, source, (name, at.start), report)?;
-            let property = self.units[place].by_name[name.as_str()].property;
-            variables.push((name.clone(), self.whole(place, name, report)?.split_into_elements_of(property)));
+        // With a fault in one of them the others are used all the same.
+        let known = named.iter().map(|(name, at)| self.named(place, source, (name, at.start), report));
+        known.fold(Ok(()), Result::and)?;
+        for (name, _) in &named {
+            variables.push((name.clone(), self.whole(place, name, report)?));
+        }
+        // Of the first for which there is no room that is reported.
+        if self.parts_left.get() == 0 {
+            return Err(());
         }
         let found = match xpath.evaluate(&variables, &self.parts_left, source.location) {
             Ok(found) => found,
             // What has no value has no parts either.
-            Err(_) if !variables.is_empty() && variables.iter().all(|(_, whole)| whole.0.is_empty()) => {
-                return Ok(Raw(Vec::new()));
+            Err(_)
+                if !variables.is_empty() && variables.iter().all(|(_, whole)| whole.raw().0.is_empty()) =>
+            {
+                return Ok(Whole::new(Raw(Vec::new())));
             }
             Err(fault) => return malformed(source, 0, fault, report),
         };
+        let found = Whole::new(found);
         let found = match &named[..] {
             [(only, _)] => self.taken_as(self.units[place].by_name[only.as_str()].property, found),
             _ => found,
         };
-        self.found.insert(key, (source.location, found.clone()));
+        self.found.insert(key, (source.location, Rc::clone(&found)));
         Ok(found)
     }
 }

@@ -1,200 +1,179 @@
-//! What components give the composites that they implement, as far as expressions ask for it before there are
-//! [`Parameters`](crate::check::parameters::Parameters), which report what is wrong with it.
+//! What the properties of composites come to, as far as expressions ask for it before there are
+//! [`Parameters`](crate::check::parameters::Parameters), which report what is wrong with it. Each value is found once, whoever asks for it.
 
-use std::borrow::Cow;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::check::levels::Levels;
-use crate::check::names::{Names, Supplied, with_included};
-use crate::check::parameters::MOST_PARTS;
-use crate::check::path::{Fault, expression, one_of};
+use crate::check::names::{Supplied, with_included};
+use crate::check::path::{Fault, expression, steps};
 use crate::check::raw::{Piece, Raw, unreported};
 use crate::check::unfold::Unfolding;
+use crate::check::whole::Whole;
 use crate::check::xpath::XPath;
 use crate::model::{Composite, Property};
-use crate::source::Text;
+use crate::source::{Location, Text};
 
 /// What is known of the properties of a unit whose expressions were asked about.
 pub(in crate::check) struct Known<'a> {
-    pub(in crate::check) names: Rc<Names>,
+    /// The component that its composite implements.
+    owner: Option<usize>,
     properties: HashMap<&'a str, (&'a Composite, &'a Property)>,
-    /// What paths led to.
-    found: RefCell<HashMap<String, Supplied>>,
-    /// How many elements there are in the values of properties that a path led into.
-    sizes: RefCell<HashMap<String, usize>>,
-    left: Rc<Left>,
+    /// Their values.
+    wholes: RefCell<HashMap<&'a str, Answer<'a>>>,
+    /// What sources lead to that name no property as a whole, and where the first of each stands.
+    led_to: RefCell<HashMap<String, (Location, Answer<'a>)>>,
 }
 
-/// What sources can still look at, of a unit and all inside it.
-struct Left {
-    /// Elements, in each step of a path anew.
-    elements: Cell<usize>,
-    /// Parts of values, where a source is more than a path.
-    parts: Cell<usize>,
-}
-
-/// Elements that paths can look at: replicas of a composite can each take a part of one long value.
-const MOST_ELEMENTS: usize = 200_000_000;
+/// Values; `Err` with a fault.
+type Answer<'a> = Result<Rc<Whole<'a>>, ()>;
 
 impl<'a> Known<'a> {
-    pub(super) fn of(names: Rc<Names>, main: &'a Composite, unfolding: &Unfolding<'a>) -> Self {
+    /// What is known of a unit before anything is asked.
+    pub(super) fn of(main: &'a Composite, owner: Option<usize>, unfolding: &Unfolding<'a>) -> Self {
         let mut properties = HashMap::new();
         for composite in with_included(main, unfolding.fleet.contribution) {
             for property in &composite.properties {
                 properties.entry(property.name.as_str()).or_insert((composite, property));
             }
         }
-        let mut others = unfolding.fleet.names.iter().flatten();
-        let left = others.next().map(|other| Rc::clone(&other.left));
-        let new = || Rc::new(Left { elements: Cell::new(MOST_ELEMENTS), parts: Cell::new(MOST_PARTS) });
-        let left = left.unwrap_or_else(new);
-        Self { names, properties, found: RefCell::default(), sizes: RefCell::default(), left }
-    }
-
-    /// Counts what a path looks at in a value that was measured; `Err` where there is no room for it.
-    fn look(&self, name: &str, path: &str) -> Result<(), ()> {
-        let size = self.sizes.borrow().get(name).copied().unwrap_or_default();
-        let cost = size.saturating_mul(1 + path.matches('/').count());
-        self.left.elements.set(self.left.elements.get().checked_sub(cost).ok_or(())?);
-        Ok(())
-    }
-
-    /// Counts the elements in a value, before the second path leads into it.
-    fn measure(&self, name: &str, whole: &Raw<'a>) {
-        if self.sizes.borrow().contains_key(name) {
-            return;
-        }
-        let elements = whole.0.iter().flat_map(|piece| match piece {
-            Piece::Text(_) => &[],
-            Piece::Elements(elements, _) => &elements[..],
-            Piece::Whole(_, root, _) => std::slice::from_ref(root),
-        });
-        let size = elements.map(|element| 1 + element.descendants().count()).sum();
-        self.sizes.borrow_mut().insert(name.to_owned(), size);
+        Self { owner, properties, wholes: RefCell::default(), led_to: RefCell::default() }
     }
 }
 
 impl<'a> Unfolding<'a> {
-    /// What a component gives a property of the composite that it implements.
-    pub(super) fn supplied(&self, owner: usize, name: &str) -> Supplied {
-        let member = &self.fleet.members[owner];
-        let Some(given) = member.component.property(name) else { return Supplied::Nothing };
-        let Some(known) = self.known(member.unit) else { return Supplied::Nothing };
-        let named = given.source().and_then(|source| source.strip_prefix('$'));
-        if let Some(supplied) = named.and_then(|named| known.names.supply(named)) {
-            return supplied;
-        }
-        // Where it leads nowhere, the property can have a value of its own.
-        let path = given.source().filter(|source| expression(source).is_some() && !given.has_value());
-        if let Some(found) = path.and_then(|path| known.found.borrow().get(path.as_str()).cloned()) {
-            return found;
-        }
-        let found = match self.values_given(owner, given).as_ref().map(|raw| &raw.0[..]) {
+    /// What expressions in a unit take of a property.
+    pub(super) fn supplied(&self, unit: usize, name: &str) -> Supplied {
+        match self.taken(unit, name).as_ref().map(|whole| &whole.raw().0[..]) {
             Ok([]) => Supplied::Nothing,
             Ok([Piece::Text(text)]) => Supplied::Text(text.clone().into_owned()),
             Ok([Piece::Whole(text, ..)]) => Supplied::Text((*text).clone()),
             Ok(_) => Supplied::Other,
             Err(()) => Supplied::Faulty,
-        };
-        if let Some(path) = path {
-            known.found.borrow_mut().insert(path.to_string(), found.clone());
         }
-        found
     }
 
-    fn known(&self, unit: usize) -> Option<&Known<'a>> {
-        self.fleet.names.get(unit)?.as_ref()
+    fn known(&self, unit: usize) -> Result<&Known<'a>, ()> {
+        self.known.get(unit).and_then(Option::as_ref).ok_or(())
     }
 
-    /// The values of a component's property; `Err` with a fault.
-    fn values_given(&self, owner: usize, given: &'a Property) -> Result<Raw<'a>, ()> {
+    /// What a component says of a property of the composite that it implements.
+    fn given(&self, known: &Known<'a>, name: &str) -> Option<&'a Property> {
+        self.fleet.members[known.owner?].component.property(name)
+    }
+
+    /// The values of a component's property.
+    fn values_given(&self, owner: usize, given: &'a Property) -> Answer<'a> {
         let member = &self.fleet.members[owner];
         let document = &member.composite.document;
         if member.instance.is_some_and(|instance| instance.hides(given, document)) {
             return Err(());
         }
         if let Some(source) = given.source() {
-            let raw = self.led_to(member.unit, source)?;
-            if !raw.0.is_empty() {
-                return Ok(raw);
+            let whole = self.led_to(member.unit, source)?;
+            if !whole.raw().0.is_empty() {
+                return Ok(whole);
             }
         }
-        unreported(given, document, member.instance)
+        unreported(given, document, member.instance).map(Whole::new)
     }
 
-    /// What a `source` in a unit leads to; `Err` with a fault.
-    fn led_to(&self, unit: usize, source: &Text) -> Result<Raw<'a>, ()> {
-        let known = self.known(unit).ok_or(())?;
-        let Some((name, path)) = expression(source) else { return self.by_xpath(unit, source) };
-        let Some(&(_, property)) = known.properties.get(name) else { return self.by_xpath(unit, source) };
-        let Some(path) = path else { return Ok(self.whole(unit, name)?.inside_elements_of(property)) };
-        known.look(name, path)?;
-        let whole = self.whole(unit, name)?;
-        if whole.0.is_empty() {
-            return Ok(whole);
-        }
-        known.measure(name, &whole);
-        let whole = match one_of(whole.split_into_elements_of(property), path) {
-            Err(Fault { is_understood: false, .. }) => return self.by_xpath(unit, source),
-            found => found.map_err(drop)?,
+    /// The whole value of a property of a unit; `Err` also where there is none of this name.
+    fn whole(&self, unit: usize, name: &str) -> Answer<'a> {
+        let known = self.known(unit)?;
+        let Some(found) = known.wholes.borrow().get(name).cloned() else {
+            let &(composite, property) = known.properties.get(name).ok_or(())?;
+            let found = self.declared(known, composite, property);
+            known.wholes.borrow_mut().insert(&property.name, found.clone());
+            return found;
         };
-        if !path.contains('/') {
-            return Ok(whole.inside_elements_of(property));
-        }
-        match Levels::of(whole).walk(path) {
-            Err(Fault { is_understood: false, .. }) => self.by_xpath(unit, source),
-            found => found.map_err(drop),
-        }
+        found
     }
 
-    /// The whole value of a property of a unit; `Err` with a fault, or where there is none.
-    fn whole(&self, unit: usize, name: &str) -> Result<Raw<'a>, ()> {
-        let known = self.known(unit).ok_or(())?;
-        let &(composite, property) = known.properties.get(name).ok_or(())?;
-        let given = match self.fleet.scopes[self.fleet.units[unit].scope].owner {
-            Some(owner) => match self.fleet.members[owner].component.property(name) {
-                Some(given) => self.values_given(owner, given)?,
-                None => Raw(Vec::new()),
-            },
-            None => {
-                let setting = self.options.settings.iter().find(|setting| setting.name == *name);
-                Raw(setting.iter().flat_map(|setting| Raw::one(&setting.value).0).collect())
-            }
+    fn declared(&self, known: &Known<'a>, composite: &'a Composite, property: &'a Property) -> Answer<'a> {
+        let setting = || self.options.settings.iter().find(|setting| setting.name == *property.name.as_str());
+        let given = match known.owner {
+            Some(owner) => self.given(known, &property.name).map(|given| self.values_given(owner, given)),
+            None => setting().map(|setting| Ok(Whole::new(Raw::one(&setting.value)))),
         };
-        if !given.0.is_empty() {
-            return Ok(given);
+        if let Some(given) = given.transpose()?.filter(|given| !given.raw().0.is_empty()) {
+            return Ok(given.given_to(property));
         }
         match property.env().and_then(|variable| self.options.variable(variable)) {
-            Some(variable) => Ok(Raw::one(variable)),
-            None => unreported(property, &composite.document, None),
+            Some(variable) => Ok(Whole::of(Raw::one(variable), property)),
+            None => unreported(property, &composite.document, None).map(|raw| Whole::of(raw, property)),
+        }
+    }
+
+    /// What is taken of a property of a unit where it is named as a whole.
+    fn taken(&self, unit: usize, name: &str) -> Answer<'a> {
+        let whole = self.whole(unit, name)?;
+        let known = self.known(unit)?;
+        let &(_, property) = known.properties.get(name).ok_or(())?;
+        // Where the composite does not say it, the component that it implements may.
+        let outside = self.given(known, name).filter(|_| property.element().is_none());
+        Ok(whole.inside_elements_of(outside.unwrap_or(property)))
+    }
+
+    /// What a `source` in a unit leads to.
+    fn led_to(&self, unit: usize, source: &Text) -> Answer<'a> {
+        let known = self.known(unit)?;
+        let named = expression(source).filter(|(name, _)| known.properties.contains_key(name));
+        if let Some((name, None)) = named {
+            return self.taken(unit, name);
+        }
+        if let Some((first, found)) = known.led_to.borrow().get(source.as_str()) {
+            return found.clone().map(|whole| whole.moved(*first, source.location));
+        }
+        let found = match named {
+            Some((name, Some(path))) => self.by_path(unit, source, (name, path)),
+            _ => self.by_xpath(unit, source),
+        };
+        known.led_to.borrow_mut().insert(source.to_string(), (source.location, found.clone()));
+        found
+    }
+
+    /// What a path leads to.
+    fn by_path(&self, unit: usize, source: &Text, (name, path): (&str, &str)) -> Answer<'a> {
+        let whole = self.whole(unit, name)?;
+        if whole.raw().0.is_empty() {
+            return Ok(whole);
+        }
+        let &(_, property) = self.known(unit)?.properties.get(name).ok_or(())?;
+        match whole.part(path) {
+            Ok(raw) if steps(path).nth(1).is_none() => Ok(Whole::new(raw).inside_elements_of(property)),
+            Ok(raw) => Ok(Whole::new(raw)),
+            Err(Fault { is_understood: false, .. }) => self.by_xpath(unit, source),
+            Err(_) => Err(()),
         }
     }
 
     /// What a `source` comes to that is more than a path.
-    fn by_xpath(&self, unit: usize, source: &Text) -> Result<Raw<'a>, ()> {
-        let known = self.known(unit).ok_or(())?;
-        let xpath = XPath::parse(source).map_err(drop)?;
-        let mut variables = Vec::new();
-        for (name, _) in xpath.variables() {
-            let &(_, property) = known.properties.get(name.as_str()).ok_or(())?;
-            // A text was found when the names of the unit were: around composites inside each other it is not put together anew for each.
-            let whole = match known.names.supply(&name) {
-                Some(Supplied::Text(text)) => Raw(vec![Piece::Text(Cow::Owned(text))]),
-                Some(Supplied::Faulty) => return Err(()),
-                _ => self.whole(unit, &name)?,
-            };
-            variables.push((name, whole.split_into_elements_of(property)));
-        }
+    fn by_xpath(&self, unit: usize, source: &Text) -> Answer<'a> {
         if !source.contains(['$', '(']) {
             return Err(());
         }
-        match xpath.evaluate(&variables, &known.left.parts, source.location) {
-            Err(_) if !variables.is_empty() && variables.iter().all(|(_, whole)| whole.0.is_empty()) => {
-                Ok(Raw(Vec::new()))
-            }
-            found => found.map_err(drop),
+        let xpath = XPath::parse(source).map_err(drop)?;
+        let mut variables = Vec::new();
+        for (name, _) in xpath.variables() {
+            let whole = self.whole(unit, &name)?;
+            variables.push((name, whole));
         }
+        let found = match xpath.evaluate(&variables, &self.parts_left, source.location) {
+            Ok(found) => Whole::new(found),
+            Err(_)
+                if !variables.is_empty() && variables.iter().all(|(_, whole)| whole.raw().0.is_empty()) =>
+            {
+                return Ok(Whole::new(Raw(Vec::new())));
+            }
+            Err(_) => return Err(()),
+        };
+        Ok(match &variables[..] {
+            [(only, _)] => {
+                let &(_, property) = self.known(unit)?.properties.get(only.as_str()).ok_or(())?;
+                found.inside_elements_of(property)
+            }
+            _ => found,
+        })
     }
 }

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::ops::Range;
+use std::rc::Rc;
 
 use super::no_number::NoNumber;
 use super::parse::{Axis, Expression, Node as Part, Step, Test};
@@ -12,18 +13,19 @@ use crate::check::instance::Instance;
 use crate::check::path::Fault;
 use crate::check::raw::{Piece, Raw};
 use crate::check::report::list;
+use crate::check::whole::Whole;
 use crate::diagnostic::quoted;
 use crate::source::{Located, Location};
 use crate::xml::Element;
 
-/// So many bytes of a text that is made are as much work as a part of a value.
-const BYTES: usize = 32;
+/// So many bytes of a text that is made are as much work as a part of a value: it takes memory, too.
+const BYTES: usize = 8;
 
 /// What variables stand for, and how much more work there may be.
 pub(super) struct Scope<'v, 'a> {
     /// The text of the expression.
     text: &'v str,
-    variables: &'v [(String, Raw<'a>)],
+    variables: &'v [(String, Rc<Whole<'a>>)],
     /// How many more parts are looked at.
     left: &'v Cell<usize>,
     /// The values that the outermost elements are in.
@@ -48,15 +50,18 @@ pub(super) struct At<'a> {
 pub(super) fn evaluate<'a>(
     expression: &Expression,
     text: &str,
-    (variables, left): (&[(String, Raw<'a>)], &Cell<usize>),
+    (variables, left): (&[(String, Rc<Whole<'a>>)], &Cell<usize>),
     place: Location,
 ) -> Result<Raw<'a>, Fault> {
     let (tops, dead, no_number) = (OnceCell::new(), RefCell::default(), RefCell::default());
     let scope = Scope { text, variables, left, tops, dead, no_number };
     let at = At { node: None, position: 1, size: 1, is_whole: true };
     let value = scope.value(expression, &at)?;
+    if let Value::Nodes(nodes) = &value {
+        scope.spend(nodes.len());
+    }
     if left.get() == 0 {
-        return Err(Fault::new(0..text.len(), "it looks at more parts of values than a check can"));
+        return Err(scope.used_up());
     }
     let pieces = match value {
         Value::Nodes(nodes) if nodes.is_empty() => {
@@ -83,8 +88,18 @@ impl<'a> Scope<'_, 'a> {
         left > 0
     }
 
+    /// The fault of an expression for which there is no room.
+    fn used_up(&self) -> Fault {
+        let why = "the sources of a check look at most at four million parts of values or make as much text, and this goes beyond";
+        Fault::new(0..self.text.len(), format!("{why}: paths such as `$name/part[2]` do not count"))
+    }
+
+    fn values(&self, variable: usize) -> &[Piece<'a>] {
+        &self.variables[variable].1.split().0
+    }
+
     fn held(&self, variable: usize, value: usize) -> &Piece<'a> {
-        &self.variables[variable].1.0[value]
+        &self.values(variable)[value]
     }
 
     /// The elements of a whole value, and the replica whose numbers are in their texts.
@@ -128,11 +143,7 @@ impl<'a> Scope<'_, 'a> {
     /// A node as the value of a property.
     fn piece(&self, node: &Node<'a>) -> Piece<'a> {
         match node {
-            Node::Value(variable, value) => match self.held(*variable, *value) {
-                Piece::Text(text) => Piece::Text(text.clone()),
-                Piece::Elements(all, instance) => Piece::Elements(all.clone(), *instance),
-                Piece::Whole(text, root, instance) => Piece::Whole(text, *root, *instance),
-            },
+            Node::Value(variable, value) => self.held(*variable, *value).clone(),
             Node::Element(one, instance) => Piece::inside(*one, *instance),
             Node::Attribute(one, _, instance) => Piece::text(one.trimmed(), *instance),
             Node::Text(one, instance) => match one.trimmed_text() {
@@ -149,7 +160,8 @@ impl<'a> Scope<'_, 'a> {
             Part::Literal(text) => Value::Text(text.clone()),
             Part::Variable(name) => {
                 let place = self.variables.iter().position(|(known, _)| known == name);
-                let values = place.map_or(0, |place| self.variables[place].1.0.len());
+                let values = place.map_or(0, |place| self.values(place).len());
+                self.spend(values);
                 Value::Nodes((0..values).map(|value| Node::Value(place.unwrap_or_default(), value)).collect())
             }
             Part::Call(function, arguments) => {
@@ -158,8 +170,10 @@ impl<'a> Scope<'_, 'a> {
                 let value = (function.run)(self, at, &arguments)
                     .map_err(|message| Fault::new(expression.span.clone(), message))?;
                 // Texts that are joined with themselves, from composite to composite, double each time.
-                if let Value::Text(text) = &value {
-                    self.spend(text.len() / BYTES);
+                if let Value::Text(text) = &value
+                    && !self.spend(text.len() / BYTES)
+                {
+                    return Err(self.used_up());
                 }
                 value
             }
@@ -426,8 +440,8 @@ impl<'a> Scope<'_, 'a> {
     fn tops(&self) -> &HashMap<Key, Node<'a>> {
         self.tops.get_or_init(|| {
             let mut tops = HashMap::new();
-            for (variable, (_, raw)) in self.variables.iter().enumerate() {
-                for value in 0..raw.0.len() {
+            for variable in 0..self.variables.len() {
+                for value in 0..self.values(variable).len() {
                     let (all, instance) = self.inside(variable, value);
                     for one in all {
                         tops.insert(Node::Element(*one, instance).key(), Node::Value(variable, value));

@@ -6,6 +6,9 @@ use super::evaluate::{At, Scope};
 use super::value::{Node, Value, number};
 use crate::diagnostic::quoted;
 
+/// Bytes of a text that is made of others.
+const MOST_JOINED: usize = 1 << 20;
+
 /// A function.
 pub(super) struct Function {
     pub(super) name: &'static str,
@@ -62,7 +65,16 @@ pub(super) static ALL: [Function; 25] = [
     }),
     function("string", (0, 1), |scope, at, all| Ok(Value::Text(text(scope, at, all)))),
     function("concat", (2, usize::MAX), |scope, _, all| {
-        Ok(Value::Text(all.iter().map(|one| one.text(scope)).collect()))
+        let mut joined = String::new();
+        for one in all {
+            joined.push_str(&one.text(scope));
+            if joined.len() > MOST_JOINED {
+                return Err(format!(
+                    "this makes a text of more than {MOST_JOINED} bytes: one that is so long can stand in a `file`"
+                ));
+            }
+        }
+        Ok(Value::Text(joined))
     }),
     function("starts-with", (2, 2), |scope, _, all| {
         Ok(Value::Boolean(all[0].text(scope).starts_with(&all[1].text(scope))))

@@ -12,9 +12,11 @@ mod value;
 
 use std::cell::Cell;
 use std::ops::Range;
+use std::rc::Rc;
 
 use super::path::Fault;
 use super::raw::Raw;
+use super::whole::Whole;
 use crate::source::Location;
 use parse::{Expression, Node, Step};
 
@@ -40,7 +42,7 @@ impl<'t> XPath<'t> {
     /// What it comes to with these values of its variables. `left` is how many more parts may be looked at.
     pub(super) fn evaluate<'a>(
         &self,
-        variables: &[(String, Raw<'a>)],
+        variables: &[(String, Rc<Whole<'a>>)],
         left: &Cell<usize>,
         place: Location,
     ) -> Result<Raw<'a>, Fault> {
