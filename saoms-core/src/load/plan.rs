@@ -74,12 +74,12 @@ impl Loader<'_> {
     pub(super) fn plan(
         &mut self,
         plans: &mut Plans,
-        form: u32,
+        number: u32,
         place: usize,
         (element, read): (Element<'_>, &Component),
         document: &Arc<Document>,
     ) {
-        let form = form as usize;
+        let form = number as usize;
         if plans.0.len() <= form {
             plans.0.resize_with(form + 1, || Known::Nothing);
         }
@@ -90,7 +90,7 @@ impl Loader<'_> {
                 plan.has_names = plan.pattern.names(&read.properties);
             }
             new @ Known::Nothing if self.tangle.is_none() => {
-                let plan = self.regular(element, read, place, document);
+                let plan = self.regular((number, element), read, place, document);
                 *new = plan.map_or(Known::Irregular, Known::Regular);
             }
             _ => {}
@@ -100,7 +100,7 @@ impl Loader<'_> {
     /// The plan of a component that has nothing but what most have.
     fn regular(
         &mut self,
-        element: Element<'_>,
+        (form, element): (u32, Element<'_>),
         read: &Component,
         last: usize,
         document: &Arc<Document>,
@@ -142,7 +142,8 @@ impl Loader<'_> {
                 let value = Value::Attribute(place(at, &names, "value")?);
                 Pair { name, name_at: place(at, &names, "name")?, value }
             } else {
-                Pair { name, name_at: place(at, &["name"], "name")?, value: Value::Text }
+                let name_at = place(at, &["name"], "name")?;
+                Pair { name, name_at, value: Value::Text(document.text_in(form, name_at.element)) }
             })
         };
         let properties: Vec<Pair> = properties.iter().map(of_property).collect::<Option<_>>()?;

@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 
 use super::{Copied, Place, Property};
 use crate::hash::Set;
-use crate::source::{Location, Text};
+use crate::source::{Location, Span, Text};
 use crate::xml::{Document, Element, ElementId};
 
 /// The properties of a component, in order: a list of [`Property`].
@@ -148,13 +148,22 @@ impl Placed {
         &self.pattern
     }
 
-    /// The value of a property as it is written, and where; `None` where it is the text of its element.
+    /// The value of a property as it is written, and where; `None` where it is a text with more than letters in it.
     #[inline]
     pub(crate) fn raw(&self, property: &Pair) -> Option<(&str, Location)> {
-        let Value::Attribute(place) = property.value else { return None };
+        let nth = match property.value {
+            Value::Attribute(place) => place.nth,
+            Value::Text(nth) => nth?,
+        };
         let document = &*self.pattern.document;
-        let span = document.values_from(self.value)[place.nth as usize];
-        Some((&document.text()[span.start as usize..span.end as usize], span.in_file(document.file())))
+        let Span { start, end } = document.values_from(self.value)[nth as usize];
+        let mut raw = &document.text()[start as usize..end as usize];
+        if let Value::Text(_) = property.value {
+            // It starts with no white space.
+            raw = raw.trim_ascii_end();
+        }
+        let span = Span::new(start, start + raw.len() as u32);
+        Some((raw, span.in_file(document.file())))
     }
 
     /// The value of a property.
@@ -227,8 +236,8 @@ impl Pattern {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Value {
     Attribute(Place),
-    /// In the text of its element.
-    Text,
+    /// In the text of its element: among the values of the component, where it is one piece.
+    Text(Option<u32>),
 }
 
 impl Value {
@@ -236,7 +245,7 @@ impl Value {
     fn text(&self, component: &Copied<'_>, name: Place) -> Option<Text> {
         match self {
             Self::Attribute(place) => Some(component.attribute(*place).trimmed()),
-            Self::Text => component.element().inner(name.element).trimmed_text(),
+            Self::Text(_) => component.element().inner(name.element).trimmed_text(),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Most elements of a large file are in a child of the root that is written as one before it, but for values and texts. Of such a child only
 //! is kept how it is written, and where: each of its elements is that of the first of its form, moved as far as the value before it is.
 
-use super::form::Hole;
+use super::form::{Content, Hole};
 use super::parse::Open;
 use super::tree::ElementId;
 use crate::source::Span;
@@ -55,7 +55,9 @@ pub(super) struct Model {
     pub(super) element: u32,
     pub(super) kept: u32,
     /// The first of its marks: there is one for each of its elements.
-    pub(super) mark: u32,
+    mark: u32,
+    /// From which to before which of what is kept of holes texts are.
+    texts: (u16, u16),
 }
 
 /// Which values places of an element are behind: 0 for none, 1 for the first of the child of the root that the element is in, and so on.
@@ -71,7 +73,7 @@ pub(super) struct Mark {
 pub(super) struct Arena {
     pub(super) kept: Vec<Node>,
     /// The values of all attributes, declarations of namespaces included, without their quotes; of children of the root with a form, also
-    /// their texts, behind these.
+    /// their texts, behind these, and comments.
     pub(super) values: Vec<Span>,
     /// The children of the root that have a form, in order.
     pub(super) alike: Vec<Alike>,
@@ -118,25 +120,43 @@ impl Arena {
     /// Makes a child of the root, the last of all elements so far, the first of its form; what may be different in others are its holes.
     pub(super) fn add_model(&mut self, open: &Open, holes: &[Hole]) {
         let mark = self.marks.len() as u32;
-        self.models.push(Model { element: open.element, kept: open.kept as u32, mark });
-        // Behind how many holes a place is, and behind which value that is: texts are behind all others.
-        let values = holes.iter().filter(|hole| !hole.is_text).count();
-        let (mut count, mut texts) = (0, 0);
-        let at: Vec<u16> = std::iter::once(0)
-            .chain(holes.iter().map(|hole| {
-                let place = if hole.is_text { &mut texts } else { &mut count };
-                *place += 1;
-                // A form has fewer holes.
-                (if hole.is_text { values + texts } else { count }) as u16
-            }))
-            .collect();
+        // The first hole of each kind among what is kept of them; a form has fewer than a `u16` counts.
+        let mut next = [0_u16; Content::ALL.len()];
+        for (place, content) in Content::ALL.iter().enumerate() {
+            let before = holes.iter().filter(|hole| hole.content < *content).count();
+            next[place] = before as u16;
+        }
+        let [_, text, comment] = next;
+        self.models.push(Model {
+            element: open.element,
+            kept: open.kept as u32,
+            mark,
+            texts: (text, comment),
+        });
+        let mut at = vec![0];
+        at.extend(holes.iter().map(|hole| {
+            let place = &mut next[hole.content as usize];
+            *place += 1;
+            *place
+        }));
         let behind = |place: u32| at[holes.partition_point(|hole| hole.span.start < place)];
         self.marks.extend(self.kept[open.kept..].iter().map(|one| Mark {
             start: behind(one.start),
             tag_end: behind(one.tag_end),
             end: behind(one.end),
         }));
-        self.values.extend(holes.iter().filter(|hole| hole.is_text).map(|hole| hole.span));
+    }
+
+    /// Keeps where what stands in holes is.
+    pub(super) fn keep(&mut self, holes: &[Hole], content: Content) {
+        self.values.extend(holes.iter().filter(|hole| hole.content == content).map(|hole| hole.span));
+    }
+
+    /// Where the text of an element is that has no others inside, among the values of the child of the root that it is in, in all of a form.
+    pub(super) fn text(&self, form: u32, element: u32) -> Option<u32> {
+        let Model { mark, texts: (first, end), .. } = self.models[form as usize];
+        let Mark { tag_end, end: last, .. } = self.marks[(mark + element) as usize];
+        (last != tag_end && (first + 1..=end).contains(&last)).then(|| u32::from(last) - 1)
     }
 
     /// Makes ready to find elements: there come no more.

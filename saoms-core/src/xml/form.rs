@@ -3,7 +3,7 @@
 //! Most components of a large file are written as one before them, which differs in names and numbers. So such an element is not read tag by
 //! tag: its bytes are compared with those of the last of its form, and the elements in it are those of that, moved.
 
-use std::hash::{BuildHasher, Hasher};
+use std::hash::{BuildHasher, Hash, Hasher};
 
 use super::arena::{Alike, Arena, Node};
 use super::eight::{blanks, first_of, same_start};
@@ -35,8 +35,8 @@ struct Form {
     holes: u32,
     /// The form that came behind the last of this one.
     next: u32,
-    /// Whether some of its holes are texts.
-    has_texts: bool,
+    /// Whether all of its holes are values.
+    has_values_alone: bool,
 }
 
 /// What differs from one element of a form to another.
@@ -44,8 +44,23 @@ struct Form {
 pub(super) struct Hole {
     /// In the last of the form.
     pub(super) span: Span,
-    /// Whether it is a text, and no value of an attribute.
-    pub(super) is_text: bool,
+    pub(super) content: Content,
+}
+
+/// What stands in a hole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) enum Content {
+    /// The value of an attribute.
+    Value,
+    /// The text of an element with nothing else in it.
+    Text,
+    /// A comment, without what starts and ends it.
+    Comment,
+}
+
+impl Content {
+    /// In the order in which what stands in them is kept.
+    pub(super) const ALL: [Self; 3] = [Self::Value, Self::Text, Self::Comment];
 }
 
 /// Finds the forms of elements.
@@ -131,13 +146,17 @@ impl Forms {
             if differs == form.span.end {
                 return Some((
                     differs.wrapping_add(moved),
-                    if form.has_texts { of_values(same, holes) } else { same },
+                    if form.has_values_alone { same } else { of_values(same, holes) },
                 ));
             }
             let hole = holes.get(next).filter(|hole| hole.span.start <= differs)?;
             let start = hole.span.start.wrapping_add(moved);
             let bytes = &bytes[start as usize - 1..];
-            let length = if hole.is_text { text_end(&bytes[1..])? } else { value_end(bytes)? } as u32;
+            let length = match hole.content {
+                Content::Value => value_end(bytes)?,
+                Content::Text => text_end(&bytes[1..])?,
+                Content::Comment => comment_end(&bytes[1..])?,
+            } as u32;
             self.found[next] = Span::new(start, start + length);
             (last, at, first) = (hole.span.end, start + length, next + 1);
         }
@@ -159,11 +178,10 @@ impl Forms {
             copied: last.elements,
         });
         arena.copied += last.elements;
-        if last.has_texts {
-            let of = |is_text| holes.iter().filter(move |hole| hole.is_text == is_text).map(|hole| hole.span);
-            arena.values.extend(of(false).chain(of(true)));
-        } else {
+        if last.has_values_alone {
             arena.values.extend_from_slice(&self.found);
+        } else {
+            Content::ALL.iter().for_each(|content| arena.keep(holes, *content));
         }
     }
 
@@ -179,8 +197,11 @@ impl Forms {
         for one in all {
             let count = shapes.parts(one.shape).len();
             let values = &arena.values[one.values as usize..one.values as usize + count];
-            self.holes.extend(values.iter().map(|span| Hole { span: *span, is_text: false }));
-            self.holes.extend(text(input, one).map(|span| Hole { span, is_text: true }));
+            self.holes.extend(values.iter().map(|span| Hole { span: *span, content: Content::Value }));
+            self.holes.extend(text(input, one).map(|span| Hole { span, content: Content::Text }));
+        }
+        if add_comments(input, span, &mut self.holes) {
+            self.holes[hole..].sort_unstable_by_key(|hole| hole.span.start);
         }
         let holes = &self.holes[hole..];
         let made = Form {
@@ -189,7 +210,7 @@ impl Forms {
             hole: hole as u32,
             holes: holes.len() as u32,
             next: NONE,
-            has_texts: holes.iter().any(|hole| hole.is_text),
+            has_values_alone: holes.iter().all(|hole| hole.content == Content::Value),
         };
         let is_small = holes.len() < usize::from(u16::MAX);
         let hash = self.hash(input, &made);
@@ -215,6 +236,9 @@ impl Forms {
                 number
             }
         };
+        let Form { hole, holes, .. } = self.all[form as usize];
+        let holes = &self.holes[hole as usize..(hole + holes) as usize];
+        Content::ALL[1..].iter().for_each(|content| arena.keep(holes, *content));
         self.follow(form, input, span.start);
         arena.alike.push(Alike {
             element: ElementId(open.element),
@@ -227,21 +251,22 @@ impl Forms {
         });
     }
 
-    /// What stands around the holes of a form, in its first, each with whether the hole behind it is a text.
-    fn around<'a>(&self, input: Input<'a>, form: &Form) -> impl Iterator<Item = (&'a [u8], bool)> {
+    /// What stands around the holes of a form, in its first, each with what is in the hole behind it.
+    fn around<'a>(&self, input: Input<'a>, form: &Form) -> impl Iterator<Item = (&'a [u8], Content)> {
         let holes = &self.holes[form.hole as usize..(form.hole + form.holes) as usize];
-        let ends = holes.iter().map(|hole| (hole.span.start, hole.is_text)).chain([(form.span.end, false)]);
+        let ends = holes.iter().map(|hole| (hole.span.start, hole.content));
+        let ends = ends.chain([(form.span.end, Content::Value)]);
         let starts = std::iter::once(form.span.start).chain(holes.iter().map(|hole| hole.span.end));
         starts
             .zip(ends)
-            .map(move |(start, (end, is_text))| (&input.bytes()[start as usize..end as usize], is_text))
+            .map(move |(start, (end, content))| (&input.bytes()[start as usize..end as usize], content))
     }
 
     fn hash(&self, input: Input<'_>, form: &Form) -> u64 {
         let mut hasher = self.hasher.build_hasher();
-        for (bytes, is_text) in self.around(input, form) {
+        for (bytes, content) in self.around(input, form) {
             hasher.write(bytes);
-            hasher.write_u8(u8::from(is_text));
+            content.hash(&mut hasher);
         }
         hasher.finish()
     }
@@ -267,6 +292,33 @@ fn text(input: Input<'_>, node: &Node) -> Option<Span> {
     is_end.then(|| Span::new(start as u32, end as u32))
 }
 
+/// Adds the comments in an element; says whether there are any. With instructions or CDATA in it, which can hold what looks like some, it has to
+/// be written as another one everywhere but in values and texts.
+fn add_comments(input: Input<'_>, span: Span, holes: &mut Vec<Hole>) -> bool {
+    let bytes = &input.bytes()[..span.end as usize];
+    let mut markup = memchr::memmem::find_iter(&bytes[span.start as usize..], b"<!").peekable();
+    if markup.peek().is_none() || memchr::memmem::find(&bytes[span.start as usize..], b"<?").is_some() {
+        return false;
+    }
+    let count = holes.len();
+    let mut end = 0;
+    for start in markup.map(|at| span.start as usize + at).collect::<Vec<_>>() {
+        if start < end {
+            // `<!` in a comment.
+            continue;
+        }
+        let inside =
+            bytes[start..].strip_prefix(b"<!--").and_then(|rest| Some((start + 4, comment_end(rest)?)));
+        let Some((start, length)) = inside else {
+            holes.truncate(count);
+            return false;
+        };
+        end = start + length;
+        holes.push(Hole { span: Span::new(start as u32, end as u32), content: Content::Comment });
+    }
+    true
+}
+
 /// A bit for each of the first 64 that come before the one at this place.
 fn up_to(place: usize) -> u64 {
     1_u64.checked_shl(place as u32).map_or(u64::MAX, |bit| bit - 1)
@@ -274,7 +326,7 @@ fn up_to(place: usize) -> u64 {
 
 /// The bits of the values among those of holes.
 fn of_values(same: u64, holes: &[Hole]) -> u64 {
-    let values = holes.iter().enumerate().take(64).filter(|(_, hole)| !hole.is_text);
+    let values = holes.iter().enumerate().take(64).filter(|(_, hole)| hole.content == Content::Value);
     values.enumerate().fold(0, |all, (value, (hole, _))| all | (same >> hole & 1) << value)
 }
 
@@ -304,4 +356,10 @@ fn value_end(bytes: &[u8]) -> Option<usize> {
 fn text_end(bytes: &[u8]) -> Option<usize> {
     let end = first_of(bytes, [b'<', b'&', b']'])?;
     (bytes[0] > b' ' && end > 0 && bytes[end] == b'<').then_some(end)
+}
+
+/// How long what is in a comment is, when that is ended as it has to be.
+fn comment_end(bytes: &[u8]) -> Option<usize> {
+    let end = memchr::memchr_iter(b'-', bytes).find(|at| bytes.get(at + 1) == Some(&b'-'))?;
+    (bytes.get(end + 2) == Some(&b'>')).then_some(end)
 }

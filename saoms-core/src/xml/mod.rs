@@ -4,6 +4,7 @@
 //! values stay in the text: only spans are stored. Comments and processing instructions are checked and not kept.
 
 mod arena;
+mod attribute;
 mod characters;
 mod curly;
 mod eight;
@@ -28,7 +29,8 @@ mod unbound;
 mod value;
 
 pub(crate) use arena::Alike;
-pub use element::{Attribute, Element};
+pub use attribute::Attribute;
+pub use element::Element;
 pub use escape::escaped;
 pub(crate) use node::Node;
 pub use parse::{Parsed, Tangle, parse};

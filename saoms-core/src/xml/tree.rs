@@ -75,6 +75,12 @@ impl Document {
         &self.arena.values[first as usize..]
     }
 
+    /// Where the text of an element is among the values of the child of the root that it is in, in each of that form: for elements with a text
+    /// and nothing else inside, by their place in that.
+    pub(crate) fn text_in(&self, form: u32, element: u32) -> Option<u32> {
+        self.arena.text(form, element)
+    }
+
     /// Children of the root in order.
     pub(crate) fn alike(&self) -> &[Alike] {
         &self.arena.alike

@@ -13,9 +13,9 @@ use crate::files::{Sample, all};
 /// How often each part stands there.
 const TIMES: usize = 3;
 
-/// The composite with all of its parts several times over. Behind each start tag in it is a filler: the same in all parts, or a comment of the
-/// same length that is another one in each, so that no part is written as one before it.
-fn repeated(document: &Document, is_like: bool) -> String {
+/// The composite with all of its parts several times over. Behind each start tag in it is a filler of one length: the same in all parts, a
+/// comment of its own in each, or an instruction of its own, so that no part is written as one before it.
+fn repeated(document: &Document, filler: impl Fn(usize) -> String) -> String {
     let (text, root) = (document.text(), document.root());
     let content = root.content_span();
     let slice = |range: Range<u32>| &text[range.start as usize..range.end as usize];
@@ -25,8 +25,7 @@ fn repeated(document: &Document, is_like: bool) -> String {
         let (span, tag) = (part.span(), part.start_tag_span());
         out.push_str(slice(span.start..tag.end));
         if tag.end < span.end {
-            let comment = format!("<!--{count:05}-->");
-            out.push_str(if is_like { "            " } else { &comment });
+            out.push_str(&filler(count));
             count += 1;
         }
         out.push_str(slice(tag.end..span.end));
@@ -49,14 +48,22 @@ fn parts_that_come_again_are_read_as_the_first_time() {
         let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
         let file = sources.add(name.as_str(), text);
         let Some(composite) = load_file(file, &sources, &mut diagnostics) else { continue };
-        let [like, unlike] = [true, false].map(|is_like| repeated(&composite.document, is_like));
-        let ((one, told), (other, expected)) = (loaded(&like), loaded(&unlike));
-        assert_eq!(told, expected, "{name}");
-        assert!(one.components == other.components, "{name}: {:#?} {:#?}", one.components, other.components);
-        assert!(one.properties == other.properties && one.services == other.services, "{name}");
-        assert!(one.references == other.references && one.wires == other.wires, "{name}");
-        assert_eq!(shown(&one), shown(&other), "{name}");
-        again += one.components.len() - composite.components.len();
+        let like = repeated(&composite.document, |_| " ".repeat(12));
+        let beside_comments = repeated(&composite.document, |count| format!("<!--{count:05}-->"));
+        let (other, expected) = loaded(&repeated(&composite.document, |count| format!("<?f {count:06}?>")));
+        for (one, told) in [loaded(&like), loaded(&beside_comments)] {
+            assert_eq!(told, expected, "{name}");
+            assert!(
+                one.components == other.components,
+                "{name}: {:#?} {:#?}",
+                one.components,
+                other.components
+            );
+            assert!(one.properties == other.properties && one.services == other.services, "{name}");
+            assert!(one.references == other.references && one.wires == other.wires, "{name}");
+            assert_eq!(shown(&one), shown(&other), "{name}");
+            again += one.components.len() - composite.components.len();
+        }
     }
     assert!(again > 20, "{again} components came again");
 }
