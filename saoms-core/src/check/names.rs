@@ -8,7 +8,7 @@ use super::report::{Report, list};
 use super::value_type;
 use crate::diagnostic::{codes, nearest, quoted};
 use crate::expression::{INDEX, Problem, Value};
-use crate::model::{Component, Composite, Contribution, Link, Property};
+use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
 
 /// The properties of a composite and of what it includes, as far as they are simple.
@@ -46,19 +46,17 @@ pub(super) enum Supplied {
 }
 
 impl Names {
-    /// The names that the expressions in a composite can use, with what is taken of each. `owner` is the component that it implements.
+    /// The names that the expressions in a composite and in what it includes can use, the first of each, with what is taken of each. `owner` is the component that it implements.
     pub(super) fn of(
-        main: &Composite,
-        contribution: &Contribution,
+        composites: &[&Composite],
         owner: Option<&Component>,
         supply: &dyn Fn(&str) -> Supplied,
     ) -> Self {
         let mut names = Self::default();
-        let composites = with_included(main, contribution);
         let declared = composites.iter().flat_map(|composite| &composite.properties);
         let declared: HashSet<&str> = declared.map(|one| one.name.as_str()).collect();
         let is_declared = |name: &str| declared.contains(name);
-        for composite in &composites {
+        for composite in composites {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {
                     let supplied = supply(&property.name);
@@ -145,24 +143,6 @@ impl Names {
             None => problem.help(format!("its properties are {}", list(known))),
         }
     }
-}
-
-/// A composite and what it includes, directly or not.
-pub(super) fn with_included<'a>(main: &'a Composite, contribution: &'a Contribution) -> Vec<&'a Composite> {
-    let mut all = vec![main];
-    let mut next = 0;
-    while let Some(composite) = all.get(next).copied() {
-        next += 1;
-        for include in &composite.includes {
-            if let Some(Link::To(place)) = contribution.link(include.origin) {
-                let included = &contribution.composites()[*place];
-                if !all.iter().any(|known| std::ptr::eq(*known, included)) {
-                    all.push(included);
-                }
-            }
-        }
-    }
-    all
 }
 
 /// The value of a property as its type has it; without a type, as what it looks like.

@@ -1,5 +1,6 @@
 //! What conditions and replicas ask of the composites that are being unfolded.
 
+mod included;
 mod known;
 
 use std::rc::Rc;
@@ -43,17 +44,21 @@ impl<'a> Unfolding<'a> {
         if let Some(owner) = owner {
             self.names(self.fleet.members[owner].unit);
         }
-        let main = self.fleet.units[unit].main();
         if self.fleet.names.len() <= unit {
             self.fleet.names.resize(unit + 1, None);
             self.known.resize_with(unit + 1, || None);
         }
-        self.known[unit] = Some(Known::of(main, owner, self));
-        let component = owner.map(|owner| self.fleet.members[owner].component);
-        let supply = |name: &str| self.supplied(unit, name);
-        let names = Rc::new(Names::of(main, self.fleet.contribution, component, &supply));
+        let included = self.included(unit, owner);
+        let names = Rc::new(self.names_in(&included, unit, owner));
         self.fleet.names[unit] = Some(Rc::clone(&names));
         names
+    }
+
+    /// What expressions in a unit can name where it has these composites.
+    fn names_in(&mut self, composites: &[&'a Composite], unit: usize, owner: Option<usize>) -> Names {
+        self.known[unit] = Some(Known::of(composites, owner));
+        let component = owner.map(|owner| self.fleet.members[owner].component);
+        Names::of(composites, component, &|name| self.supplied(unit, name))
     }
 
     /// Whether a condition in a unit is true; `None` for a faulty one, which is reported.

@@ -5,6 +5,8 @@ use expect_test::expect;
 use crate::fleets::{fleet, of};
 use crate::support::{outcome, part};
 
+const SAOMS: &str = "xmlns:saoms=\"urn:saoms:1\"";
+
 #[test]
 fn conditions_take_away_what_is_checked_all_the_same() {
     let inside = r#"<property name="simulated">true</property><property name="site">north</property>
@@ -125,6 +127,65 @@ fn includes_and_composites_can_be_absent() {
         &[&fleet(inside), &more.replace("<wire source=\"M/other\" target=\"Nobody\"/>", "")],
         &["more=true"],
     ));
+}
+
+/// What is included by a condition that is not true declares nothing in place of what is there.
+#[test]
+fn expressions_take_the_properties_of_what_is_included() {
+    let with = |name: &str, count: usize, robots: &str| {
+        part(name, SAOMS, &format!("<property name=\"n\">{count}</property>{robots}"))
+    };
+    let gps = |name: &str| {
+        format!(
+            "<component name=\"{name}${{index}}\" saoms:count=\"n\"><implementation.java class=\"example.Gps\"/></component>"
+        )
+    };
+    let (south, north) = (with("south", 1, &gps("S")), with("north", 2, &gps("N")));
+    let more =
+        part("more", "", "<component name=\"M\"><implementation.java class=\"example.Gps\"/></component>");
+    let found = |site: &str, includes: &str| {
+        let robot = "<component name=\"R\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R</property><property name=\"period\">1</property><property name=\"number\" source=\"$n\"/></component>";
+        let inside = format!("<property name=\"site\">{site}</property>{includes}{}{robot}", gps("G"));
+        outcome(&[&part("fleet", SAOMS, &inside), &south, &north, &more], &[])
+    };
+    let one_of = |first: &str, second: &str| {
+        format!(
+            "<include name=\"t:{first}\" saoms:if=\"site == '{first}'\"/><include name=\"t:{second}\" saoms:if=\"site == '{second}'\"/>"
+        )
+    };
+    for includes in [one_of("south", "north"), one_of("north", "south")] {
+        expect![[r#"
+            N1 (example.Gps) other->
+            N2 (example.Gps) other->
+            G1 (example.Gps) other->
+            G2 (example.Gps) other->
+            R (example.Robot) ID=Text("R") number=Text("2") gps->
+        "#]]
+        .assert_eq(&found("north", &includes));
+        expect![[r#"
+            S1 (example.Gps) other->
+            G1 (example.Gps) other->
+            R (example.Robot) ID=Text("R") number=Text("1") gps->
+        "#]]
+        .assert_eq(&found("south", &includes));
+    }
+    // A condition can ask for what another one includes.
+    let asking = r#"<include name="t:more" saoms:if="n == 2"/>"#.to_owned() + &one_of("south", "north");
+    expect![[r#"
+        M (example.Gps) other->
+        N1 (example.Gps) other->
+        N2 (example.Gps) other->
+        G1 (example.Gps) other->
+        G2 (example.Gps) other->
+        R (example.Robot) ID=Text("R") number=Text("2") gps->
+    "#]]
+    .assert_eq(&found("north", &asking));
+    expect![[r#"
+        S1 (example.Gps) other->
+        G1 (example.Gps) other->
+        R (example.Robot) ID=Text("R") number=Text("1") gps->
+    "#]]
+    .assert_eq(&found("south", &asking));
 }
 
 /// Of includes that exclude each other one is there, so that both can declare what the other one does.

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::check::names::{Supplied, with_included};
+use crate::check::names::Supplied;
 use crate::check::path::{Fault, expression, steps};
 use crate::check::raw::{Piece, Raw, unreported};
 use crate::check::unfold::Unfolding;
@@ -30,9 +30,9 @@ type Answer<'a> = Result<Rc<Whole<'a>>, ()>;
 
 impl<'a> Known<'a> {
     /// What is known of a unit before anything is asked.
-    pub(super) fn of(main: &'a Composite, owner: Option<usize>, unfolding: &Unfolding<'a>) -> Self {
+    pub(super) fn of(composites: &[&'a Composite], owner: Option<usize>) -> Self {
         let mut properties = HashMap::new();
-        for composite in with_included(main, unfolding.fleet.contribution) {
+        for composite in composites.iter().copied() {
             for property in &composite.properties {
                 properties.entry(property.name.as_str()).or_insert((composite, property));
             }
