@@ -125,7 +125,7 @@ pub(super) fn resolve<'r>(
             continue;
         };
         // An expression that is still there has a fault, which is reported.
-        if fleet.members[place].is_partial && has_expression(class) {
+        if fleet.members[place].instance.is_some_and(|one| one.partial.is_some()) && has_expression(class) {
             continue;
         }
         if !is_in_library(component, class, contribution, registry, assumes, report) {

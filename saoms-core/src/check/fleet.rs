@@ -7,6 +7,7 @@ use super::by_name::ByName;
 use super::classes::ClassIndex;
 use super::instance::Instance;
 use super::names::Names;
+use crate::expression::has_expression;
 use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Reference, Service, Wire};
 use crate::source::{FileId, Location};
@@ -134,6 +135,12 @@ impl<'a> Member<'a> {
     /// Whether a table that is not known may give it other values.
     pub(super) fn has_open_values(&self) -> bool {
         self.instance.and_then(|instance| instance.partial).is_some_and(|partial| partial.has_table)
+    }
+
+    /// Whether it may give other properties than those that are known: a table is not, or what one of them is called.
+    pub(super) fn may_give_others(&self) -> bool {
+        let Some(partial) = self.instance.and_then(|instance| instance.partial) else { return false };
+        partial.has_table || self.component.properties.iter().any(|one| has_expression(&one.name))
     }
 
     pub(super) fn set_path(&mut self, path: String) {

@@ -358,7 +358,9 @@ impl<'a> Parameters<'a> {
                 let name = &property.name;
                 let is_declared = |name: &str| declared.by_name.contains_key(name);
                 let is_given = parameter.given.is_some() && !parameter.is_unset
-                    || owner.is_some_and(|owner| is_misspelt(name, owner.component, is_declared));
+                    || owner.is_some_and(|owner| {
+                        owner.may_give_others() || is_misspelt(name, owner.component, is_declared)
+                    });
                 if is_asked_for(property) && !is_given {
                     owner.into_iter().for_each(|owner| report.about(owner));
                     report.push(self.missing(place, property, report.assumes));

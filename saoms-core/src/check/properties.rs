@@ -276,7 +276,9 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
     };
     let known: LazyCell<Vec<&str>, _> =
         LazyCell::new(|| declared().map(|(one, _)| one.name.as_str()).collect());
-    for property in given.iter().filter(|property| !property.name.is_empty()) {
+    let is_partial = member.instance.is_some_and(|instance| instance.partial.is_some());
+    let is_known = |one: &&Property| !one.name.is_empty() && !(is_partial && has_expression(&one.name));
+    for property in given.iter().filter(is_known) {
         if let Some((declared, document)) = find(&property.name) {
             let own = Typed { property, document: &member.composite.document };
             let is_many = declared.many().is_some_and(|many| many.value);

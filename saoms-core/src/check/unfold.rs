@@ -378,10 +378,7 @@ impl<'a> Unfolding<'a> {
                 self.fleet.absent.insert((scope, name), condition);
             }
         }
-        let hides = |property| instance.is_some_and(|one| one.hides(property, &composite.document));
-        if let Some(naming) = Naming::of_component(component)
-            && !component.properties.iter().any(hides)
-        {
+        if let Some(naming) = Naming::of_component(component) {
             self.inner(index, naming, !is_seen, report);
         }
     }

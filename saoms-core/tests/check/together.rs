@@ -87,6 +87,92 @@ fn a_faulty_expression_hides_nothing_else() {
     "#]].assert_eq(&by_condition);
 }
 
+/// What is wrong with halls that have such a property, and attributes, when there are mistakes inside each.
+fn halls(attributes: &str, property: &str) -> String {
+    let inner = |number: &str, inside: &str| {
+        let inside = format!("<property name=\"count\" type=\"xsd:int\" mustSupply=\"true\"/>\n{inside}");
+        let namespaces = "xmlns:saoms=\"urn:saoms:1\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+        part(number, namespaces, &inside)
+    };
+    let hall = "<component name=\"C${index}\" saoms:count=\"count\"><implementation.java class=\"example.Conductor\"/><property name=\"cout\">${count}</property></component>
+<component name=\"D\" saoms:if=\"count &gt; 3\"><implementation.java class=\"example.Conductr\"/></component>
+<component name=\"In\"><implementation.composite name=\"t:inner\"/><property name=\"count\" source=\"$count\"/></component>";
+    let inside = "<component name=\"E\"><implementation.java class=\"example.Conductor${coun}\"/></component>
+<component name=\"F${index}\" saoms:count=\"count\"><implementation.java class=\"example.Nobody\"/></component>";
+    let around = format!(
+        "<component name=\"Hall${{index}}\" saoms:count=\"2\" {attributes}><implementation.composite name=\"t:hall\"/>\n{property}</component>"
+    );
+    let around = part("fleet", "xmlns:saoms=\"urn:saoms:1\"", &around);
+    outcome(&[&around, &inner("hall", hall), &inner("inner", inside)], &[])
+}
+
+#[test]
+fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
+    let by_value = halls("", "<property name=\"count\">${indx}</property>");
+    expect![[r#"
+        3:26-30 error S2045: the composite has no property `indx` (in `Hall1`, index 1)
+          fix: replace `indx` with `index` [3:26-30 "index"]
+        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+          help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
+        hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
+          help: `example.Conductor` has no properties at all
+        hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
+        inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+        inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+    "#]].assert_eq(&by_value);
+    let by_source = halls("", "<property name=\"count\" source=\"$n${indx}\"/>");
+    expect![[r#"
+        3:36-40 error S2045: the composite has no property `indx` (in `Hall1`, index 1)
+          fix: replace `indx` with `index` [3:36-40 "index"]
+        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+          help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
+        hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
+          help: `example.Conductor` has no properties at all
+        hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
+        inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+        inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+    "#]].assert_eq(&by_source);
+    let by_name = halls("", "<property name=\"coun${indx}\">1</property>");
+    expect![[r#"
+        3:23-27 error S2045: the composite has no property `indx` (in `Hall1`, index 1)
+          fix: replace `indx` with `index` [3:23-27 "index"]
+        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+          help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
+        hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
+          help: `example.Conductor` has no properties at all
+        hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
+        inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+        inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+    "#]].assert_eq(&by_name);
+    let by_table = halls("saoms:overrides=\"none.csv\"", "");
+    expect![[r#"
+        2:65-73 error S0003: the file was not read
+        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+          help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
+        hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
+          help: `example.Conductor` has no properties at all
+        hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
+        inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+        inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
+          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+    "#]].assert_eq(&by_table);
+}
+
 /// A board with these properties, and marks of which one is beside any board, one beside one of the usual size, and one is none.
 fn board(properties: &str) -> String {
     of(&format!(

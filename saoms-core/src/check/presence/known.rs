@@ -93,7 +93,12 @@ impl<'a> Unfolding<'a> {
     fn declared(&self, known: &Known<'a>, composite: &'a Composite, property: &'a Property) -> Answer<'a> {
         let setting = || self.options.settings.iter().find(|setting| setting.name == *property.name.as_str());
         let given = match known.owner {
-            Some(owner) => self.given(known, &property.name).map(|given| self.values_given(owner, given)),
+            Some(owner) => match self.given(known, &property.name) {
+                Some(given) => Some(self.values_given(owner, given)),
+                // What has a fault may give it.
+                None if self.fleet.members[owner].may_give_others() => return Err(()),
+                None => None,
+            },
             None => setting().map(|setting| Ok(Whole::new(Raw::one(&setting.value)))),
         };
         if let Some(given) = given.transpose()?.filter(|given| !given.raw().0.is_empty()) {
