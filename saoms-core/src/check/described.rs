@@ -14,6 +14,7 @@ use super::global;
 use super::parameters::{Found, is_misspelt};
 use super::properties::one_value;
 use super::report::Report;
+use super::type_name;
 use super::value_type::{self, Typed};
 use super::written::type_and_element;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
@@ -37,7 +38,7 @@ pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
         for property in &described.properties {
             type_and_element(property, "ASM40010", report);
             global::check(property, &described.document, &codes::COMPOSITE_VALUE_TYPE, report);
-            value_type::named(property, &described.document, report);
+            type_name::named(property, &described.document, report);
             value_type::own(Typed { property, document: &described.document }, report);
             one_value(property, described.version, report);
             two_ways(property, report);

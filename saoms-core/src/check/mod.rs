@@ -63,6 +63,7 @@ mod task;
 mod tests;
 mod topics;
 mod traffic;
+mod type_name;
 mod unfold;
 mod unique;
 mod value_type;

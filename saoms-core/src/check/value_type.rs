@@ -2,26 +2,13 @@
 
 use super::lexical::{self, is_digits};
 use super::report::{Report, replacing};
+pub(super) use super::type_name::is_misspelt;
+use super::type_name::local;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
-use crate::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
+use crate::load::vocabulary::XML_SCHEMA;
 use crate::model::{Part, Property};
-use crate::source::{Location, Span, Text};
+use crate::source::{Location, Text};
 use crate::xml::Document;
-
-/// What other languages call types of XML Schema.
-const OTHER_NAMES: &[(&str, &str)] = &[
-    ("bool", "boolean"),
-    ("str", "string"),
-    ("text", "string"),
-    ("number", "double"),
-    ("real", "double"),
-    ("uint", "unsignedInt"),
-    ("int32", "int"),
-    ("int64", "long"),
-    ("float32", "float"),
-    ("float64", "double"),
-    ("uri", "anyURI"),
-];
 
 /// Which type of XML Schema is made of which other one.
 const DERIVED: &[(&str, &str)] = &[
@@ -152,7 +139,7 @@ fn is_of(
     // In a text of its own an empty value can be seen.
     let is_hidden = value.is_empty() && value.location.file == property.tag().file;
     let at = if is_hidden { property.tag() } else { value.location };
-    if report.skip(code, Severity::Error, at) || is_told_of(value, report) {
+    if report.skip(code, Severity::Error, at) || report.has_told(code, at) || is_told_of(value, report) {
         return false;
     }
     let message = format!(
@@ -200,10 +187,6 @@ fn simple_type(typed: Typed<'_>) -> Option<(&Text, &'static SimpleType)> {
     is_ours.then_some((of, found))
 }
 
-fn local(of: &str) -> &str {
-    of.rsplit(':').next().unwrap_or(of)
-}
-
 /// A property that may have a type, and the document that says what the prefixes in it mean.
 #[derive(Clone, Copy)]
 pub(super) struct Typed<'a> {
@@ -247,7 +230,11 @@ pub(super) fn matches(own: Typed<'_>, other: Typed<'_>, how: Match, report: &mut
         (Some(one), Some(another)) if one != another => [one, another].contains(&XML_SCHEMA),
         _ => name == meant,
     };
-    if !is_same {
+    // A slip in the name of one is told by itself.
+    let is_slip = |(typed, of): (Typed<'_>, &Text)| {
+        is_misspelt(of) && typed.namespace(of).is_some_and(|namespace| namespace == XML_SCHEMA)
+    };
+    if !is_same && ![(own, here), (other, there)].into_iter().any(is_slip) {
         let (at, what, help, rule) = match how {
             Match::Declaration => {
                 let help = match is_type {
@@ -289,51 +276,4 @@ fn derives(name: &str, from: &str) -> bool {
             None => return matches!(from, "anyType" | "anySimpleType" | "anyAtomicType"),
         }
     }
-}
-
-/// Reports a type in the namespace of XML Schema that is not there.
-pub(super) fn named(property: &Property, document: &Document, report: &mut Report<'_>) {
-    let Some(of) = property.r#type().filter(|of| !of.is_empty()) else { return };
-    let (prefix, local) = of.split_once(':').unwrap_or(("", of));
-    let element = document.element(property.origin().element);
-    let namespace = element.resolve_prefix(prefix);
-    if namespace.is_none() && !prefix.is_empty() {
-        return unbound(of, (prefix, local), document, report);
-    }
-    if BUILT_IN_TYPES.contains(&local) || namespace.is_none_or(|namespace| namespace != XML_SCHEMA) {
-        return;
-    }
-    let message = format!("XML Schema has no type {}", quoted(local));
-    let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message);
-    // What other languages call it.
-    let other = OTHER_NAMES.iter().find(|(name, _)| *name == local).map(|(_, meant)| *meant);
-    report.push(match other.or_else(|| nearest(local, BUILT_IN_TYPES.iter().copied())) {
-        Some(meant) => {
-            let meant = if prefix.is_empty() { meant.to_owned() } else { format!("{prefix}:{meant}") };
-            one.suggest(replacing(of, &meant), of.location, meant)
-        }
-        None => one.help("its types are `string`, `boolean`, `int`, `double` and so on; a type of your own has the prefix of its own namespace"),
-    });
-}
-
-/// Reports a type whose prefix is bound to no namespace. It counts as that of its name all the same.
-fn unbound(of: &Text, (prefix, local): (&str, &str), document: &Document, report: &mut Report<'_>) {
-    if !report.is_first_unbound(document.file(), prefix) {
-        return;
-    }
-    let message = format!("the prefix {} of this type is bound to no namespace", quoted(prefix));
-    let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message).severity(Severity::Warning);
-    if !BUILT_IN_TYPES.contains(&local) {
-        return report.push(one.help(format!("declare it: `xmlns:{prefix}=\"...\"`")));
-    }
-    let declaration = format!("xmlns:{prefix}=\"{XML_SCHEMA}\"");
-    let end = Span::empty(document.root().name_span().end).in_file(document.file());
-    let description = format!("declare it in the root element: {}", quoted(&declaration));
-    report.push(one.suggest(description, end, format!(" {declaration}")));
-}
-
-/// Whether a type is one of XML Schema with a slip in its name, which is reported.
-pub(super) fn is_misspelt(of: &str) -> bool {
-    let local = local(of);
-    !BUILT_IN_TYPES.contains(&local) && nearest(local, BUILT_IN_TYPES.iter().copied()).is_some()
 }

@@ -5,6 +5,7 @@ use super::fleet::Fleet;
 use super::global;
 use super::properties;
 use super::report::Report;
+use super::type_name;
 use super::value_type::{self, Typed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Composite, Part, Property, Reference, Service, Version};
@@ -16,7 +17,7 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         for property in &composite.properties {
             type_and_element(property, "ASM60040", report);
             global::check(property, &composite.document, &codes::COMPOSITE_VALUE_TYPE, report);
-            value_type::named(property, &composite.document, report);
+            type_name::named(property, &composite.document, report);
             value_type::own(Typed { property, document: &composite.document }, report);
             properties::one_value(property, composite.version, report);
         }
@@ -35,7 +36,7 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         for property in component.properties.iter().filter(|property| property.details.is_some()) {
             type_and_element(property, "ASM50035", report);
             global::check(property, &member.composite.document, &codes::VALUE_TYPE, report);
-            value_type::named(property, &member.composite.document, report);
+            type_name::named(property, &member.composite.document, report);
         }
         component.services.iter().for_each(|one| service(one, member.composite.version, report));
         for one in &component.references {

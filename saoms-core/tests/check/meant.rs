@@ -141,6 +141,86 @@ fn a_type_whose_prefix_means_nothing_is_told() {
 }
 
 #[test]
+fn a_type_of_xml_schema_without_its_prefix_is_told() {
+    let with = |kinds: &[&str], attributes: &str| {
+        let property =
+            |(at, kind): (usize, &&str)| format!("<property name=\"n{at}\" type=\"{kind}\">3</property>\n");
+        let properties: String = kinds.iter().enumerate().map(property).collect();
+        let taken = (0..kinds.len()).map(|at| format!("${{n{at}}}"));
+        let taken: String = taken.collect();
+        let robot = robot(
+            "R${index}",
+            &format!("<property name=\"number\">1</property><property name=\"password\">{taken}</property>"),
+        );
+        let robot = robot.replacen("<component", "<component saoms:count=\"1\"", 1);
+        outcome(
+            &[&part("fleet", &format!("xmlns:saoms=\"urn:saoms:1\" {attributes}"), &(properties + &robot))],
+            &[],
+        )
+    };
+    let schema = "xmlns:xs=\"http://www.w3.org/2001/XMLSchema\"";
+    expect![[r#"
+        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xs:int` [2:27-30 "xs:int"]
+        3:27-31 warning S2050: the type `bool` without a prefix is none of XML Schema
+          fix: replace `bool` with `xs:boolean` [3:27-31 "xs:boolean"]
+        4:27-33 warning S2050: the type `intger` without a prefix is none of XML Schema
+          fix: replace `intger` with `xs:integer` [4:27-33 "xs:integer"]
+        7:80-82 error S2045: here is the text `3`, and a whole number is expected (in `R1`, index 1)
+          5:37-38 `n3` is this
+          help: `docs/fleets.md` says what expressions are
+    "#]]
+    .assert_eq(&with(&["int", "bool", "intger", "Customer"], schema));
+    expect![[r#"
+        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xsd:int`, and declare `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` in the root element [2:27-30 "xsd:int"] [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
+        3:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xsd:int` [3:27-30 "xsd:int"]
+        5:63-73 warning S4006: `password` is given without `user` (in `R1`, index 1)
+          help: give both, or neither
+        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+    "#]].assert_eq(&with(&["int", "int"], ""));
+    expect![[r#"
+        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xs:int`, and declare `xmlns:xs="http://www.w3.org/2001/XMLSchema"` in the root element [2:27-30 "xs:int"] [1:11-11 " xmlns:xs=\"http://www.w3.org/2001/XMLSchema\""]
+        4:63-68 warning S4006: `password` is given without `user` (in `R1`, index 1)
+          help: give both, or neither
+        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+    "#]].assert_eq(&with(&["int"], "xmlns:xsd=\"urn:own\""));
+}
+
+#[test]
+fn a_slip_in_the_name_of_a_type_is_no_other_type() {
+    let outer = "<component name=\"In\"><implementation.composite name=\"t:inner\"/><property name=\"n\" type=\"xsd:interger\">3</property></component>";
+    let inner = "<property name=\"n\" type=\"xsd:int\">1</property>";
+    let inner = format!("{inner}\n{}", robot("R", "<property name=\"number\" source=\"$n\"/>"));
+    let schema = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    expect![[r#"
+        2:89-101 error S2050: XML Schema has no type `interger`
+          fix: replace `xsd:interger` with `xsd:integer` [2:89-101 "xsd:integer"]
+    "#]]
+    .assert_eq(&outcome(&[&part("fleet", schema, outer), &part("inner", schema, &inner)], &[]));
+}
+
+#[test]
+fn one_value_that_is_wrong_for_two_properties_is_told_once() {
+    let outer = "<property name=\"n\" type=\"xsd:int\">many</property>\n<component name=\"In\"><implementation.composite name=\"t:inner\"/><property name=\"k\" source=\"$n\"/></component>";
+    let inner = "<property name=\"k\" type=\"xsd:int\">1</property>";
+    let inner = format!(
+        "{inner}\n{}",
+        robot("R", "<property name=\"number\">1</property><property name=\"password\" source=\"$k\"/>")
+    );
+    let schema = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    expect![[r#"
+        2:35-39 error S2042: the property `k` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
+          inner:2:26-33 the type
+          help: change the value, or the type
+        2:35-39 warning S4006: `password` is given without `user`
+          help: give both, or neither
+    "#]].assert_eq(&outcome(&[&part("fleet", schema, outer), &part("inner", schema, &inner)], &[]));
+}
+
+#[test]
 fn what_comes_from_outside_is_told_where_it_was_given() {
     let inside =
         "<property name=\"n\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">4</property>";
