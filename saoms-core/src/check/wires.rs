@@ -3,6 +3,7 @@
 //! A reference of a component of a class collects its targets from the inside out: those of its own component, and those of
 //! every component around it that a composite's reference promotes it to.
 
+mod too_many;
 mod unwired;
 
 use std::cell::RefCell;
@@ -29,6 +30,7 @@ use crate::hash::Map;
 use crate::model::{Multiplicity, Reference};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
+use too_many::TooMany;
 
 /// The services that a reference leads to.
 #[derive(Default)]
@@ -154,7 +156,8 @@ impl<'f, 'a> Wires<'f, 'a> {
                 let is_1_1 = self.fleet.members[member].composite.version.is_1_1();
                 let severity = if is_again && !is_1_1 { Severity::Warning } else { Severity::Error };
                 let places = (first.place, second.place);
-                self.too_many(place, multiplicity, places, all.len(), severity, report);
+                let told = TooMany { place, places, count: all.len(), is_again };
+                self.too_many(told, multiplicity, severity, report);
             }
             _ => {}
         }
@@ -209,8 +212,9 @@ impl<'f, 'a> Wires<'f, 'a> {
                     // In SCA 1.0 a warning: whoever implements it may take the first.
                     let is_1_1 = fleet.members[member].composite.version.is_1_1();
                     let severity = if is_1_1 { Severity::Error } else { Severity::Warning };
-                    let count = level.written.count;
-                    self.too_many((member, &reference.name), most, places, count, severity, report);
+                    let place = (member, &*reference.name.value);
+                    let told = TooMany { place, places, count: level.written.count, is_again: false };
+                    self.too_many(told, most, severity, report);
                 }
             }
             for wire in self.wires_of(member).iter().filter(|wire| component.reference(wire.name).is_none()) {
@@ -224,8 +228,9 @@ impl<'f, 'a> Wires<'f, 'a> {
             if let Some(places) = ends.written.first_two
                 && !multiplicity.is_many()
             {
-                let count = ends.written.count;
-                self.too_many((member, name), multiplicity, places, count, Severity::Error, report);
+                let told =
+                    TooMany { place: (member, name), places, count: ends.written.count, is_again: false };
+                self.too_many(told, multiplicity, Severity::Error, report);
             }
         }
     }
@@ -438,29 +443,6 @@ impl<'f, 'a> Wires<'f, 'a> {
         }
         let all = found.into_iter().map(|(_, provider)| End { provider, place: at });
         Ends { all: all.collect(), is_unknown: is_open }
-    }
-
-    fn too_many(
-        &self,
-        (member, name): Place<'_>,
-        multiplicity: Multiplicity,
-        (first, second): (Location, Location),
-        count: usize,
-        severity: Severity,
-        report: &mut Report<'_>,
-    ) {
-        let message = format!(
-            "reference {} of component {} takes one target, and here are {count}",
-            quoted(name),
-            quoted(&self.fleet.members[member].component.name)
-        );
-        report.push(
-            Diagnostic::new(&codes::TOO_MANY_TARGETS, second, message)
-                .severity(severity)
-                .rule(if multiplicity.is_required() { "ASM50040" } else { "ASM50039" })
-                .label(first, "the first")
-                .help("keep one of them"),
-        );
     }
 }
 

@@ -184,3 +184,63 @@ fn what_is_inside_is_named_by_what_is_promoted() {
     "#]]
     .assert_eq(&with_unit("<wire source=\"U/G/position\" target=\"U\"/>"));
 }
+
+/// What is wrong with navigators, of which each takes the wheels of one robot, beside two robots that are replicas.
+fn navigators(attributes: &str, inside: &str) -> String {
+    let robots = "<component name=\"R${index}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R${index}</property><property name=\"number\">1</property><property name=\"period\">1</property></component>";
+    of(&format!(
+        "{robots}\n<component name=\"{attributes}><implementation.java class=\"example.Navigator\"/>\n{inside}"
+    ))
+}
+
+#[test]
+fn one_of_replicas_is_taken_where_all_are_named() {
+    let by_target = "<reference name=\"wheels\" target=\"R*/move\"/></component>";
+    expect![[r#"
+        4:34-41 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          help: `R*` stands for all replicas, and one is taken
+          fix: replace `R*/move` with `R1/move` [4:34-41 "R1/move"]
+          fix: replace `R*/move` with `R2/move` [4:34-41 "R2/move"]
+    "#]].assert_eq(&navigators("N\"", by_target));
+    expect![[r#"
+        4:34-41 error S2017: reference `wheels` of component `N1` takes one target, and here are 2 (index 1, and in 1 more)
+          help: `R*` stands for all replicas, and one is taken
+          fix: replace `R*/move` with `R${index}/move` [4:34-41 "R${index}/move"]
+    "#]].assert_eq(&navigators("N${index}\" saoms:count=\"2\"", by_target));
+    expect![[r#"
+        4:34-41 error S2017: reference `wheels` of component `N2` takes one target, and here are 2 (index 2, and in 1 more)
+          help: `R*` stands for all replicas, and one is taken
+          fix: replace `R*/move` with `R${index}/move` [4:34-41 "R${index}/move"]
+    "#]].assert_eq(&navigators("N${index}\" saoms:from=\"2\" saoms:count=\"2\"", by_target));
+    let by_wire = "</component>\n<wire source=\"N/wheels\" target=\"R*\"/>";
+    expect![[r#"
+        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          help: `R*` stands for all replicas, and one is taken
+          fix: replace `R*` with `R1` [5:33-35 "R1"]
+          fix: replace `R*` with `R2` [5:33-35 "R2"]
+    "#]].assert_eq(&navigators("N\"", by_wire));
+}
+
+#[test]
+fn a_wire_can_count_in_place_of_a_target() {
+    let wired = |target: &str, wires: &str| {
+        navigators("N\"", &format!("<reference name=\"wheels\" target=\"{target}\"/></component>\n{wires}"))
+    };
+    let other = "<wire source=\"N/wheels\" target=\"R2\"/>";
+    expect![[r#"
+        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          4:34-36 the first
+          help: keep one of them, or write `replace="true"` at the wire, which counts in place of the `target` then
+    "#]].assert_eq(&wired("R1", other));
+    expect![[r#"
+        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          4:34-36 the first
+          help: they lead to one service: keep one of them
+    "#]].assert_eq(&wired("R2", other));
+    let twice = format!("{other}<wire source=\"N/wheels\" target=\"R1\"/>");
+    expect![[r#"
+        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 3
+          4:34-36 the first
+          help: keep one of them
+    "#]].assert_eq(&wired("R1", &twice));
+}

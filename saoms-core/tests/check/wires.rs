@@ -88,7 +88,7 @@ fn targets_lead_to_services() {
         R R/move
         3:36-42 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           3:34-35 the first
-          help: keep one of them
+          help: they lead to one service: keep one of them
     "#]].assert_eq(&all);
 }
 
@@ -279,19 +279,19 @@ fn one_service_is_a_target_once_where_one_is_taken() {
     expect![[r#"
         3:109-115 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           3:102-108 the first
-          help: keep one of them
+          help: they lead to one service: keep one of them
     "#]]
     .assert_eq(&wired(&fleet, "T/move T/move", ""));
     expect![[r#"
         4:33-39 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           3:102-108 the first
-          help: keep one of them
+          help: they lead to one service: keep one of them
     "#]]
     .assert_eq(&wired(&fleet, "T/move", again));
     expect![[r#"
         4:33-39 warning S2017: reference `wheels` of component `N` takes one target, and here are 2
           3:102-108 the first
-          help: keep one of them
+          help: they lead to one service: keep one of them
     "#]]
     .assert_eq(&wired(&fleet_1_0, "T/move", again));
     assert_eq!(wired(&fleet, "T/move", &again.replace("/>", " replace=\"true\"/>")), "");
