@@ -43,6 +43,7 @@ mod parameters;
 mod path;
 mod placed;
 mod presence;
+mod promotable;
 mod promote;
 mod properties;
 mod raw;

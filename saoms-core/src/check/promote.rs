@@ -5,14 +5,14 @@ use std::collections::{HashMap, HashSet};
 use super::agree::{self, Found};
 use super::astray::Astray;
 use super::classes::ClassIndex;
-use super::contracts::of_class;
 use super::fleet::{Fleet, Kind, Unit};
 use super::offer::Side;
+use super::promotable;
 use super::report::{Report, list};
 use super::target::{Uri, parts, spread};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::hash::Map;
-use crate::model::{Binding, Multiplicity, Part, Reference};
+use crate::model::{Binding, Part, Reference};
 use crate::source::{Location, Text};
 
 /// A reference of a component, by its name.
@@ -71,7 +71,7 @@ pub(super) fn check<'f>(
                     }
                 }
             }
-            found.iter().for_each(|(inner, _)| may_be_promoted(*inner, reference, fleet, classes, report));
+            promotable::check(reference, found.iter().map(|(inner, _)| *inner), fleet, classes, report);
             agree::wired(reference, &found, unit.main().version, fleet, report);
             let is_one = agree::reference(reference, &found, fleet, classes, report);
             // What is taken as given wires itself.
@@ -106,63 +106,6 @@ pub(super) fn check<'f>(
         }
     }
     promoted
-}
-
-/// Checks that a composite's reference may promote one of a component: multiplicity, and what must not be overridden.
-fn may_be_promoted(
-    (member, name): Place<'_>,
-    by: &Reference,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-    report: &mut Report<'_>,
-) {
-    let own = fleet.members[member].component.reference(name);
-    let class = fleet.class_of(member, classes);
-    let declared = class.and_then(|class| class.references.iter().find(|declared| declared.name == name));
-    let given = own.and_then(|own| own.multiplicity()).map(|given| given.value);
-    let inner = match declared {
-        Some(declared) => Some(given.unwrap_or(of_class(declared))),
-        // That of a class that nobody here knows is in the class.
-        None if fleet.members[member].kind == Kind::Given => given.or_else(|| {
-            let mut described = fleet.component_type(member)?.references.iter();
-            let described = described.find(|one| one.name == *name)?;
-            Some(described.multiplicity().map_or(Multiplicity::One, |given| given.value))
-        }),
-        None => Some(fleet.multiplicity_of((member, name))),
-    };
-    let Some(inner) = inner else { return };
-    let component = quoted(&fleet.members[member].component.name);
-    if let Some(fixed) =
-        own.and_then(|own| own.non_overridable()).filter(|fixed| fixed.value && !inner.is_many())
-    {
-        let message = format!("reference {} of component {component} must not be overridden", quoted(name));
-        let at = if by.name.is_empty() { by.tag() } else { by.name.location };
-        report.push(
-            Diagnostic::new(&codes::PROMOTED_FIXED, at, message)
-                .label(fixed.location, "said here")
-                .help("do not promote it, or leave `nonOverridable` out"),
-        );
-    }
-    let Some(outer) = by.multiplicity() else { return };
-    // One that has a target already needs none from outside.
-    let has_target = own.is_some_and(|own| !own.targets.is_empty());
-    if outer.value.narrows(inner) || has_target && outer.value.is_many() <= inner.is_many() {
-        return;
-    }
-    let message = format!(
-        "{} promotes reference {} of component {component}, which takes {}: {} does not narrow it",
-        quoted(&by.name),
-        quoted(name),
-        quoted(inner.name()),
-        quoted(outer.value.name())
-    );
-    // In SCA 1.0 files the two often differ, and other programs take the outer one: it is wrong where a class needs its target.
-    let is_1_1 = fleet.members[member].composite.version.is_1_1();
-    let severity = if is_1_1 || declared.is_some() { Severity::Error } else { Severity::Warning };
-    let one = Diagnostic::new(&codes::PROMOTED_MULTIPLICITY, outer.location, message).severity(severity);
-    let narrower: Vec<&str> =
-        Multiplicity::ALL.into_iter().filter(|one| one.narrows(inner)).map(Multiplicity::name).collect();
-    report.push(one.help(format!("it can be {}", list(narrower))));
 }
 
 /// Whether a binding says where calls go, so that nothing else has to.

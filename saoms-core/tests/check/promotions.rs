@@ -37,6 +37,42 @@ fn multiplicities_are_not_widened_whatever_the_classes_are() {
 }
 
 #[test]
+fn what_is_wrong_with_several_that_are_promoted_together_is_told_once() {
+    let component = |name: &str, given: &str| {
+        format!(
+            "<component name='{name}'><implementation.java class='x.B'/><reference name='r' {given}/></component>\n"
+        )
+    };
+    let promoted = |given: &[&str], outer: &str| {
+        let components: String =
+            given.iter().zip(["A", "B", "C", "D"]).map(|(given, name)| component(name, given)).collect();
+        let names: Vec<String> =
+            ["A/r", "B/r", "C/r", "D/r"].iter().take(given.len()).map(|one| (*one).to_owned()).collect();
+        self::given(&format!(
+            "{components}<reference name='w' multiplicity='{outer}' promote='{}'/>",
+            names.join(" ")
+        ))
+    };
+    let (one, many) = ("multiplicity='1..1'", "multiplicity='1..n'");
+    expect![[r#"
+        4:35-39 error S2036: `w` promotes 2 references that `0..n` does not narrow: `A/r` takes `1..1` and `B/r` takes `1..n`
+          help: it can be `1..1`
+    "#]].assert_eq(&promoted(&[one, many], "0..n"));
+    expect![[r#"
+        6:35-39 error S2036: `w` promotes 4 references that `0..n` does not narrow: `A/r` takes `1..1`, `B/r` takes `1..n`, `C/r` takes `1..1` and 1 more
+          help: it can be `1..1`
+    "#]].assert_eq(&promoted(&[one, many, one, one], "0..n"));
+    let fixed = "multiplicity='1..1' nonOverridable='true' target='A'";
+    expect![[r#"
+        4:18-19 error S2037: the references `A/r` and `B/r` must not be overridden
+          2:111-115 said here
+          3:111-115 said here
+          help: do not promote them, or leave `nonOverridable` out
+    "#]]
+    .assert_eq(&promoted(&[fixed, fixed], "1..1"));
+}
+
+#[test]
 fn what_is_promoted_of_several_is_named() {
     let wrong = "<component name='A'><implementation.java class='x.A'/><reference name='one' target='A'/></component>
 <component name='B'><implementation.java class='x.B'/>
