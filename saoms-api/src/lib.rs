@@ -96,7 +96,7 @@ pub use failure::{CallError, Failure};
 pub use field::{Arguments, Field};
 pub use finding::{Finding, Place};
 pub use message::{Header, Message, Messages, SharedMessage};
-pub use nearest::{nearest, nearest_few};
+pub use nearest::{nearest, nearest_equal, nearest_few};
 pub use property::{Properties, PropertyField, PropertyValue};
 pub use registration::Registration;
 pub use report::{ReportValue, Work};

@@ -17,6 +17,37 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     nearest_few(name, candidates, 1).first().copied()
 }
 
+/// The candidates that are most like `name`: one, or up to three that are equally alike. Where more are, none of them is meant rather than the
+/// others; see [`nearest`].
+///
+/// ```
+/// use saoms_api::nearest_equal;
+///
+/// assert_eq!(nearest_equal("charge", ["chargeX", "chargeY", "colour"]), ["chargeX", "chargeY"]);
+/// assert!(nearest_equal("Robot9", ["Robot1", "Robot2", "Robot3", "Robot4"]).is_empty());
+/// ```
+pub fn nearest_equal<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    const MOST: usize = 3;
+    let wanted = Folded::new(name);
+    let mut least = wanted.cut;
+    let mut found: Vec<&str> = Vec::new();
+    for candidate in candidates {
+        let Some(distance) = wanted.distance(candidate, least) else { continue };
+        if distance < least {
+            found.clear();
+            least = distance;
+        }
+        // One more than are wanted shows that there are too many.
+        if found.len() <= MOST && !found.contains(&candidate) {
+            found.push(candidate);
+        }
+    }
+    if found.len() > MOST {
+        found.clear();
+    }
+    found
+}
+
 /// Up to `limit` candidates that are like `name`, the most alike first; see [`nearest`].
 pub fn nearest_few<'a>(
     name: &str,

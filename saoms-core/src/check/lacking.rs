@@ -5,7 +5,7 @@ use super::properties::Giver;
 use super::report::Report;
 use super::slots::Slots;
 use crate::assembly::TaskProperties;
-use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, codes, nearest, nearest_equal, quoted};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
@@ -24,14 +24,16 @@ pub(super) fn unknown(
         slots.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
     let message = format!("{} {of} has no property {}", slots.what, quoted(name));
     // What is given already is not meant a second time.
-    let given =
-        nearest(name, slots.names()).filter(|meant| giver.properties.iter().any(|one| one.name == *meant));
-    let one = match given {
+    let is_given = |meant: &str| giver.properties.iter().any(|one| one.name == *meant);
+    let near = nearest_equal(name, slots.names());
+    let one = match near.first().filter(|_| near.iter().all(|meant| is_given(meant))) {
         Some(given) => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message)
             .help(format!("{} is given already: remove one of the two", quoted(given))),
         None => {
             let known = ("its properties are", slots.names());
-            report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known)
+            let mut one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
+            one.suggestions.retain(|one| !one.edits.iter().any(|edit| is_given(&edit.replacement)));
+            one
         }
     };
     let one = match stands_for(giver, slots) {

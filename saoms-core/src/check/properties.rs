@@ -15,7 +15,7 @@ use super::report::Report;
 use super::slots::{Slot, Slots};
 use super::value_type::{self, Match, Typed};
 use super::values::{Path, Use, Values};
-use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest_equal, quoted};
 use crate::expression::has_expression;
 use crate::hash::Map;
 use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
@@ -189,10 +189,11 @@ pub(super) fn check<'a>(
     given.finish(is_sound && !member.is_partial, unsure);
 }
 
-/// The places of the properties that an unknown name may stand for: the one that is spelt alike, or else any number that is not given.
+/// The places of the properties that an unknown name may stand for: those that are spelt most alike, or else any number that is not given.
 fn meant(name: &str, slots: &Slots<'_>, given: &Open<'_>) -> Vec<usize> {
-    if let Some(place) = nearest(name, slots.names()).and_then(|near| slots.place(near)) {
-        return vec![place];
+    let near = nearest_equal(name, slots.names());
+    if !near.is_empty() {
+        return near.into_iter().filter_map(|near| slots.place(near)).collect();
     }
     let open = slots.all.iter().enumerate().filter(|(place, _)| given.so_far().at(*place).is_none());
     let numbers = open.filter(|(_, slot)| slot.own.is_some_and(PropertyDeclaration::is_number));
@@ -277,7 +278,7 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
     let known: LazyCell<Vec<&str>, _> =
         LazyCell::new(|| declared().map(|(one, _)| one.name.as_str()).collect());
     let is_partial = member.instance.is_some_and(|instance| instance.partial.is_some());
-    let is_known = |one: &&Property| !one.name.is_empty() && !(is_partial && has_expression(&one.name));
+    let is_known = |one: &&Property| !(one.name.is_empty() || is_partial && has_expression(&one.name));
     for property in given.iter().filter(is_known) {
         if let Some((declared, document)) = find(&property.name) {
             let own = Typed { property, document: &member.composite.document };

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::fleet::Member;
 use crate::diagnostic::{
-    Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest, quoted,
+    Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest_equal, quoted,
 };
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
@@ -292,7 +292,7 @@ impl<'a> Report<'a> {
         self.copy.is_none() && self.diagnostics.skip(code, severity, at)
     }
 
-    /// A diagnostic about a name that stands for nothing: with the likeliest right one as a suggestion, or else with all
+    /// A diagnostic about a name that stands for nothing: with the likeliest right ones as suggestions, or else with all
     /// right ones, introduced by `known_as`.
     pub(super) fn unknown<'n>(
         &mut self,
@@ -315,10 +315,15 @@ impl<'a> Report<'a> {
         if !self.candidates.admit(count) {
             return one;
         }
-        match nearest(name, candidates.clone()) {
-            Some(meant) => one.suggest(replacing(name, meant), at, escaped(meant)),
-            None if candidates.clone().into_iter().next().is_none() => one,
-            None => one.help(format!("{known_as} {}", list(candidates))),
+        let mut near = nearest_equal(name, candidates.clone());
+        // All replicas are meant rather than one of them.
+        if near.iter().any(|near| near.contains('*')) {
+            near.retain(|near| near.contains('*'));
+        }
+        match near[..] {
+            [] if candidates.clone().into_iter().next().is_none() => one,
+            [] => one.help(format!("{known_as} {}", list(candidates))),
+            _ => near.iter().fold(one, |one, meant| one.suggest(replacing(name, meant), at, escaped(meant))),
         }
     }
 }

@@ -422,6 +422,7 @@ fn a_number_that_no_replica_has_means_the_nearest_that_one_has() {
           fix: replace `S2` with `S1` [6:11-13 "S1"]
         6:14-17 error S2011: there is no component `R0x`
           fix: replace `R0x` with `R01` [6:14-17 "R01"]
+          fix: replace `R0x` with `R02` [6:14-17 "R02"]
     "#]]
     .assert_eq(&of(&inside, &[]));
     // What follows the last one is nobody.

@@ -201,7 +201,8 @@ fn one_of_replicas_is_taken_where_all_are_named() {
           help: `R*` stands for all replicas, and one is taken
           fix: replace `R*/move` with `R1/move` [4:34-41 "R1/move"]
           fix: replace `R*/move` with `R2/move` [4:34-41 "R2/move"]
-    "#]].assert_eq(&navigators("N\"", by_target));
+    "#]]
+    .assert_eq(&navigators("N\"", by_target));
     expect![[r#"
         4:34-41 error S2017: reference `wheels` of component `N1` takes one target, and here are 2 (index 1, and in 1 more)
           help: `R*` stands for all replicas, and one is taken
@@ -218,7 +219,8 @@ fn one_of_replicas_is_taken_where_all_are_named() {
           help: `R*` stands for all replicas, and one is taken
           fix: replace `R*` with `R1` [5:33-35 "R1"]
           fix: replace `R*` with `R2` [5:33-35 "R2"]
-    "#]].assert_eq(&navigators("N\"", by_wire));
+    "#]]
+    .assert_eq(&navigators("N\"", by_wire));
 }
 
 #[test]
@@ -236,11 +238,34 @@ fn a_wire_can_count_in_place_of_a_target() {
         5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           4:34-36 the first
           help: they lead to one service: keep one of them
-    "#]].assert_eq(&wired("R2", other));
+    "#]]
+    .assert_eq(&wired("R2", other));
     let twice = format!("{other}<wire source=\"N/wheels\" target=\"R1\"/>");
     expect![[r#"
         5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 3
           4:34-36 the first
           help: keep one of them
-    "#]].assert_eq(&wired("R1", &twice));
+    "#]]
+    .assert_eq(&wired("R1", &twice));
+}
+
+#[test]
+fn of_names_that_are_equally_near_none_is_meant_rather_than_another() {
+    let robots = |count: usize, inside: &str| {
+        let robot = |name: &str| robot(name, "<property name=\"number\">1</property>");
+        let robots: String = (1..=count).map(|number| robot(&format!("R{number}"))).collect();
+        of(&format!("{robots}\n{inside}"))
+    };
+    let navigator = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/><reference name=\"wheels\" target=\"R9\"/></component>";
+    expect![[r#"
+        5:102-104 error S2011: there is no component `R9`
+          fix: replace `R9` with `R1` [5:102-104 "R1"]
+          fix: replace `R9` with `R2` [5:102-104 "R2"]
+    "#]]
+    .assert_eq(&robots(2, navigator));
+    expect![[r#"
+        7:102-104 error S2011: there is no component `R9`
+          help: the components are `R1`, `R2`, `R3` and `R4`
+    "#]]
+    .assert_eq(&robots(4, navigator));
 }
