@@ -94,27 +94,54 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
         diagnostics.push(read::empty(file));
         return None;
     }
-    let xml::Parsed { document, fault, tangle } = xml::parse(file, text);
-    let (mut composite, mut swallowed) = (None, None);
-    if let Some(document) = document {
-        let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
-        loader.tangle = tangle;
-        if loader.root(document.root()) {
-            loader.near_namespaces(&document);
-            composite = Some(loader.composite(&Arc::new(document)));
-            swallowed = loader.swallowed;
+    let mut parsed = xml::parse(file, text);
+    if parsed.fault.is_some() {
+        faulty(xml::mend(file, text, parsed), sources, diagnostics);
+        return None;
+    }
+    let composite = parsed.document.take().and_then(|document| composite(document, None, diagnostics));
+    encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
+    composite.map(|(composite, _)| composite)
+}
+
+/// The composite in a document, and the first element in it that another one swallowed.
+fn composite(
+    document: xml::Document,
+    tangle: Option<xml::Tangle>,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Composite, Option<Swallowed>)> {
+    let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
+    loader.tangle = tangle;
+    if !loader.root(document.root()) {
+        return None;
+    }
+    loader.near_namespaces(&document);
+    let composite = loader.composite(&Arc::new(document));
+    Some((composite, loader.swallowed))
+}
+
+/// Tells all that is wrong with a text that is not well-formed.
+fn faulty(mut mended: xml::Mended, sources: &Sources, diagnostics: &mut Diagnostics) {
+    let mut found = Diagnostics::new();
+    let (document, tangle) = (mended.parsed.document.take(), mended.parsed.tangle);
+    let composite = document.and_then(|document| composite(document, tangle, &mut found));
+    for one in found.into_sorted() {
+        mended.told(one).into_iter().for_each(|one| diagnostics.push(one));
+    }
+    for one in std::mem::take(&mut mended.faults) {
+        if !contradicts(&one, sources, diagnostics) {
+            diagnostics.push(one);
         }
     }
-    let Some(fault) = fault else {
-        encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
-        return composite;
-    };
-    match composite.zip(swallowed) {
-        Some((composite, swallowed)) => diagnostics.push(swallowed.fault(&composite.document, &fault)),
-        None if contradicts(&fault, sources, diagnostics) => {}
-        None => diagnostics.push(fault),
+    let Some(fault) = mended.parsed.fault.take() else { return };
+    let swallowed = composite.as_ref().and_then(|(composite, swallowed)| {
+        swallowed.map(|swallowed| swallowed.fault(&composite.document, &fault))
+    });
+    let is_swallowed = swallowed.is_some();
+    let Some(fault) = mended.told(swallowed.unwrap_or(fault)) else { return };
+    if is_swallowed || !contradicts(&fault, sources, diagnostics) {
+        diagnostics.push(fault);
     }
-    None
 }
 
 /// Whether a fault is that an end tag does not fit a start tag, whose name is told to be wrong, and of which the end tag has the right one.

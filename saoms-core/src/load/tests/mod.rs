@@ -3,6 +3,7 @@ mod finder;
 mod forms;
 mod large;
 mod many;
+mod mended;
 mod reading;
 mod slips;
 mod vocabulary;
@@ -434,7 +435,7 @@ fn what_others_add_is_kept_and_what_is_nobodys_is_not() {
 }
 
 #[test]
-fn all_up_to_the_first_ill_formed_place_is_reported_and_nothing_behind_it() {
+fn an_ill_formed_place_hides_nothing_before_or_behind_it() {
     let text = format!(
         "<composite xmlns='{OSOA}' nmae='c' targetNamespace='u'>\n<component/>\n<component name='a'>\n\
          <property name='x'>a & b</property>\n<propery/></component></composite>"
@@ -446,7 +447,10 @@ fn all_up_to_the_first_ill_formed_place_is_reported_and_nothing_behind_it() {
         "1:54 [nmae] error S1007 `composite` has no attribute `nmae` | replace `nmae` with `name`\n\
          2:2 [component] error S1008 `component` needs the attribute `name`\n\
          2:2 [component] warning S1010 a component has no implementation\n\
-         4:22 [&] error S0109 `&` starts a reference and none follows | replace `&` with `&amp;`\n"
+         3:2 [component] warning S1010 the component `a` has no implementation\n\
+         4:22 [&] error S0109 `&` starts a reference and none follows | replace `&` with `&amp;`\n\
+         5:2 [propery] error S1004 SCA 1.0 has no element `propery` | replace `propery` with `property`\n\
+         5:2 [propery] error S1008 `propery` needs the attribute `name`\n"
     );
 }
 
