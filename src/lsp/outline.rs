@@ -23,6 +23,8 @@ pub(super) struct Outline {
     pub(super) includes: Vec<Named>,
     /// The composites that the description of a contribution says run.
     pub(super) deployables: Vec<Named>,
+    /// The namespaces whose composites it says that others may take.
+    pub(super) exports: Vec<String>,
     pub(super) properties: Vec<Named>,
     pub(super) services: Vec<Named>,
     pub(super) references: Vec<Named>,
@@ -171,6 +173,7 @@ impl Outline {
         let is = |known: &Kind| std::ptr::eq(kind, known);
         if parent.is_some_and(|parent| std::ptr::eq(parent, &CONTRIBUTION)) {
             self.deployables.extend(of.named("composite"));
+            self.exports.extend(of.named("namespace").filter(|_| kind.name == "export").map(|one| one.text));
         } else if is(&COMPOSITE) {
             self.name = of.named("name");
             self.namespace = of.named("targetNamespace").map(|one| one.text).unwrap_or_default();

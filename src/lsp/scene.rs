@@ -147,7 +147,9 @@ impl Scene {
             return Vec::new();
         }
         let alone = reached(start.clone(), |place| users[place].clone()).into_iter().filter(is_alone);
-        let mut fleets: Vec<Fleet> = alone.map(|root| Fleet { files: vec![root], may_be_part }).collect();
+        let alone =
+            alone.map(|root| Fleet { files: vec![root], may_be_part: may_be_part || self.is_exported(root) });
+        let mut fleets: Vec<Fleet> = alone.collect();
         let deployed: Vec<usize> = deployed.into_iter().collect();
         let mut named = reached(deployed.clone(), |place| names[place].clone()).into_iter();
         if named.any(|one| start.contains(&one)) {
@@ -155,6 +157,12 @@ impl Scene {
         }
         // Composites that go around in circles have nothing around them.
         if fleets.is_empty() { vec![Fleet { files: vec![start[0]], may_be_part: false }] } else { fleets }
+    }
+
+    /// Whether the contribution gives a composite to others.
+    fn is_exported(&self, place: usize) -> bool {
+        let namespace = &self.files[place].outline.namespace;
+        self.files[..self.own].iter().any(|one| one.outline.exports.contains(namespace))
     }
 
     /// The composites that each file names, by includes and implementations, and those of the contribution that name it.

@@ -56,6 +56,21 @@ fn what_is_deployable_together_is_one_fleet() {
 }
 
 #[test]
+fn what_is_exported_may_be_a_part_although_nothing_else_is_there() {
+    let exports = |namespace: &str, deployable: &str| {
+        let inside = format!("<export namespace=\"{namespace}\"/>{deployable}");
+        let text = format!(
+            "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:f=\"urn:f\">{inside}</contribution>"
+        );
+        fleets("", &[("sca-contribution.xml", &text)])
+    };
+    assert_eq!(exports("urn:f", ""), ["fleet?"]);
+    assert_eq!(exports("urn:other", ""), ["fleet"]);
+    // What runs is whole.
+    assert_eq!(exports("urn:f", "<deployable composite=\"f:fleet\"/>"), ["fleet"]);
+}
+
+#[test]
 fn descriptions_follow_composites_that_are_renamed() {
     let marked = composite("").replace("name=\"fleet", "name=\"fl|eet");
     let all = renamed(&marked, &[("sca-contribution.xml", DESCRIPTION)], "port").unwrap();
