@@ -15,20 +15,22 @@ const MOST: usize = 20_000;
 /// How many components are looked at for the values that they give a composite.
 const MOST_GIVERS: usize = 100;
 
+/// How many texts are proposed.
+const MOST_TEXTS: usize = 200;
+
 /// An element of a value: its file and its place there.
 type Part = (usize, usize);
 
 /// What can stand at a place of a `source`: a property of the composite, or behind `/` and `[` the elements and attributes that there are in its value.
 pub(super) fn complete(scene: &Scene, value: Range<usize>, at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
+    if let Some(all) = texts(scene, &value, at) {
+        return all;
+    }
     let Some(mut paths) = paths(&text[value.start..at]) else { return Vec::new() };
     let Some(typed) = paths.pop() else { return Vec::new() };
     let end = at + text[at..value.end].find(|letter| !is_name(letter)).unwrap_or(value.end - at);
-    let mut from: Option<Vec<Part>> = None;
-    for path in paths {
-        let (start, steps) = split(path, scene, from);
-        from = Some(walk(scene, start, steps.into_iter().flat_map(|steps| steps.split('/'))));
-    }
+    let from = around(scene, paths);
     let Some((steps, last)) = typed.rsplit_once('/') else {
         return match from {
             // In a predicate.
@@ -43,6 +45,66 @@ pub(super) fn complete(scene: &Scene, value: Range<usize>, at: usize) -> Vec<Pro
         Some(steps) => walk(scene, from, steps.split('/')),
     };
     parts(scene, &from, &range)
+}
+
+/// The elements that paths around one choose from; `None` where there is none around it.
+fn around(scene: &Scene, paths: Vec<&str>) -> Option<Vec<Part>> {
+    paths.into_iter().fold(None, |from, path| {
+        let (start, steps) = split(path, scene, from);
+        Some(walk(scene, start, steps.into_iter().flat_map(|steps| steps.split('/'))))
+    })
+}
+
+/// What an attribute or an element can be equal to, where the quote of a text behind `=` is open.
+fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Proposal>> {
+    let text = &scene.file().text;
+    let typed = &text[value.start..at];
+    let (open, quote) = open_quote(typed)?;
+    let operand = typed[..open].trim_end().strip_suffix('=')?;
+    let mut paths = paths(operand.strip_suffix('!').unwrap_or(operand).trim_end())?;
+    let path = paths.pop()?;
+    let (start, steps) = split(path, scene, around(scene, paths));
+    let (steps, last) = steps
+        .map(|steps| steps.rsplit_once('/').map_or((None, steps), |(steps, last)| (Some(steps), last)))?;
+    let here = match steps {
+        Some(steps) => walk(scene, start, steps.split('/')),
+        None => start,
+    };
+    let rest = &text[at..value.end];
+    let end = rest.find(quote).or_else(|| rest.find(|letter| !is_name(letter))).unwrap_or(rest.len());
+    let range = value.start + open + 1..at + end;
+    let mut seen = BTreeSet::new();
+    let mut add = |text: &str| {
+        // What would have to be written with references is for nobody.
+        let is_plain = !text.is_empty() && !text.contains(['&', '<', '"', '\'', '\n']);
+        let is_new = is_plain && seen.len() < MOST_TEXTS && seen.insert(text.to_owned());
+        is_new.then(|| Proposal::new(text, CompletionItemKind::VALUE, &range))
+    };
+    let mut all = Vec::new();
+    if let Some(name) = last.strip_prefix('@') {
+        for (file, one) in here {
+            let file = &scene.files[file];
+            let attributes = file.tree.elements[one].attributes.iter();
+            let named = attributes.filter(|one| local(&file.text[one.name.clone()]) == local(name));
+            all.extend(named.filter_map(|one| add(&file.text[one.value.clone()?])));
+        }
+        return Some(all);
+    }
+    let elements = if matches!(last, "." | "text()") { here } else { named(scene, &here, local(last)) };
+    for (file, one) in elements {
+        let file = &scene.files[file];
+        all.extend(file.tree.text(&file.text, one).and_then(|at| add(file.text[at].trim())));
+    }
+    Some(all)
+}
+
+/// Where the quote is that is open at the end of a part of an XPath, and which.
+fn open_quote(typed: &str) -> Option<(usize, char)> {
+    typed.char_indices().fold(None, |open, (at, letter)| match open {
+        Some((_, quote)) if quote == letter => None,
+        Some(open) => Some(open),
+        None => matches!(letter, '"' | '\'').then_some((at, letter)),
+    })
 }
 
 fn is_name(letter: char) -> bool {

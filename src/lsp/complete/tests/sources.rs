@@ -34,13 +34,30 @@ fn paths_complete_inside_of_expressions_too() {
     assert_eq!(at("concat($b/bay[1]/x, $many/|)"), ["x", "y"]);
     assert_eq!(at("concat('x', |)"), ["$b", "$many", "$places"]);
     assert_eq!(at("$b/bay[x=$m|"), ["$b", "$many", "$places"]);
-    assert_eq!(at("$b/bay[@id='|"), [""; 0]);
     let source =
         |inside: &str| format!("{BAYS}{ROBOT}<property name=\"ID\" source=\"{inside}\"/></component>");
     let all = |inside: &str, label: &str| taken(&composite(&source(inside)), label, false);
     assert_eq!(all("concat($b/bay/i|d, 'x')", "@id"), composite(&source("concat($b/bay/@id, 'x')")));
     assert_eq!(all("$b/ba|x/y", "bay"), composite(&source("$b/bay/y")));
     assert_eq!(all("concat('x', $|)", "$many"), composite(&source("concat('x', $many)")));
+}
+
+#[test]
+fn what_parts_are_compared_with_is_what_they_are() {
+    assert_eq!(at("$b/bay[@id='|"), ["a", "b"]);
+    assert_eq!(at("$b/bay[@id = '|']/x"), ["a", "b"]);
+    assert_eq!(at("$b/bay[@id!='|']/x"), ["a", "b"]);
+    assert_eq!(at("$b/bay[x='|']"), ["3"]);
+    assert_eq!(at("$b/bays[bay/@id='|']"), ["a", "b"]);
+    assert_eq!(at("$b/bays/bay/x[. = '|']"), ["3"]);
+    assert_eq!(at("$b/bays/@unit = '|'"), ["m"]);
+    assert_eq!(at("concat('|')"), [""; 0]);
+    assert_eq!(at("$b/bay[@none='|']"), [""; 0]);
+    assert_eq!(at("$b/bay[contains(@id, '|')]"), [""; 0]);
+    let source =
+        |inside: &str| format!("{BAYS}{ROBOT}<property name=\"ID\" source=\"{inside}\"/></component>");
+    let all = |inside: &str, label: &str| taken(&composite(&source(inside)), label, false);
+    assert_eq!(all("$b/bay[@id='|a-z']/x", "b"), composite(&source("$b/bay[@id='b']/x")));
 }
 
 #[test]
