@@ -9,8 +9,8 @@ use crate::source::{FileId, Location, Span};
 
 /// Slips of a file that are mended: behind more, nobody reads on.
 const MOST: usize = 20;
-/// Bytes that are read for this: a large file is not read so often.
-const MOST_BYTES: usize = 16 << 20;
+/// Bytes that are read for this: a large file is not read so often, and its copies take memory.
+const MOST_BYTES: usize = 2 << 20;
 /// What stands for the namespace of a prefix that is bound to none.
 const NO_NAMESPACE: &str = "urn:bound-to-nothing";
 
@@ -42,6 +42,8 @@ pub(crate) fn mend(file: FileId, text: &Arc<String>, mut parsed: Parsed) -> Mend
         faults.extend(parsed.fault.take().map(|fault| places.of(fault)));
         places.edits = more;
         mended = Arc::new(places.applied());
+        // One tree at a time.
+        parsed.document = None;
         parsed = parse(file, &mended);
     }
     Mended { parsed, faults, text: mended, places }
