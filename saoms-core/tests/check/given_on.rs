@@ -206,7 +206,7 @@ fn long_values_are_given_on_through_many_composites() {
 
 /// Each composite gives on twice what it is given.
 #[test]
-fn values_that_double_from_composite_to_composite_are_told_once() {
+fn values_that_double_from_composite_to_composite_are_told_where_they_are_too_much() {
     const DEEP: usize = 100;
     let nested = |first: &str, second: &str, own: &str| {
         let made = (0..DEEP).map(|place| {
@@ -229,10 +229,50 @@ fn values_that_double_from_composite_to_composite_are_told_once() {
     "#]].assert_eq(&nested("$a | $b", "$b | $a", elements));
     expect![[r#"
         c19:2:216-235 error S2023: this makes a text of more than 1048576 bytes: one that is so long can stand in a `file`
+        c19:2:277-291 error S2023: this makes a text of more than 1048576 bytes: one that is so long can stand in a `file`
     "#]].assert_eq(&nested("concat($a, $b, 'x')", "concat($b, $a)", "<value>y</value>"));
     // What does not grow goes on through all of them.
     expect![[r#"
         c99:2:193-194 error S2045: the property `a` has no simple value
           help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
     "#]].assert_eq(&nested("($a | $b)[1]", "($b | $a)[1]", elements));
+}
+
+/// What a component gives has to be right although nothing inside takes it.
+#[test]
+fn what_nobody_takes_is_held_to_its_type() {
+    const SCHEMA: &str = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    let inner = part(
+        "inner",
+        SCHEMA,
+        r#"<property name="p" type="xsd:int"/><component name="G"><implementation.java class="example.Gps"/></component>"#,
+    );
+    let given = |value: &str| {
+        let outer = format!(
+            r#"<property name="n" type="xsd:string">1</property><component name="K"><implementation.composite name="t:inner"/>{value}</component>"#
+        );
+        outcome(&[&part("outer", SCHEMA, &outer), &inner], &[])
+    };
+    expect![[r#"
+        2:17-18 warning S2026: the property `n` of the composite is used by no component
+          help: a component takes its value with `source="$n"`
+        2:131-134 error S2042: the property `p` is of the type `xsd:int`: found `abc`, expected a whole number of 32 bits
+          inner:2:26-33 the type
+          help: change the value, or the type
+        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
+          help: a component takes its value with `source="$p"`
+    "#]].assert_eq(&given(r#"<property name="p">abc</property>"#));
+    expect![[r#"
+        2:140-141 error S2024: the composite has no property `m`
+          help: its properties are `n`
+        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
+          help: a component takes its value with `source="$p"`
+    "#]]
+    .assert_eq(&given(r#"<property name="p" source="$m"/>"#));
+    expect![[r#"
+        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
+          help: a component takes its value with `source="$p"`
+        K/G (example.Gps) other->
+    "#]]
+    .assert_eq(&given(r#"<property name="p" source="$n"/>"#));
 }

@@ -8,16 +8,17 @@ use crate::model::Property;
 use crate::xml::escaped;
 
 impl<'a> Parameters<'a> {
-    /// Finds out what properties come to that have to be given a value, where that is more than a look at what the component says.
+    /// Finds out what components give properties that nobody took: it has to be right all the same, and there where it has to be.
     pub(super) fn follow_all(&mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
         for (place, unit) in fleet.units.iter().enumerate().filter(|(_, unit)| !unit.is_absent) {
-            let all = self.units[place].by_name.iter();
-            let open = all.filter(|(_, parameter)| {
-                let is_by_component = matches!(parameter.given, Some(Given::Component(..)));
-                is_by_component && parameter.whole.is_none() && is_asked_for(parameter.property)
-            });
-            let open: Vec<&'a str> = open.map(|(name, _)| *name).collect();
-            for name in open {
+            for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
+                let name = property.name.as_str();
+                let is_open = self.units[place].by_name.get(name).is_some_and(|parameter| {
+                    matches!(parameter.given, Some(Given::Component(..))) && parameter.whole.is_none()
+                });
+                if !is_open {
+                    continue;
+                }
                 let owner = fleet.scopes[unit.scope].owner;
                 owner.into_iter().for_each(|owner| report.about(&fleet.members[owner]));
                 let _ = self.whole(place, name, report);
