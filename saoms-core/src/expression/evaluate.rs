@@ -131,10 +131,17 @@ fn calculated(
         "+" => one.checked_add(other),
         "-" => one.checked_sub(other),
         "*" => one.checked_mul(other),
-        "/" => one.checked_div_euclid(other),
+        "/" => floored(one, other),
         _ => one.checked_rem_euclid(other),
     };
     number.map(Value::Integer).ok_or_else(|| overflow(whole))
+}
+
+/// A quotient rounded down, whatever the signs are.
+fn floored(one: i64, other: i64) -> Option<i64> {
+    let quotient = one.checked_div(other)?;
+    let is_between = one % other != 0 && (one < 0) != (other < 0);
+    Some(if is_between { quotient - 1 } else { quotient })
 }
 
 fn overflow(expression: &Expression) -> Fault {

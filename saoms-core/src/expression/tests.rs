@@ -183,6 +183,13 @@ proptest! {
     }
 
     #[test]
+    fn quotients_are_rounded_down(one in -1000i64..1000, other in (-50i64..50).prop_filter("a divisor", |other| *other != 0)) {
+        let quotient: i64 = of(&format!("({one}) / ({other})")).parse().unwrap();
+        let exact = one as f64 / other as f64;
+        prop_assert_eq!(quotient, exact.floor() as i64);
+    }
+
+    #[test]
     fn sums_are_those_of_numbers(one in -1000i64..1000, other in 1i64..1000) {
         let text = format!("({one}) * {other} + ({one}) / {other} - ({one}) % {other}");
         let value = one * other + one.div_euclid(other) - one.rem_euclid(other);

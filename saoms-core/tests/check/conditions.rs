@@ -230,3 +230,37 @@ fn what_is_promoted_and_absent_is_told_with_what_can_be_done() {
           help: what a composite promotes has no condition: put both into a composite that is included with this one
     "#]].assert_eq(&outcome(&[&fleet], &[]));
 }
+
+/// What a condition keeps away declares nothing for those that are there.
+#[test]
+fn expressions_take_nothing_of_what_is_kept_away() {
+    const SAOMS: &str = "xmlns:saoms=\"urn:saoms:1\"";
+    let robots = |count: &str| {
+        format!(
+            r#"<component name="G${{index}}" saoms:count="{count}"><implementation.java class="example.Gps"/></component>"#
+        )
+    };
+    let kept_away =
+        part("more", SAOMS, &format!(r#"<property name="n">2</property>{}"#, robots("n").replace('G', "M")));
+    let including = |inside: &str, condition: &str| {
+        let outer = format!(
+            r#"<property name="big">false</property><include name="t:more" saoms:if="{condition}"/>{inside}"#
+        );
+        outcome(&[&part("fleet", SAOMS, &outer), &kept_away], &[])
+    };
+    expect![[r#"
+        2:118-119 error S2045: the composite has no property `n`
+          help: its properties are `big`
+    "#]]
+    .assert_eq(&including(&robots("n"), "big"));
+    expect![[r#"
+        G1 (example.Gps) other->
+        G2 (example.Gps) other->
+    "#]]
+    .assert_eq(&including(&robots("2"), "big"));
+    expect![[r#"
+        2:71-72 error S2045: the composite has no property `n`
+          help: its properties are `big`
+    "#]]
+    .assert_eq(&including(&robots("2"), "n == 4"));
+}

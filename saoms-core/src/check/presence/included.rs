@@ -16,8 +16,8 @@ struct Included<'a> {
 }
 
 impl<'a> Unfolding<'a> {
-    /// The composites of a unit and of what it includes: first those that are there, then those that conditions keep away, for what names their
-    /// properties and is kept away as well.
+    /// The composites of a unit and of what it includes: those that are there, and in a unit that is kept away then also those that conditions
+    /// keep away, whose parts name their properties.
     pub(super) fn included(&mut self, unit: usize, owner: Option<usize>) -> Vec<&'a Composite> {
         let contribution = self.fleet.contribution;
         let mut included = Included { contribution, all: Vec::new(), open: Vec::new() };
@@ -42,6 +42,9 @@ impl<'a> Unfolding<'a> {
             if included.all.len() == before && included.open.len() == count {
                 break;
             }
+        }
+        if !self.fleet.units[unit].is_absent {
+            return included.all;
         }
         let mut rest = [std::mem::take(&mut included.open), absent].concat();
         while !rest.is_empty() {
