@@ -289,6 +289,7 @@ impl<'f, 'a> Wires<'f, 'a> {
         let fleet = self.fleet;
         let scope = fleet.members[member].scope;
         let wires = self.wires_from((member, name));
+        // In place of the `target`, and beside other wires (SCA Assembly 1.1, ASM50034).
         let is_replaced = wires.iter().any(|wire| wire.is_replacing);
         let own = Some(member);
         let mut level = Level::default();
@@ -303,8 +304,7 @@ impl<'f, 'a> Wires<'f, 'a> {
             }
         }
         for wire in wires {
-            let counts = wire.is_replacing || !is_replaced;
-            self.add(wire.target, (wire.scope, own), counts, interface, &mut level, report);
+            self.add(wire.target, (wire.scope, own), true, interface, &mut level, report);
         }
         // A composite wires its references to what is around it, where the component that it implements says nothing (SCA Assembly 1.1, 5.3).
         let inner = fleet.inner(member).filter(|_| !is_said);

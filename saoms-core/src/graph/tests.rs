@@ -71,6 +71,7 @@ fn a_wire_that_replaces_targets_is_drawn_in_their_place() {
         <wire source='A/two' target='C' replace='false'/>",
         expect![[r#"
             c0 -->|"two"| c1
+            c0 -->|"one → s"| c1
             c0 -->|"one"| c2
             c0 -->|"two"| c2
         "#]],

@@ -41,8 +41,7 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
             continue;
         }
         match linker.reference(source) {
-            Some(from) if is_replacing(wire) || !replaced.contains(&from) => linker.wire(from, target),
-            Some(_) => {}
+            Some(from) => linker.wire(from, target),
             None => linker.diagram.left_out += 1,
         }
     }

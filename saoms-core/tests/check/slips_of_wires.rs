@@ -240,6 +240,14 @@ fn a_wire_can_count_in_place_of_a_target() {
           help: they lead to one service: keep one of them
     "#]]
     .assert_eq(&wired("R2", other));
+    // It counts in place of the `target` alone.
+    let replacing = other.replace("/>", " replace=\"true\"/>");
+    expect![[r#"
+        5:85-87 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+          5:33-35 the first
+          help: keep one of them
+    "#]]
+    .assert_eq(&wired("R1", &format!("{replacing}<wire source=\"N/wheels\" target=\"R1\"/>")));
     let twice = format!("{other}<wire source=\"N/wheels\" target=\"R1\"/>");
     expect![[r#"
         5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 3

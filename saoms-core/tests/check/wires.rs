@@ -135,7 +135,7 @@ fn wires_of_composites() {
     let wire = |wires: &str| faults(&format!("{wires}\n{}", navigator("")));
     for wires in [
         r#"<wire source="N/wheels" target="R"/>"#,
-        r#"<wire source="N/wheels" target="T/left"/><wire source="N/wheels" target="R/move" replace="true"/>"#,
+        r#"<wire source="N/wheels" target="R/move" replace="true"/>"#,
         r#"<wire source="G" target="G2"/><wire source="N/wheels" target="T/right"/><component name="G2"><implementation.java class="example.Gps"/></component>"#,
     ] {
         assert_eq!(wire(wires), "", "{wires}");

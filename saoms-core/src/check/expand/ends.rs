@@ -41,9 +41,7 @@ impl<'a> Expanding<'_, 'a> {
         }
         for wire in wires {
             is_said = true;
-            if wire.is_replacing || !is_replaced {
-                ends.extend(self.leads(wire.target, (wire.scope, Some(member)), interface));
-            }
+            ends.extend(self.leads(wire.target, (wire.scope, Some(member)), interface));
         }
         if let Some(inner) = self.fleet.inner(member).filter(|_| !is_said) {
             let declared = inner.references().find(|one| one.name == name);
