@@ -41,8 +41,13 @@ impl<W: Write> Server<W> {
             }
         }
         let (mended, edits) = mended(&all, &path);
-        if mended.len() > 1 && is_wanted(params, &CodeActionKind::SOURCE_FIX_ALL) {
-            let title = format!("Mend all {} faults of this file that have one suggestion", mended.len());
+        // In a list of what can be done, one fault has its own fix; who mends all on saving means that one, too.
+        let few = usize::from(params.context.only.is_none());
+        if mended.len() > few && is_wanted(params, &CodeActionKind::SOURCE_FIX_ALL) {
+            let title = match mended.len() {
+                1 => "Mend the fault of this file that has one suggestion".to_owned(),
+                count => format!("Mend all {count} faults of this file that have one suggestion"),
+            };
             let whole = self.action(&title, &mended, [(path.as_path(), edits)].into_iter(), false);
             actions.push(CodeAction { kind: Some(CodeActionKind::SOURCE_FIX_ALL), ..whole });
         }

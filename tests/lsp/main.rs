@@ -191,6 +191,27 @@ fn what_is_no_fault_here_is_allowed_with_a_reason_and_all_is_mended_at_once() {
 }
 
 #[test]
+fn one_fault_is_mended_where_all_are_asked_for() {
+    let text = composite(
+        "  <component name=\"B\" autowrie=\"true\"><implementation.java class=\"saoms.World\"/></component>",
+    );
+    let mut editor = Editor::started("one", &[("fleet.composite", &text)]);
+    editor.open("fleet.composite", &text);
+    editor.wait_for("fleet.composite", |all| all.iter().any(|one| one.contains("S1007")));
+    let uri = editor.uri("fleet.composite");
+    let mut kinds = |only: Value| -> Vec<String> {
+        let start = json!({ "line": 0, "character": 0 });
+        let asked = json!({ "textDocument": { "uri": uri }, "range": { "start": start, "end": start }, "context": { "diagnostics": [], "only": only } });
+        let all = editor.ask("textDocument/codeAction", asked);
+        let all = all["result"].as_array().unwrap().clone();
+        all.iter().map(|one| one["kind"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(kinds(json!(["source.fixAll"])), ["source.fixAll"]);
+    assert_eq!(kinds(json!(null)), [""; 0]);
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
 fn composites_and_components_of_all_files_are_found_by_name() {
     let mut editor = Editor::new("symbols", &[("inner.composite", INNER), ("outer.composite", OUTER)]);
     let folder = editor.uri("").trim_end_matches('/').to_owned();
