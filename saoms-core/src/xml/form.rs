@@ -1,7 +1,7 @@
-//! Forms: how whole elements are written, but for the values of their attributes and the texts in them.
+//! Forms: how whole elements are written, but for the values of their attributes, their texts and comments.
 //!
 //! Most components of a large file are written as one before them, which differs in names and numbers. So such an element is not read tag by
-//! tag: its bytes are compared with those of the last of its form, and the elements in it are those of that, moved.
+//! tag: its bytes are compared with those of the last of its form, and the elements in it are told from the first of it (`arena.rs`).
 
 use std::hash::{BuildHasher, Hash, Hasher};
 
