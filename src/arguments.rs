@@ -263,7 +263,7 @@ pub(crate) struct FmtArguments {
     pub(crate) check: bool,
 
     /// Columns that a start tag has to fit into; else each attribute but the first gets a line
-    #[arg(long, value_name = "COLUMNS", default_value_t = saoms_core::format::WIDTH)]
+    #[arg(long, value_name = "COLUMNS", default_value_t = saoms_tools::format::WIDTH)]
     pub(crate) width: usize,
 
     /// Refuse larger files

@@ -3,9 +3,9 @@
 use std::mem::ManuallyDrop;
 use std::path::Path;
 
-use saoms_core::assembly::Assembly;
-use saoms_core::check::Options;
-use saoms_core::diagnostic::Severity;
+use saoms_lang::assembly::Assembly;
+use saoms_lang::check::Options;
+use saoms_lang::diagnostic::Severity;
 use serde::Serialize;
 use serde::ser::Serializer;
 
@@ -20,9 +20,9 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
         Options { assume_classes: arguments.assume_classes, wiring: arguments.wiring, ..Options::default() };
     let (fleet, format) = (&arguments.fleet, arguments.format);
     let exit = match arguments.wiring {
-        true => checked_each(fleet, asked, saoms_core::check::check)
+        true => checked_each(fleet, asked, saoms_lang::check::check)
             .map(|several| tell(&several, |one| one.components.len(), |one| Some(one), format)),
-        false => checked_each(fleet, asked, saoms_core::check::count).map(|several| {
+        false => checked_each(fleet, asked, saoms_lang::check::count).map(|several| {
             // The process ends here: taking a large model apart takes as long as checking some of it.
             tell(&ManuallyDrop::new(several), |count| *count, |_| None, format)
         }),

@@ -6,8 +6,8 @@ mod rules;
 use std::fmt::Write;
 
 use saoms_api::Properties;
-use saoms_core::assembly::TaskProperties;
-use saoms_core::registry::{
+use saoms_lang::assembly::TaskProperties;
+use saoms_lang::registry::{
     Class, InterfaceDeclaration, LoopClass, PropertyDeclaration, Registry, Rule, TopicDeclaration,
 };
 use serde_json::{Value, json};

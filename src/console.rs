@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use saoms_api::Level;
-use saoms_core::assembly::Assembly;
 use saoms_core::schedule::{Event, Events, Occurrence, Progress};
+use saoms_lang::assembly::Assembly;
 
 use crate::arguments::{ConsoleStyle, RunArguments};
 use crate::output::{eprint, print};

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use saoms_core::check::{Options, expand as expanded};
-use saoms_core::diagnostic::Severity;
-use saoms_core::format::{Formatted, WIDTH};
-use saoms_core::source::FileId;
-use saoms_core::xml;
+use saoms_lang::check::{Options, expand as expanded};
+use saoms_lang::diagnostic::Severity;
+use saoms_lang::source::FileId;
+use saoms_lang::xml;
+use saoms_tools::format::{Formatted, WIDTH};
 
 use crate::Exit;
 use crate::arguments::ExpandArguments;

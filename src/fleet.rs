@@ -3,14 +3,14 @@
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
-use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, Setting, SeveritySetting, Variable};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Human, Json, Sarif, Severity};
-use saoms_core::load::{Finder, STANDARD_INPUT, load_file, read, read_from, read_values};
-use saoms_core::model::{Composite, Contribution};
 use saoms_core::plugin::{Search, open_named};
-use saoms_core::registry::Registry;
-use saoms_core::source::{FileId, Sources};
+use saoms_lang::assembly::Assembly;
+use saoms_lang::check::{Options, Setting, SeveritySetting, Variable};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Human, Json, Sarif, Severity};
+use saoms_lang::load::{Finder, STANDARD_INPUT, load_file, read, read_from, read_values};
+use saoms_lang::model::{Composite, Contribution};
+use saoms_lang::registry::Registry;
+use saoms_lang::source::{FileId, Sources};
 use serde::Serialize;
 
 use crate::Exit;
@@ -25,8 +25,8 @@ pub(crate) const SEVERITY: &str = "--severity";
 /// The name that stands for standard input.
 pub(crate) const INPUT: &str = "-";
 
-/// What the checker is asked for: an assembly ([`saoms_core::check::check`]), or the diagnostics alone
-/// ([`saoms_core::check::count`]).
+/// What the checker is asked for: an assembly ([`saoms_lang::check::check`]), or the diagnostics alone
+/// ([`saoms_lang::check::count`]).
 pub(crate) type Checker<T> = fn(&Contribution, &Registry, &Options, &Sources, &mut Diagnostics) -> Option<T>;
 
 /// The outcome of loading and checking.

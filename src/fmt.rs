@@ -6,11 +6,11 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use saoms_core::diagnostic::{Diagnostics, human};
-use saoms_core::format::Formatted;
-use saoms_core::load::composites_below;
-use saoms_core::source::{FileId, Sources};
-use saoms_core::xml::{self, Document};
+use saoms_lang::diagnostic::{Diagnostics, human};
+use saoms_lang::load::composites_below;
+use saoms_lang::source::{FileId, Sources};
+use saoms_lang::xml::{self, Document};
+use saoms_tools::format::Formatted;
 
 use crate::Exit;
 use crate::arguments::FmtArguments;

@@ -4,12 +4,12 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use saoms_core::check::Options;
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
-use saoms_core::load::{Finder, FolderFleet, SideFile};
-use saoms_core::model::Contribution;
-use saoms_core::registry::Registry;
-use saoms_core::source::{Sources, Span, identity};
+use saoms_lang::check::Options;
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes, quoted};
+use saoms_lang::load::{Finder, FolderFleet, SideFile};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::{Sources, Span, identity};
 
 use crate::Exit;
 use crate::arguments::FleetArguments;

@@ -5,13 +5,13 @@ use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
-use saoms_core::check::{Census, Options, Variable};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Human, Severity};
-use saoms_core::graph::{Diagram, dot, mermaid, svg};
-use saoms_core::load::{Finder, load_file, read_values};
-use saoms_core::model::Contribution;
 use saoms_core::plugin::open_named;
-use saoms_core::source::Sources;
+use saoms_lang::check::{Census, Options, Variable};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Human, Severity};
+use saoms_lang::load::{Finder, load_file, read_values};
+use saoms_lang::model::Contribution;
+use saoms_lang::source::Sources;
+use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
 use crate::Exit;
 use crate::arguments::{GraphArguments, Picture};

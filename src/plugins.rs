@@ -4,7 +4,7 @@ use std::env;
 use std::path::PathBuf;
 
 use saoms_core::plugin::Search;
-use saoms_core::registry::{Registry, RegistryError};
+use saoms_lang::registry::{Registry, RegistryError};
 
 use crate::Exit;
 use crate::arguments::PluginArguments;

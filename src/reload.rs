@@ -9,10 +9,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use saoms_api::Level;
-use saoms_core::assembly::{Assembly, ComponentSpec};
-use saoms_core::check::{Options, check};
-use saoms_core::diagnostic::Severity;
 use saoms_core::schedule::{Handle, ReplaceError};
+use saoms_lang::assembly::{Assembly, ComponentSpec};
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::Severity;
 
 use crate::arguments::FleetArguments;
 use crate::fleet::checked;

@@ -5,11 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 
-use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, check};
-use saoms_core::diagnostic::Severity;
 use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
+use saoms_lang::assembly::Assembly;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::Severity;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 

@@ -4,8 +4,8 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use saoms_core::registry::Registry;
-use saoms_core::xsd::{Xsd, catalog, schemas};
+use saoms_lang::registry::Registry;
+use saoms_tools::xsd::{Xsd, catalog, schemas};
 
 use crate::Exit;
 use crate::arguments::{SchemaArguments, XsdVersion};

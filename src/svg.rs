@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use saoms_core::xml::escaped;
+use saoms_lang::xml::escaped;
 
 /// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from outside goes through
 /// [`escaped`].

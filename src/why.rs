@@ -6,8 +6,8 @@ use std::io::Read;
 use std::path::Path;
 
 use saoms_api::{Time, format_duration};
-use saoms_core::diagnostic::nearest_few;
 use saoms_core::journal::{Document, Named, ReadError, Why, read};
+use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
 
 use crate::Exit;

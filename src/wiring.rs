@@ -5,7 +5,7 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::format_duration;
-use saoms_core::assembly::{Assembly, End, Topic, Traffic};
+use saoms_lang::assembly::{Assembly, End, Topic, Traffic};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 

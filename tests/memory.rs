@@ -12,13 +12,13 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use saoms_components as _;
-use saoms_core::check::{Census, Options, check};
-use saoms_core::diagnostic::{Diagnostics, human, json};
-use saoms_core::graph::{Diagram, Picture, dot, mermaid, svg};
-use saoms_core::load::{MAX_SIZE, load_file, read_from};
-use saoms_core::model::Contribution;
-use saoms_core::registry::Registry;
-use saoms_core::source::Sources;
+use saoms_lang::check::{Census, Options, check};
+use saoms_lang::diagnostic::{Diagnostics, human, json};
+use saoms_lang::load::{MAX_SIZE, load_file, read_from};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::Sources;
+use saoms_tools::graph::{Diagram, Picture, dot, mermaid, svg};
 
 use memory::{peak, within};
 

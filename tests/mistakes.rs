@@ -8,12 +8,12 @@ use std::path::Path;
 
 use expect_test::{ExpectFile, expect_file};
 use saoms_components as _;
-use saoms_core::check::{Options, check};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Edit};
-use saoms_core::load::{MAX_SIZE, load, load_named};
-use saoms_core::model::Contribution;
-use saoms_core::registry::Registry;
-use saoms_core::source::Sources;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Edit};
+use saoms_lang::load::{MAX_SIZE, load, load_named};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::Sources;
 
 /// A fleet: the files of it, by their names, the composite first.
 type Files = Vec<(&'static str, String)>;

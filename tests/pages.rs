@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use saoms_components as _;
-use saoms_core::check::{Options, check};
-use saoms_core::diagnostic::{Diagnostics, human};
-use saoms_core::load::load_file;
-use saoms_core::model::Contribution;
-use saoms_core::registry::Registry;
-use saoms_core::source::Sources;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::{Diagnostics, human};
+use saoms_lang::load::load_file;
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::Sources;
 
 const NAMESPACE: &str = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
 

@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use saoms_api::Time;
 use saoms_components as _;
-use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, check};
-use saoms_core::diagnostic::Diagnostics;
-use saoms_core::load::{MAX_SIZE, load_file, read};
-use saoms_core::model::Contribution;
-use saoms_core::registry::Registry;
 use saoms_core::schedule::{Fleet, Quiet, ReplaceError, Replacement, Settings};
-use saoms_core::source::Sources;
+use saoms_lang::assembly::Assembly;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::{MAX_SIZE, load_file, read};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::Sources;
 
 fn assembly(composite: &str) -> Assembly {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("composites").join(composite);

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{env, fs};
 
-use saoms_core::registry::Registry;
+use saoms_lang::registry::Registry;
 use saoms_testkit::{Fleet, expect_diagnostics};
 
 fn root() -> &'static Path {

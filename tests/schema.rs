@@ -11,8 +11,8 @@ use std::{env, fs};
 use roxmltree::Document;
 use saoms_api::Properties;
 use saoms_components as _;
-use saoms_core::assembly::TaskProperties;
-use saoms_core::registry::Registry;
+use saoms_lang::assembly::TaskProperties;
+use saoms_lang::registry::Registry;
 
 const XSD: &str = "http://www.w3.org/2001/XMLSchema";
 const FILES: [&str; 5] = ["sca-1.1.xsd", "sca-1.1-draft.xsd", "sca-1.0.xsd", "saoms.xsd", "catalog.xml"];

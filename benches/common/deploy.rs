@@ -5,15 +5,15 @@ use std::time::{Duration, Instant};
 
 // Its classes are found only where the crate is used.
 use saoms_components as _;
-use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, check};
-use saoms_core::diagnostic::{Diagnostics, Severity, human};
-use saoms_core::load::load_file;
-use saoms_core::model::Contribution;
-use saoms_core::registry::Registry;
 use saoms_core::report::{RunReport, Status};
 use saoms_core::schedule::{Fleet, Quiet, Settings};
-use saoms_core::source::Sources;
+use saoms_lang::assembly::Assembly;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::{Diagnostics, Severity, human};
+use saoms_lang::load::load_file;
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::Sources;
 
 use super::Outcome;
 

@@ -12,9 +12,9 @@ use saoms_api::{
     Class, Component, Context, DynLoop, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
     Properties, PropertyValue, Publisher, Record, Registration, Subscription, Time, Topic, record,
 };
-use saoms_core::assembly::{Assembly, ComponentSpec, TaskSettings};
-use saoms_core::registry::Registry;
 use saoms_core::schedule::{Fleet, Quiet, Settings};
+use saoms_lang::assembly::{Assembly, ComponentSpec, TaskSettings};
+use saoms_lang::registry::Registry;
 
 /// Where a robot is: what the robots of the airport send most.
 #[derive(Clone, Debug, PartialEq, Message)]

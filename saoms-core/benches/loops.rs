@@ -12,9 +12,9 @@ use saoms_api::{
     Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties,
     Record, Registration, Time, record,
 };
-use saoms_core::assembly::{Assembly, ComponentSpec, LoopSpec, TaskSettings};
-use saoms_core::registry::Registry;
 use saoms_core::schedule::{Fleet, Quiet, Settings};
+use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskSettings};
+use saoms_lang::registry::Registry;
 
 #[derive(Debug, Default, Entries)]
 struct Eight {

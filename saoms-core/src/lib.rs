@@ -1,22 +1,9 @@
-//! The machine of SAOMS: model, load, check, assemble, bus and schedule.
+//! From an [`Assembly`](saoms_lang::assembly::Assembly) to its run: plugins, the plan, the bus, the scheduler, the journal and the report.
 
 pub mod assemble;
-pub mod assembly;
 pub mod bus;
-pub mod check;
-pub mod diagnostic;
-pub mod expression;
-pub mod format;
-pub mod graph;
 mod hash;
 pub mod journal;
-pub mod load;
-pub mod model;
 pub mod plugin;
-pub mod registry;
 pub mod report;
 pub mod schedule;
-pub mod schema;
-pub mod source;
-pub mod xml;
-pub mod xsd;

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_core::assembly::Assembly;
 use saoms_core::report::Status;
 use saoms_core::schedule::{Fleet, Quiet, Settings, StartError};
+use saoms_lang::assembly::Assembly;
 
 #[test]
 fn realtime_works_or_says_what_to_grant() {

@@ -8,8 +8,8 @@ use saoms_api::{
     Registration, ReportValue, ServiceCall, SharedMessage, SmolStr, Topic, Work,
 };
 use saoms_core::plugin::Plugin;
-use saoms_core::registry::{LoopClass, Registry};
-use saoms_core::schema::Schema;
+use saoms_lang::registry::{LoopClass, Registry};
+use saoms_lang::schema::Schema;
 use serde_json::Value;
 
 use crate::stage::{Happened, Stage};

@@ -3,16 +3,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_core::assembly::Assembly;
-use saoms_core::check::{Options, Setting, SeveritySetting, Variable, check};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, human};
-use saoms_core::load::{MAX_SIZE, load_file, load_named, read, read_values};
-use saoms_core::model::Contribution;
 use saoms_core::plugin::{Search, open_named};
-use saoms_core::registry::Registry;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Events, Settings};
-use saoms_core::source::{FileId, SourceFile, Sources};
+use saoms_lang::assembly::Assembly;
+use saoms_lang::check::{Options, Setting, SeveritySetting, Variable, check};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, human};
+use saoms_lang::load::{MAX_SIZE, load_file, load_named, read, read_values};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::{FileId, SourceFile, Sources};
 
 use crate::expected::{Checked, Found};
 use crate::run::{Log, Run};
@@ -130,7 +130,7 @@ impl Fleet {
     pub fn expanded(&self) -> String {
         let (assembly, sources, diagnostics, contribution) = self.checked();
         match (assembly, contribution.asked_for().first()) {
-            (Some(assembly), Some(first)) => saoms_core::assembly::expanded(&assembly, first, &diagnostics),
+            (Some(assembly), Some(first)) => saoms_lang::assembly::expanded(&assembly, first, &diagnostics),
             _ => panic!("{}", human(&diagnostics, &sources, false)),
         }
     }

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{env, fs};
 
-use saoms_core::format::{WIDTH, format};
-use saoms_core::source::FileId;
-use saoms_core::xml;
+use saoms_lang::source::FileId;
+use saoms_lang::xml;
+use saoms_tools::format::{WIDTH, format};
 
 use crate::{Bench, Fleet};
 

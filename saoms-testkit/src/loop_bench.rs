@@ -10,7 +10,7 @@ use saoms_api::{
     LoopRegistration, Loops, PropertyValue, Saved, SmolStr, Value,
 };
 use saoms_core::plugin::Plugin;
-use saoms_core::registry::Registry;
+use saoms_lang::registry::Registry;
 
 use crate::Bench;
 

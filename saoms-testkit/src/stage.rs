@@ -8,8 +8,8 @@ use saoms_api::{
     CallError, Cause, Chance, Failure, Host, Level, LoopVisit, NamedLoops, Phase, PropertyValue, Record,
     ReportValue, ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration, Value, Work,
 };
-use saoms_core::registry::{Class, LoopClass, Registry, TopicDeclaration as Declared};
-use saoms_core::schema::Schema;
+use saoms_lang::registry::{Class, LoopClass, Registry, TopicDeclaration as Declared};
+use saoms_lang::schema::Schema;
 
 use crate::Bench;
 

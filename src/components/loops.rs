@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use saoms_core::registry::{ClassDeclaration, EntryDeclaration, LoopClass};
+use saoms_lang::registry::{ClassDeclaration, EntryDeclaration, LoopClass};
 
 use super::{first_sentence, interface_lines, property_lines, section, topic_line, type_name, wrapped};
 

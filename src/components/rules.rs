@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use saoms_core::registry::Rule;
+use saoms_lang::registry::Rule;
 use serde_json::{Value, json};
 
 /// A line per rule that a plugin brings; those that ship are in the manual of diagnostics.

@@ -1,8 +1,8 @@
 //! Saying in a composite that what a diagnostic finds is no fault there.
 
 use lsp_types::TextEdit;
-use saoms_core::load::vocabulary::{SEVERITY, SEVERITY_PARENTS};
-use saoms_core::model::SAOMS_NAMESPACE;
+use saoms_lang::load::vocabulary::{SEVERITY, SEVERITY_PARENTS};
+use saoms_lang::model::SAOMS_NAMESPACE;
 
 use super::scene::Scene;
 

@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use saoms_core::check::{Options, count};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, codes};
-use saoms_core::load::{Finder, MAX_SIZE};
-use saoms_core::registry::Registry;
-use saoms_core::source::{OpenTexts, Sources, identity};
+use saoms_lang::check::{Options, count};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, codes};
+use saoms_lang::load::{Finder, MAX_SIZE};
+use saoms_lang::registry::Registry;
+use saoms_lang::source::{OpenTexts, Sources, identity};
 
 use saoms_api::contain::contained;
 

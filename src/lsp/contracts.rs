@@ -1,6 +1,6 @@
 //! What components offer and ask for, through composites to the classes behind what these promote.
 
-use saoms_core::registry::InterfaceDeclaration;
+use saoms_lang::registry::InterfaceDeclaration;
 
 use super::outline::{Component, Implementation, Named, Side};
 use super::scene::Scene;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use saoms_core::assembly::TaskProperties;
-use saoms_core::diagnostic::Code;
-use saoms_core::load::vocabulary::{Kind, Known, children};
-use saoms_core::registry::{Class, ClassDeclaration, LoopClass, PropertyDeclaration, TopicDeclaration};
+use saoms_lang::assembly::TaskProperties;
+use saoms_lang::diagnostic::Code;
+use saoms_lang::load::vocabulary::{Kind, Known, children};
+use saoms_lang::registry::{Class, ClassDeclaration, LoopClass, PropertyDeclaration, TopicDeclaration};
 
 /// A class, all about it.
 pub(super) fn class(class: &Class) -> String {

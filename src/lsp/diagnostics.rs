@@ -7,8 +7,8 @@ use std::str::FromStr;
 use lsp_types::{
     DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, TextEdit, Uri,
 };
-use saoms_core::diagnostic::{Diagnostic, Severity, codes};
-use saoms_core::source::{FileId, Location as Place, Sources, identity};
+use saoms_lang::diagnostic::{Diagnostic, Severity, codes};
+use saoms_lang::source::{FileId, Location as Place, Sources, identity};
 
 use super::describe;
 use super::position::Lines;

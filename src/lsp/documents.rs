@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use lsp_types::TextDocumentContentChangeEvent;
-use saoms_core::source::{OpenTexts, identity};
+use saoms_lang::source::{OpenTexts, identity};
 
 use super::position::Lines;
 use super::uri;

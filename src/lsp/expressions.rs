@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use saoms_core::expression::{inside, words};
+use saoms_lang::expression::{inside, words};
 
 use super::syntax::Tree;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use saoms_core::load::vocabulary::{CONTRIBUTION, Kind};
+use saoms_lang::load::vocabulary::{CONTRIBUTION, Kind};
 
 use super::outline::Outline;
 use super::position::Lines;

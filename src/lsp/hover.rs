@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use saoms_core::diagnostic::codes;
-use saoms_core::load::vocabulary::{Holds, other, own_attributes};
+use saoms_lang::diagnostic::codes;
+use saoms_lang::load::vocabulary::{Holds, other, own_attributes};
 
 use super::complete::names::declared;
 use super::complete::table;

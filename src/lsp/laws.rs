@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use saoms_core::check::{Options, count};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human};
-use saoms_core::load::{MAX_SIZE, load, load_named};
-use saoms_core::model::Contribution;
-use saoms_core::source::{OpenTexts, Sources};
+use saoms_lang::check::{Options, count};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, human};
+use saoms_lang::load::{MAX_SIZE, load, load_named};
+use saoms_lang::model::Contribution;
+use saoms_lang::source::{OpenTexts, Sources};
 
 use super::diagnostics::reported;
 use super::rename::rename;

@@ -1,7 +1,7 @@
 //! The loops of a component, as far as they can be known.
 
 use saoms_api::PropertyValue;
-use saoms_core::registry::{Class, LoopClass};
+use saoms_lang::registry::{Class, LoopClass};
 
 use super::outline::{Component, Loop};
 use super::scene::Scene;

@@ -1,9 +1,9 @@
 //! The names in composites, and in the files beside them, each with what it stands for.
 
-use saoms_core::diagnostic::Diagnostics;
-use saoms_core::load::table;
-use saoms_core::model::Table;
-use saoms_core::source::{Sources, Text};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::table;
+use saoms_lang::model::Table;
+use saoms_lang::source::{Sources, Text};
 
 use super::expressions::{INDEX, names_in_values};
 use super::file::File;

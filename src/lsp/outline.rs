@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use saoms_core::expression::inside;
-use saoms_core::load::vocabulary::{
+use saoms_lang::expression::inside;
+use saoms_lang::load::vocabulary::{
     COMPONENT, COMPOSITE, CONTRIBUTION, Holds, INCLUDE, Kind, LOOP, WIRE, own_attributes,
 };
-use saoms_core::model::SAOMS_NAMESPACE;
+use saoms_lang::model::SAOMS_NAMESPACE;
 
 use super::expressions::{INDEX, names, names_in_template, texts};
 use super::syntax::{Tree, words};

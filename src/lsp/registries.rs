@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
 use saoms_core::plugin::{Plugin, Search};
-use saoms_core::registry::Registry;
+use saoms_lang::registry::Registry;
 
 use crate::arguments::PluginArguments;
 use crate::plugins::{Problem, collect, search};

@@ -1,6 +1,6 @@
 //! Another name for a component, or for another part of a composite, everywhere.
 
-use saoms_core::expression::is_name;
+use saoms_lang::expression::is_name;
 
 use super::expressions::INDEX;
 use super::occurrences::Found;

@@ -15,9 +15,9 @@ use lsp_types::{
     Position, PrepareRenameResponse, ReferenceParams, RenameParams, SelectionRange, SelectionRangeParams,
     SymbolInformation, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit, WorkspaceSymbolResponse,
 };
-use saoms_core::format::{WIDTH, format};
-use saoms_core::source::Sources;
-use saoms_core::xml;
+use saoms_lang::source::Sources;
+use saoms_lang::xml;
+use saoms_tools::format::{WIDTH, format};
 use serde_json::Value;
 use serde_json::value::RawValue;
 

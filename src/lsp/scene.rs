@@ -5,9 +5,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use saoms_core::model::Version;
-use saoms_core::registry::{Class, Registry};
-use saoms_core::source::identity;
+use saoms_lang::model::Version;
+use saoms_lang::registry::{Class, Registry};
+use saoms_lang::source::identity;
 
 use super::file::File;
 use super::outline::{Component, End, Implementation, Named};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
-use saoms_core::registry::Registry;
+use saoms_lang::registry::Registry;
 
 use super::complete::complete;
 use super::file::File;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use saoms_core::registry::TopicDeclaration;
+use saoms_lang::registry::TopicDeclaration;
 
 use super::outline::{Component, Implementation};
 use super::scene::Scene;

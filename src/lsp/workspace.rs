@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
-use saoms_core::load::{MAX_SIZE, composites_near, description_near, imported_near, importing_near};
-use saoms_core::source::{OpenTexts, identity};
+use saoms_lang::load::{MAX_SIZE, composites_near, description_near, imported_near, importing_near};
+use saoms_lang::source::{OpenTexts, identity};
 
 use super::file::File;
 

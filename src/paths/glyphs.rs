@@ -1,6 +1,6 @@
 //! The signs of a picture, each in a square of a given size around a point.
 
-use saoms_core::xml::escaped;
+use saoms_lang::xml::escaped;
 
 use super::palette::Look;
 use crate::svg::{Svg, number};

@@ -1,6 +1,6 @@
 //! The whole picture: the area with everything in it, and the legend beside or below it.
 
-use saoms_core::xml::escaped;
+use saoms_lang::xml::escaped;
 
 use super::density::{self, Shades};
 use super::frame::{AXIS, Area, Frame};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use saoms_api::{PropertyValue, Saved};
 use saoms_core::plugin::Plugin;
-use saoms_core::registry::Registry;
+use saoms_lang::registry::Registry;
 
 use crate::build::library;
 use crate::run::{Run, component, fleet, property, second};

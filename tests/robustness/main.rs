@@ -20,7 +20,7 @@ const EVERY: usize = 12;
 static FILES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = below(&root.join("composites"));
-    paths.extend(below(&root.join("saoms-core/tests")));
+    paths.extend(below(&root.join("saoms-lang/tests")));
     let collections = root.ancestors().map(|folder| folder.join("shared/corpus/files"));
     for collection in collections.filter(|folder| folder.is_dir()).take(1) {
         paths.extend(below(&collection).into_iter().step_by(EVERY));

@@ -1,4 +1,4 @@
-use crate::assembly::Assembly;
+use saoms_lang::assembly::Assembly;
 
 /// The components of an assembly, each after those whose services it calls, in document order otherwise.
 ///

@@ -3,13 +3,13 @@ use std::collections::HashMap;
 use saoms_api::PropertyValue;
 
 use super::order::providers_first;
-use crate::assembly::{Assembly, ComponentSpec, LoopSpec, Target, Wire};
+use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, Target, Wire};
 
 /// What turns one fleet into another. Components are the same when their paths are; numbers are places in the two assemblies.
 ///
 /// ```
 /// use saoms_core::assemble::Plan;
-/// use saoms_core::assembly::Assembly;
+/// use saoms_lang::assembly::Assembly;
 ///
 /// assert!(Plan::between(&Assembly::default(), &Assembly::default()).is_empty());
 /// ```

@@ -4,8 +4,8 @@ use std::time::Duration;
 use saoms_api::{Class, Component, Failure, Properties, PropertyValue, Registration};
 
 use super::{Difference, Plan};
-use crate::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
-use crate::registry::Registry;
+use saoms_lang::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
+use saoms_lang::registry::Registry;
 
 #[derive(Properties)]
 struct Size {

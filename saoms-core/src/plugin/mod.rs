@@ -22,7 +22,7 @@ pub use metadata::Metadata;
 pub use named::open_named;
 pub use search::{Found, Search};
 
-use crate::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};
+use saoms_lang::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};
 
 /// What a loaded library offers, in the order of its metadata.
 #[derive(Debug)]

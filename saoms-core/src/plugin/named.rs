@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::Search;
-use crate::model::{Contribution, ImplementationKind, LibraryLink, Origin};
-use crate::registry::Registry;
-use crate::source::{Sources, identity};
+use saoms_lang::model::{Contribution, ImplementationKind, LibraryLink, Origin};
+use saoms_lang::registry::Registry;
+use saoms_lang::source::{Sources, identity};
 
 /// Looks for the libraries that implementations name with `library`, and adds what they offer to a registry; nothing in them runs.
 ///
@@ -21,7 +21,7 @@ pub fn open_named(
     let mut wanted: Vec<(Origin, PathBuf, String)> = Vec::new();
     for composite in contribution.composites() {
         let folder = Path::new(sources.get(composite.file()).path()).parent().unwrap_or(Path::new(""));
-        for implementation in composite.unusual().filter_map(|one| one.implementation.as_ref()) {
+        for implementation in composite.components.iter().filter_map(|one| one.implementation.as_ref()) {
             if let ImplementationKind::Rust { library: Some(library), .. } = &implementation.kind {
                 wanted.push((implementation.origin, folder.to_owned(), library.as_str().trim().to_owned()));
             }

@@ -5,11 +5,11 @@ use saoms_api::{CallError, Cause, Chance, Context, DynComponent, Failure, Invoca
 
 use super::host::ComponentHost;
 use super::shared::Shared;
-use crate::assembly::ComponentSpec;
 use crate::bus::{Subscription, TopicId};
 use crate::journal::Recorder;
-use crate::schema::Schema;
 use saoms_api::contain::contained;
+use saoms_lang::assembly::ComponentSpec;
+use saoms_lang::schema::Schema;
 
 /// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for others.
 pub(super) struct Body {

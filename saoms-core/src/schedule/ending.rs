@@ -5,11 +5,11 @@ use super::observe::Occurrence;
 use super::slot::State;
 use super::sys;
 use crate::assemble::Plan;
-use crate::assembly::Assembly;
 use crate::journal::Journal;
 use crate::report::{
     ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, Sections, Status, Votes,
 };
+use saoms_lang::assembly::Assembly;
 
 /// What ended a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

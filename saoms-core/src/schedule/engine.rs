@@ -11,10 +11,10 @@ use super::queue::Queue;
 use super::settings::{ClockKind, Settings, nanos};
 use super::slot::{NEVER, Policy, Slot, State, Wish};
 use super::trace::{Step, Trace};
-use crate::assembly::{Assembly, Loss, Overrun};
 use crate::bus::Bus;
 use crate::hash::fold;
 use crate::journal::Stream;
+use saoms_lang::assembly::{Assembly, Loss, Overrun};
 
 /// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives
 /// it takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the body back with

@@ -20,10 +20,10 @@ use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::slot::NEVER;
 use super::start::{self, StartError};
-use crate::assembly::{Assembly, ComponentSpec};
 use crate::journal::{JournalFile, Named, Stream, Written};
 use crate::report::RunReport;
 use saoms_api::contain;
+use saoms_lang::assembly::{Assembly, ComponentSpec};
 
 /// A fleet that runs.
 ///
@@ -31,7 +31,7 @@ use saoms_api::contain;
 /// use std::sync::Arc;
 /// use std::time::Duration;
 ///
-/// use saoms_core::assembly::Assembly;
+/// use saoms_lang::assembly::Assembly;
 /// use saoms_core::report::Status;
 /// use saoms_core::schedule::{Fleet, Quiet, Settings};
 ///

@@ -10,12 +10,12 @@ use saoms_api::{
 use super::body::Part;
 use super::observe::{Event, Occurrence};
 use super::shared::Shared;
-use crate::assembly::{ComponentSpec, TaskSettings, Wire};
 use crate::bus::TopicId;
 use crate::journal::Stamp;
-use crate::registry::{ClassDeclaration, LoopDeclaration, TopicDeclaration as DeclaredTopic};
 use crate::report::Sections;
-use crate::schema::Schema;
+use saoms_lang::assembly::{ComponentSpec, TaskSettings, Wire};
+use saoms_lang::registry::{ClassDeclaration, LoopDeclaration, TopicDeclaration as DeclaredTopic};
+use saoms_lang::schema::Schema;
 
 /// What the scheduler gives to a component while its code runs.
 pub(super) struct ComponentHost<'a> {

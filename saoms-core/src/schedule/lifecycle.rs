@@ -9,7 +9,7 @@ use super::observe::Occurrence;
 use super::settings::nanos;
 use super::slot::{NEVER, State, Wish};
 use super::trace::Step;
-use crate::assembly::Restart;
+use saoms_lang::assembly::Restart;
 
 /// What can be asked of the engine about a periodic component, at any time and from anywhere. It takes effect after the code that runs at
 /// present.

@@ -14,9 +14,9 @@ use super::lifecycle::Request;
 use super::observe::Occurrence;
 use super::shared::Shared;
 use super::slot::{NEVER, State};
-use crate::assembly::ComponentSpec;
 use crate::bus::{Subscription, TopicId};
 use crate::journal::Recorder;
+use saoms_lang::assembly::ComponentSpec;
 
 /// What became of a component whose class was built anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,8 +9,8 @@ use super::observe::{Event, Events, Line, Occurrence, Progress};
 use super::pulse::Pulse;
 use super::settings::Settings;
 use super::sys::Gate;
-use crate::assembly::{Assembly, ComponentSpec};
 use crate::report::Sections;
+use saoms_lang::assembly::{Assembly, ComponentSpec};
 
 /// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while component code runs or a
 /// thread sleeps.

@@ -5,9 +5,9 @@ use saoms_api::Work;
 
 use super::body::Body;
 use super::settings::nanos;
-use crate::assembly::{ComponentSpec, Loss, Overrun, Restart};
 use crate::journal::Ring;
 use crate::report::Lateness;
+use saoms_lang::assembly::{ComponentSpec, Loss, Overrun, Restart};
 
 /// A time that never comes.
 pub(super) const NEVER: u64 = u64::MAX;

@@ -12,7 +12,7 @@ use super::shared::Shared;
 use super::slot::{State, Wish};
 use super::trace::Step;
 use crate::assemble::Plan;
-use crate::assembly::Assembly;
+use saoms_lang::assembly::Assembly;
 
 /// Why a fleet did not start. Nothing of it runs.
 #[derive(Debug)]

@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use saoms_api::{Level, PropertyValue, Registration, parse_duration};
-use saoms_core::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, Target, TaskSettings, Wire};
-use saoms_core::registry::Registry;
 use saoms_core::report::{ComponentReport, RunReport};
 use saoms_core::schedule::{Event, Events, Fleet, Occurrence, Settings, StartError};
+use saoms_lang::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, Target, TaskSettings, Wire};
+use saoms_lang::registry::Registry;
 
 use crate::actor::{Actor, Callee};
 

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use saoms_core::assembly::Assembly;
 use saoms_core::report::Status;
 use saoms_core::schedule::{Fleet, Occurrence, Quiet, Settings};
+use saoms_lang::assembly::Assembly;
 
 use crate::fleet::{Diary, of, outcome, real, run, start};
 

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::load::vocabulary::{Known, own_attributes};
-use saoms_core::model::{SAOMS_NAMESPACE, Version};
+use saoms_lang::load::vocabulary::{Known, own_attributes};
+use saoms_lang::model::{SAOMS_NAMESPACE, Version};
 
 use super::{Proposal, value};
 use crate::lsp::describe;

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::load::vocabulary::{
+use saoms_lang::load::vocabulary::{
     COMPONENT, COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, children, other,
 };
-use saoms_core::model::Version;
+use saoms_lang::model::Version;
 
 use super::attributes::Own;
 use super::item::in_snippet;

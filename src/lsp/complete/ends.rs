@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::expression::{INDEX, Problem, Value, render};
-use saoms_core::registry::InterfaceDeclaration;
+use saoms_lang::expression::{INDEX, Problem, Value, render};
+use saoms_lang::registry::InterfaceDeclaration;
 
 use super::{Proposal, names};
 use crate::lsp::contracts::Contract;

@@ -17,12 +17,12 @@ mod values;
 
 use std::ops::Range;
 
-use saoms_core::diagnostic::Level;
-use saoms_core::load::vocabulary::{
+use saoms_lang::diagnostic::Level;
+use saoms_lang::load::vocabulary::{
     BINDING_SCA, COMPONENT, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE,
     COMPOSITE_SERVICE, Holds, own_attributes,
 };
-use saoms_core::model::Multiplicity;
+use saoms_lang::model::Multiplicity;
 
 use lsp_types::CompletionItemKind;
 

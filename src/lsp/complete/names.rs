@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::diagnostic::codes;
-use saoms_core::expression::is_name;
-use saoms_core::registry::{ClassDeclaration, PropertyDeclaration};
+use saoms_lang::diagnostic::codes;
+use saoms_lang::expression::is_name;
+use saoms_lang::registry::{ClassDeclaration, PropertyDeclaration};
 
 use super::Proposal;
 use crate::lsp::contracts::Contract;

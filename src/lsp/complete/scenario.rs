@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
 use saoms_components::environment::{Next, next};
-use saoms_core::expression::{Value, render};
+use saoms_lang::expression::{Value, render};
 
 use super::values::UNITS;
 use super::{Proposal, value};

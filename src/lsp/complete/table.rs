@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::expression::{Value, render};
+use saoms_lang::expression::{Value, render};
 
 use super::{Proposal, names, value, values};
 use crate::lsp::describe;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::registry::TopicDeclaration;
+use saoms_lang::registry::TopicDeclaration;
 
 use super::Proposal;
 use crate::lsp::describe;

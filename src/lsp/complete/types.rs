@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lsp_types::CompletionItemKind;
-use saoms_core::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
+use saoms_lang::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
 
 use super::Proposal;
 use crate::lsp::scene::Scene;

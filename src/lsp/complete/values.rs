@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use saoms_api::declaration::PropertyKind;
-use saoms_core::registry::PropertyDeclaration;
+use saoms_lang::registry::PropertyDeclaration;
 
 use super::{Proposal, names, scenario, topics, value};
 use crate::lsp::describe;

@@ -1,7 +1,7 @@
 //! Which elements are of SCA, which of SAOMS, and which of others.
 
-use saoms_core::load::vocabulary::{COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY};
-use saoms_core::model::{SAOMS_NAMESPACE, Version};
+use saoms_lang::load::vocabulary::{COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY};
+use saoms_lang::model::{SAOMS_NAMESPACE, Version};
 
 use super::{Tree, local};
 

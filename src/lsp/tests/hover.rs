@@ -1,6 +1,6 @@
-use saoms_core::diagnostic::codes;
-use saoms_core::load::vocabulary::{COMPOSITE, Kind, LOOP, SEVERITY, children, own_attributes};
-use saoms_core::registry::Registry;
+use saoms_lang::diagnostic::codes;
+use saoms_lang::load::vocabulary::{COMPOSITE, Kind, LOOP, SEVERITY, children, own_attributes};
+use saoms_lang::registry::Registry;
 
 use crate::lsp::describe::properties;
 use crate::lsp::hover::hover;

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc;
 
 use lsp_server::{Message, Notification, Request};
-use saoms_core::source::OpenTexts;
+use saoms_lang::source::OpenTexts;
 use serde_json::{Value, json};
 
 use crate::Exit;

@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::Path;
 
-use saoms_core::assembly::{Assembly, expanded};
-use saoms_core::check::{Options, Setting, Variable};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, human};
-use saoms_core::format::format;
-use saoms_core::load::{MAX_SIZE, load, load_file, load_named, read_from};
-use saoms_core::model::Contribution;
-use saoms_core::registry::Registry;
-use saoms_core::source::Sources;
+use saoms_lang::assembly::{Assembly, expanded};
+use saoms_lang::check::{Options, Setting, Variable};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, human};
+use saoms_lang::load::{MAX_SIZE, load, load_file, load_named, read_from};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::Sources;
+use saoms_tools::format::format;
 use tempfile::TempDir;
 
 use super::memory::within;

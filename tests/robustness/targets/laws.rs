@@ -1,10 +1,10 @@
 //! What has to hold for whatever is checked.
 
-use saoms_core::assembly::{Assembly, ComponentSpec};
-use saoms_core::check::{Options, check, count};
-use saoms_core::diagnostic::{Diagnostic, Edit, codes};
-use saoms_core::registry::Registry;
-use saoms_core::source::FileId;
+use saoms_lang::assembly::{Assembly, ComponentSpec};
+use saoms_lang::check::{Options, check, count};
+use saoms_lang::diagnostic::{Diagnostic, Edit, codes};
+use saoms_lang::registry::Registry;
+use saoms_lang::source::FileId;
 
 use super::input::{Asked, Checked, Input, kind};
 use super::{draw, parsed, show};

@@ -8,20 +8,20 @@ mod memory;
 use std::sync::Arc;
 
 use saoms_api::Time;
-use saoms_core::assembly::TaskProperties;
-use saoms_core::check::{Census, Options};
-use saoms_core::diagnostic::{Diagnostic, Diagnostics, Severity, codes, human, json, sarif};
-use saoms_core::expression::{
+use saoms_core::journal::read as read_journal;
+use saoms_lang::assembly::TaskProperties;
+use saoms_lang::check::{Census, Options};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes, human, json, sarif};
+use saoms_lang::expression::{
     Fault, Problem, Value, boolean, has_expression, integer, names, parse, pattern, render,
 };
-use saoms_core::format::format;
-use saoms_core::graph::{Diagram, dot, mermaid, svg};
-use saoms_core::journal::read as read_journal;
-use saoms_core::load::{MAX_SIZE, load_file, read_from};
-use saoms_core::model::{Composite, Contribution};
-use saoms_core::registry::Registry;
-use saoms_core::source::{FileId, Location, Sources};
-use saoms_core::xml::{self, Document};
+use saoms_lang::load::{MAX_SIZE, load_file, read_from};
+use saoms_lang::model::{Composite, Contribution};
+use saoms_lang::registry::Registry;
+use saoms_lang::source::{FileId, Location, Sources};
+use saoms_lang::xml::{self, Document};
+use saoms_tools::format::format;
+use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
 use input::Input;
 use memory::within;

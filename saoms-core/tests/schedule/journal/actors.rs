@@ -4,8 +4,8 @@ use saoms_api::{
     Class, Component, Context, DynLoop, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
     Properties, Publisher, Record, Registration, Subscription, Topic, record,
 };
-use saoms_core::assembly::Assembly;
-use saoms_core::registry::Registry;
+use saoms_lang::assembly::Assembly;
+use saoms_lang::registry::Registry;
 
 use crate::actor::{Echo, EchoReference};
 use crate::fleet::assembly_of;

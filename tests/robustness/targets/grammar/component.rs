@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use saoms_api::declaration::PropertyKind;
-use saoms_core::assembly::TaskProperties;
-use saoms_core::load::vocabulary::{COMPONENT, LOOP};
-use saoms_core::registry::{Class, PropertyDeclaration};
+use saoms_lang::assembly::TaskProperties;
+use saoms_lang::load::vocabulary::{COMPONENT, LOOP};
+use saoms_lang::registry::{Class, PropertyDeclaration};
 
 use super::{Writer, values};
 

@@ -8,12 +8,12 @@ mod values;
 
 use std::fmt::Write as _;
 
-use saoms_core::load::vocabulary::{
+use saoms_lang::load::vocabulary::{
     COMPONENT, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, Kind, SEVERITY, WIRE,
     children, own_attributes,
 };
-use saoms_core::model::Version;
-use saoms_core::registry::Registry;
+use saoms_lang::model::Version;
+use saoms_lang::registry::Registry;
 
 use choices::Choices;
 use component::{COMPONENTS, component};
@@ -147,7 +147,7 @@ impl<'c, 'b> Writer<'c, 'b> {
         }
     }
 
-    fn attribute(&mut self, name: &str, holds: saoms_core::load::vocabulary::Holds) {
+    fn attribute(&mut self, name: &str, holds: saoms_lang::load::vocabulary::Holds) {
         let value = values::held(self.choices, holds, self.registry);
         let _ = write!(self.text, " {name}=\"");
         self.put(&value);

@@ -1,9 +1,9 @@
 //! Values of attributes and of properties, most of them right.
 
 use saoms_api::declaration::PropertyKind;
-use saoms_core::diagnostic::{Level, codes};
-use saoms_core::load::vocabulary::Holds;
-use saoms_core::registry::{PropertyDeclaration, Registry};
+use saoms_lang::diagnostic::{Level, codes};
+use saoms_lang::load::vocabulary::Holds;
+use saoms_lang::registry::{PropertyDeclaration, Registry};
 
 use super::choices::Choices;
 use super::component::COMPONENTS;

@@ -1,0 +1,26 @@
+//! Texts of users inside messages.
+
+/// The most characters of a text that a message repeats.
+const LONGEST: usize = 60;
+
+/// A text of the user between backticks: shortened when long, invisible characters escaped.
+///
+/// ```
+/// assert_eq!(saoms_lang::diagnostic::quoted("a\tb"), "`a\\tb`");
+/// ```
+pub fn quoted(text: &str) -> String {
+    let mut out = String::from("`");
+    for (count, character) in text.chars().enumerate() {
+        if count == LONGEST {
+            out.push('…');
+            break;
+        }
+        if character.is_control() || matches!(character, '\u{feff}' | '\u{fffe}' | '\u{ffff}') {
+            out.extend(character.escape_default());
+        } else {
+            out.push(character);
+        }
+    }
+    out.push('`');
+    out
+}

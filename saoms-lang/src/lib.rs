@@ -1,0 +1,15 @@
+//! From the text of composites to an [`Assembly`](assembly::Assembly), or to the diagnostics that say why there is none.
+//!
+//! Nothing here knows a clock, a thread or a network.
+
+pub mod assembly;
+pub mod check;
+pub mod diagnostic;
+pub mod expression;
+mod hash;
+pub mod load;
+pub mod model;
+pub mod registry;
+pub mod schema;
+pub mod source;
+pub mod xml;

@@ -1,0 +1,203 @@
+//! From text to the model, with everything that is wrong in it.
+//!
+//! [`load`] reads a file and makes a [`Composite`] of it. All faults of the file are reported in one run; those behind
+//! the first that makes it ill-formed XML are not, since what is meant there cannot be known. Nothing beyond the one
+//! file is looked at; [`read_values`] reads those that properties take their values from.
+
+mod attributes;
+mod children;
+mod component;
+mod component_type;
+mod composite;
+mod contract;
+mod declared;
+mod declaring;
+mod definitions;
+mod description;
+mod encoding;
+mod exchange;
+mod extension;
+mod finder;
+mod folder;
+mod head;
+mod imports;
+mod intents;
+mod looping;
+mod missing;
+mod named;
+mod near;
+mod plan;
+mod policy;
+mod property;
+mod read;
+mod root;
+mod severity;
+mod shelf;
+mod side;
+mod table;
+mod tags;
+mod tangle;
+#[cfg(test)]
+mod tests;
+mod value_file;
+mod values;
+pub mod vocabulary;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub use component_type::load_component_type;
+pub use finder::Finder;
+pub use folder::{FolderFleet, composites_below, load_folder};
+pub use imports::{imported_near, importing_near};
+pub use named::load_named;
+pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
+pub use shelf::{composites_near, description_near};
+pub use side::SideFile;
+pub use table::table;
+use tags::Tag;
+use tangle::Swallowed;
+pub use values::read_values;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::model::{Composite, OutsideName, SeverityRule, Version};
+use crate::source::{FileId, Sources};
+use crate::xml;
+
+/// Reads the composite in the file `path` and the files of its values, each of at most [`MAX_SIZE`] bytes; see [`load_file`]
+/// and [`read_values`].
+pub fn load(path: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
+    let file = read(path, MAX_SIZE, sources, diagnostics)?;
+    let mut composite = load_file(file, sources, diagnostics)?;
+    read_values(&mut composite, MAX_SIZE, sources, diagnostics);
+    Some(composite)
+}
+
+/// Makes the model of a text that was read before. `None` when the text is no well-formed XML with a `composite` as its
+/// root; otherwise the model of all that could be understood, also when there are errors.
+///
+/// ```
+/// use saoms_lang::{diagnostic::Diagnostics, load::load_file, source::Sources};
+///
+/// let text = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="fleet" targetNamespace="urn:fleet">
+///     <component name="Robot001"><implementation.java class="robot.Robot001"/></component>
+/// </composite>"#;
+/// let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+/// let file = sources.add("fleet.composite", text);
+/// let fleet = load_file(file, &sources, &mut diagnostics).unwrap();
+/// assert!(diagnostics.is_empty());
+/// assert_eq!(fleet.components[0].class().unwrap(), &"robot.Robot001");
+/// ```
+pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
+    let text = sources.get(file).text();
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        diagnostics.push(read::empty(file));
+        return None;
+    }
+    let mut parsed = xml::parse(file, text);
+    if parsed.fault.is_some() {
+        faulty(xml::mend(file, text, parsed), sources, diagnostics);
+        return None;
+    }
+    let composite = parsed.document.take().and_then(|document| composite(document, None, diagnostics));
+    encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
+    composite.map(|(composite, _)| composite)
+}
+
+/// The composite in a document, and the first element in it that another one swallowed.
+fn composite(
+    document: xml::Document,
+    tangle: Option<xml::Tangle>,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Composite, Option<Swallowed>)> {
+    let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
+    loader.tangle = tangle;
+    if !loader.root(document.root()) {
+        return None;
+    }
+    loader.near_namespaces(&document);
+    let composite = loader.composite(&Arc::new(document));
+    Some((composite, loader.swallowed))
+}
+
+/// Tells all that is wrong with a text that is not well-formed.
+fn faulty(mut mended: xml::Mended, sources: &Sources, diagnostics: &mut Diagnostics) {
+    let mut found = Diagnostics::new();
+    let (document, tangle) = (mended.parsed.document.take(), mended.parsed.tangle);
+    let composite = document.and_then(|document| composite(document, tangle, &mut found));
+    for one in found.into_sorted() {
+        mended.told(one).into_iter().for_each(|one| diagnostics.push(one));
+    }
+    for one in std::mem::take(&mut mended.faults) {
+        if !contradicts(&one, sources, diagnostics) {
+            diagnostics.push(one);
+        }
+    }
+    let Some(fault) = mended.parsed.fault.take() else { return };
+    let swallowed = composite.as_ref().and_then(|(composite, swallowed)| {
+        swallowed.map(|swallowed| swallowed.fault(&composite.document, &fault))
+    });
+    let is_swallowed = swallowed.is_some();
+    let Some(fault) = mended.told(swallowed.unwrap_or(fault)) else { return };
+    if is_swallowed || !contradicts(&fault, sources, diagnostics) {
+        diagnostics.push(fault);
+    }
+}
+
+/// Whether a fault is that an end tag does not fit a start tag, whose name is told to be wrong, and of which the end tag has the right one.
+fn contradicts(fault: &Diagnostic, sources: &Sources, diagnostics: &Diagnostics) -> bool {
+    if fault.code != &codes::XML_TAG_MISMATCH {
+        return false;
+    }
+    let end = sources.snippet(fault.location);
+    let right = end.strip_prefix("</").and_then(|name| name.strip_suffix('>')).unwrap_or(end).trim_end();
+    let is_name = |one: &&Diagnostic| [&codes::UNKNOWN_ELEMENT, &codes::ROOT].contains(&one.code);
+    diagnostics.iter().filter(is_name).any(|one| {
+        let mut edits = one.suggestions.iter().flat_map(|suggestion| &suggestion.edits);
+        fault.labels.iter().any(|label| label.location == one.location)
+            && edits.any(|edit| edit.location == one.location && edit.replacement == right)
+    })
+}
+
+/// What the parts of the loader share.
+struct Loader<'d> {
+    version: Version,
+    /// The namespace that counts as that of SCA: that of the version, but for a root in an unknown one.
+    namespace: String,
+    diagnostics: &'d mut Diagnostics,
+    /// Whether the component at hand is replicated, so that its texts can hold expressions.
+    is_replicated: bool,
+    /// The attributes of SCA 1.1 in a file of 1.0 that were told.
+    newer: Vec<&'static str>,
+    /// What is said about severities.
+    severities: Vec<SeverityRule>,
+    /// The names of what other files declare.
+    outside: Vec<OutsideName>,
+    /// What is known of each shape of start tags of the document.
+    tags: Vec<Tag>,
+    /// Why its tags do not fit, where they do not.
+    tangle: Option<xml::Tangle>,
+    swallowed: Option<Swallowed>,
+}
+
+impl<'d> Loader<'d> {
+    /// For one document.
+    fn new(version: Version, namespace: &str, diagnostics: &'d mut Diagnostics) -> Self {
+        Self {
+            version,
+            namespace: namespace.to_owned(),
+            diagnostics,
+            is_replicated: false,
+            newer: Vec::new(),
+            severities: Vec::new(),
+            outside: Vec::new(),
+            tags: Vec::new(),
+            tangle: None,
+            swallowed: None,
+        }
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+}

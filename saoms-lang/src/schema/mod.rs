@@ -1,0 +1,238 @@
+//! Messages that this program knows by their schema alone: those of plugins and of other programs.
+//!
+//! A [`Schema`] is read from the text that a declaration carries (see [`saoms_api::declaration`]). It tells whether bytes are such a message
+//! ([`Schema::check`]), and turns them into JSON and back, for tools and people.
+
+mod json;
+mod read;
+mod sample;
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
+
+use saoms_api::cdr::{DecodeError, Reader};
+use serde::Deserialize;
+use serde_json::Value;
+
+/// A message type.
+///
+/// ```
+/// use saoms_lang::schema::Schema;
+///
+/// let schema = r#"{"name":"Position","fields":[{"name":"robot","type":"uint32"},{"name":"blocks","type":{"sequence":"int16"}}]}"#;
+/// let schema = Schema::parse(schema)?;
+/// let bytes = schema.encode(&serde_json::json!({"robot": 7, "blocks": [1, -1]}))?;
+/// assert_eq!(schema.decode(&bytes)?.to_string(), r#"{"blocks":[1,-1],"robot":7}"#);
+/// assert!(schema.check(&bytes[..9]).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Schema {
+    name: String,
+    fields: Vec<Field>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Field {
+    name: String,
+    kind: Type,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Type {
+    Bool,
+    Number(Number),
+    String,
+    Sequence(Box<Type>),
+    Enumeration(Number, Vec<(String, i128)>),
+    Message(Schema),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Number {
+    Int8,
+    Int16,
+    Int32,
+    Int64,
+    Uint8,
+    Uint16,
+    Uint32,
+    Uint64,
+    Float32,
+    Float64,
+}
+
+/// Why a text is no schema, or a value no message of one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SchemaError(String);
+
+impl fmt::Display for SchemaError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for SchemaError {}
+
+/// Messages within messages go no deeper: schemas come from libraries that anybody may have built.
+const DEEPEST: usize = 32;
+
+impl Schema {
+    /// Reads the text of a schema.
+    ///
+    /// # Errors
+    /// It is none, or nested more than 32 deep.
+    pub fn parse(text: &str) -> Result<Schema, SchemaError> {
+        let value: Value = serde_json::from_str(text).map_err(|error| SchemaError(error.to_string()))?;
+        Schema::of(&value)
+    }
+
+    /// Reads a schema that is a part of a declaration.
+    ///
+    /// # Errors
+    /// As [`parse`](Schema::parse).
+    pub fn of(value: &Value) -> Result<Schema, SchemaError> {
+        message(value, DEEPEST)
+    }
+
+    /// The name of the message type.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether these bytes are such a message.
+    ///
+    /// # Errors
+    /// What is wrong, and at which byte.
+    pub fn check(&self, bytes: &[u8]) -> Result<(), DecodeError> {
+        let mut reader = Reader::new(bytes)?;
+        read::skip_message(self, &mut reader)?;
+        reader.finish()
+    }
+}
+
+fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
+    #[derive(Deserialize)]
+    struct Shape {
+        name: String,
+        fields: Vec<FieldShape>,
+    }
+    #[derive(Deserialize)]
+    struct FieldShape {
+        name: String,
+        #[serde(rename = "type")]
+        kind: Value,
+    }
+    let shape =
+        Shape::deserialize(value).map_err(|error| SchemaError(format!("a schema of a message: {error}")))?;
+    let Some(deepest) = deepest.checked_sub(1) else {
+        return Err(SchemaError(format!("message `{}` is nested more than {DEEPEST} deep", shape.name)));
+    };
+    let fields = shape.fields.into_iter().map(|field| {
+        let kind = kind(&field.kind, deepest).map_err(|SchemaError(error)| {
+            SchemaError(format!("field `{}` of `{}`: {error}", field.name, shape.name))
+        })?;
+        Ok(Field { name: field.name, kind })
+    });
+    Ok(Schema { fields: fields.collect::<Result<_, _>>()?, name: shape.name })
+}
+
+fn kind(value: &Value, deepest: usize) -> Result<Type, SchemaError> {
+    let unknown = || {
+        SchemaError(format!(
+            "found the type {value}, expected one of ROS 2 interfaces, a sequence, an enumeration or a message"
+        ))
+    };
+    if let Some(name) = value.as_str() {
+        return match name {
+            "bool" => Ok(Type::Bool),
+            "string" => Ok(Type::String),
+            name => Number::of(name).map(Type::Number).ok_or_else(unknown),
+        };
+    }
+    if let Some(element) = value.get("sequence") {
+        let deepest = deepest
+            .checked_sub(1)
+            .ok_or_else(|| SchemaError(format!("it is nested more than {DEEPEST} deep")))?;
+        return Ok(Type::Sequence(Box::new(kind(element, deepest)?)));
+    }
+    if let Some(number) = value.get("enumeration") {
+        let number =
+            number.as_str().and_then(Number::of).filter(|number| !number.is_float()).ok_or_else(unknown)?;
+        let values = value.get("values").and_then(Value::as_object).ok_or_else(unknown)?;
+        let values = values.iter().map(|(name, value)| {
+            let value = value
+                .as_i64()
+                .map(i128::from)
+                .or_else(|| value.as_u64().map(i128::from))
+                .ok_or_else(unknown)?;
+            Ok((name.clone(), value))
+        });
+        return Ok(Type::Enumeration(number, values.collect::<Result<_, SchemaError>>()?));
+    }
+    if value.get("fields").is_some() {
+        return message(value, deepest).map(Type::Message);
+    }
+    Err(unknown())
+}
+
+impl Number {
+    fn of(name: &str) -> Option<Number> {
+        Some(match name {
+            "int8" => Number::Int8,
+            "int16" => Number::Int16,
+            "int32" => Number::Int32,
+            "int64" => Number::Int64,
+            "uint8" => Number::Uint8,
+            "uint16" => Number::Uint16,
+            "uint32" => Number::Uint32,
+            "uint64" => Number::Uint64,
+            "float32" => Number::Float32,
+            "float64" => Number::Float64,
+            _ => return None,
+        })
+    }
+
+    const fn is_float(self) -> bool {
+        matches!(self, Number::Float32 | Number::Float64)
+    }
+
+    const fn size(self) -> usize {
+        match self {
+            Number::Int8 | Number::Uint8 => 1,
+            Number::Int16 | Number::Uint16 => 2,
+            Number::Int32 | Number::Uint32 | Number::Float32 => 4,
+            Number::Int64 | Number::Uint64 | Number::Float64 => 8,
+        }
+    }
+
+    /// The least and the greatest value of an integer.
+    const fn bounds(self) -> (i128, i128) {
+        match self {
+            Number::Int8 => (i8::MIN as i128, i8::MAX as i128),
+            Number::Int16 => (i16::MIN as i128, i16::MAX as i128),
+            Number::Int32 => (i32::MIN as i128, i32::MAX as i128),
+            Number::Int64 => (i64::MIN as i128, i64::MAX as i128),
+            Number::Uint8 => (0, u8::MAX as i128),
+            Number::Uint16 => (0, u16::MAX as i128),
+            Number::Uint32 => (0, u32::MAX as i128),
+            Number::Uint64 => (0, u64::MAX as i128),
+            Number::Float32 | Number::Float64 => (0, 0),
+        }
+    }
+}
+
+impl Type {
+    /// The least number of bytes that a value takes.
+    fn least_size(&self) -> usize {
+        match self {
+            Type::Bool => 1,
+            Type::Number(number) | Type::Enumeration(number, _) => number.size(),
+            Type::String | Type::Sequence(_) => 4,
+            Type::Message(schema) => {
+                schema.fields.iter().map(|field| field.kind.least_size()).sum::<usize>().max(1)
+            }
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! The loader over real files, broken files, and beside another XML parser.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail as tests do")]
+
+mod corpus;
+mod declared;
+mod definitions;
+mod exchange;
+mod files;
+mod folders;
+mod forms;
+mod imports;
+mod intents;
+mod named;
+mod oracle;
+mod places;
+mod support;
+mod wellformed;

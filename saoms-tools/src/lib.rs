@@ -1,0 +1,5 @@
+//! What people and editors ask of composites beside a check and a run: pictures, one layout, XML schemas.
+
+pub mod format;
+pub mod graph;
+pub mod xsd;

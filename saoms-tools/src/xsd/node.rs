@@ -1,0 +1,27 @@
+//! Elements of a schema.
+
+pub(super) use saoms_lang::xml::Node;
+
+/// What elements of schemas have beside others.
+pub(super) trait Documented {
+    /// With documentation, which has to be the first inside; with none where the text is empty.
+    fn doc(self, text: &str) -> Self;
+
+    /// As the text of a file.
+    fn document(&self) -> String;
+}
+
+impl Documented for Node {
+    fn doc(self, text: &str) -> Self {
+        if text.is_empty() {
+            return self;
+        }
+        self.child(Node::new("xs:annotation").child(Node::new("xs:documentation").text(text)))
+    }
+
+    fn document(&self) -> String {
+        let mut out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n".to_owned();
+        self.write(0, &mut out);
+        out
+    }
+}
