@@ -53,7 +53,7 @@ use server::{Event, Server};
 use workspace::Workspace;
 
 use crate::Exit;
-use crate::arguments::LspArguments;
+use crate::command::lsp::LspArguments;
 
 pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
     let (events, came) = mpsc::channel();

@@ -6,7 +6,7 @@ use std::time::Duration;
 use saoms_api::{Level, TopicDeclaration};
 use saoms_core::schedule::{Event, Events, Progress, Sent};
 
-use crate::console::Console;
+use super::console::Console;
 use crate::paths::Paths;
 
 /// The console and, where a picture is asked for, what it will show.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::arguments::PluginKind;
+use super::PluginKind;
 
 /// What a plugin is called in the places where names differ.
 pub(super) struct Names {

@@ -2,15 +2,46 @@
 
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::{Args, ValueEnum};
 use saoms_lang::registry::Registry;
 use saoms_tools::xsd::{Xsd, catalog, schemas};
 
 use crate::Exit;
-use crate::arguments::{SchemaArguments, XsdVersion};
+use crate::arguments::PluginArguments;
 use crate::output::{eprint, print};
 use crate::plugins::registry;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  written; the names of the files are on standard output
+  1  a file could not be written
+  2  a plugin cannot be used";
+
+/// Write the language of composites, with all classes and properties, as XML schemas for editors
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct SchemaArguments {
+    /// The folder for the schemas, one for each namespace, and for `catalog.xml`, by which editors find them; made if it is not there
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+
+    /// The version of XML Schema: 1.0, which every editor reads, or 1.1, which also holds components to the properties of their classes
+    #[arg(long, value_enum, value_name = "VERSION", default_value_t = XsdVersion::V1_0)]
+    pub(crate) xsd: XsdVersion,
+
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum XsdVersion {
+    #[value(name = "1.0")]
+    V1_0,
+    #[value(name = "1.1")]
+    V1_1,
+}
 
 /// The file by which editors find a schema from a namespace.
 const CATALOG: &str = "catalog.xml";

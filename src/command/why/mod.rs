@@ -3,16 +3,44 @@
 mod answer;
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+use clap::Args;
 use saoms_api::{Time, format_duration};
 use saoms_core::journal::{Document, Named, ReadError, Why, read};
 use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
 
 use crate::Exit;
-use crate::arguments::{Format, WhyArguments};
+use crate::arguments::Format;
 use crate::output::{eprint, print};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  answered, also when the answer is that the robot did nothing
+  2  the input is wrong: no such robot, a time after the end of the run, a file without journal or not whole; or the records that the whole
+     answer needs were overwritten";
+
+/// Tell why a robot did what it did, from the report or the journal of a run
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct WhyArguments {
+    /// The robot, or any other component: its path, an ending of its path that no other has, or its ID
+    pub(crate) robot: String,
+
+    /// Ask what it did last up to this time of the run, and not up to its end (a bare number is milliseconds; units us, ms, s, min, h)
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    pub(crate) at: Option<Duration>,
+
+    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input
+    #[arg(long, visible_alias = "journal", value_name = "FILE")]
+    pub(crate) report: PathBuf,
+
+    /// Text for people, or JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
+}
 
 pub(crate) fn why(arguments: &WhyArguments) -> Exit {
     match answer(arguments) {

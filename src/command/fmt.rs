@@ -6,6 +6,7 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use saoms_lang::diagnostic::{Diagnostics, human};
 use saoms_lang::load::composites_below;
 use saoms_lang::source::{FileId, Sources};
@@ -13,9 +14,36 @@ use saoms_lang::xml::{self, Document};
 use saoms_tools::format::Formatted;
 
 use crate::Exit;
-use crate::arguments::FmtArguments;
+use crate::arguments::parse_size;
 use crate::fleet::{INPUT, read_or_input};
 use crate::output::{eprint, print, try_print};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  every file is formatted now; with --check, was before
+  1  with --check, a file is not formatted (its name is on standard output); else, a file could not be written
+  2  a file cannot be read or is not well-formed XML (the diagnostics say where), and was left as it is; or a folder has no composites";
+
+/// Write composites in one layout: indentation, attributes, blank lines; order, comments and text stay
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct FmtArguments {
+    /// Files to format in place; a folder stands for all composites in it and below, `-` is from standard input to standard output
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Write nothing, and list the files that are not formatted
+    #[arg(long)]
+    pub(crate) check: bool,
+
+    /// Columns that a start tag has to fit into; else each attribute but the first gets a line
+    #[arg(long, value_name = "COLUMNS", default_value_t = saoms_tools::format::WIDTH)]
+    pub(crate) width: usize,
+
+    /// Refuse larger files
+    #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
+    pub(crate) max_size: u64,
+}
 
 pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     let (mut is_wrong, mut has_failed) = (false, false);

@@ -1,10 +1,18 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
+mod console;
+mod reload;
+mod results;
+mod summary;
+mod watch;
+
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
+use std::time::Duration;
 
+use clap::{Args, ValueEnum};
 use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
 use saoms_lang::assembly::Assembly;
@@ -13,16 +21,86 @@ use saoms_lang::diagnostic::Severity;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
+use super::EXIT_CODES;
 use crate::Exit;
-use crate::arguments::{FleetArguments, Format, RunArguments};
-use crate::console::Console;
+use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{INPUT, checked};
 use crate::output::{counted, eprint, eprint_json, print, print_json};
 use crate::paths::Paths;
-use crate::reload::{Reload, Watched};
-use crate::results;
-use crate::summary::summary;
-use crate::watch::Watch;
+use console::Console;
+use reload::{Reload, Watched};
+use summary::summary;
+use watch::Watch;
+
+/// Check composites and run the fleet that they describe together
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
+
+    /// How diagnostics are shown: for people on standard error, or as one JSON object on standard output (on standard error once a fleet runs)
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
+
+    /// End the run after this time (a bare number is milliseconds; units us, ms, s, min, h)
+    #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    pub(crate) limit: Option<Duration>,
+
+    /// Run in virtual time: the same fleet, deterministic, as fast as the machine goes
+    #[arg(long = "virtual", conflicts_with = "realtime")]
+    pub(crate) virtual_time: bool,
+
+    /// Where chance starts: in virtual time the same seed gives the same run
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+
+    /// Write the report as JSON to this file, `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+
+    /// Draw the robots' paths into this SVG file, `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) paths: Option<PathBuf>,
+
+    /// Write every record of the journal to this file, as lines of JSON; the report holds the newest ones of each component
+    #[arg(long, value_name = "FILE")]
+    pub(crate) journal: Option<PathBuf>,
+
+    /// Watch the libraries of plugins: components of one that is built anew are replaced while the fleet runs
+    #[arg(long, conflicts_with = "virtual_time")]
+    pub(crate) reload: bool,
+
+    /// Show nothing but errors
+    #[arg(long, conflicts_with = "console")]
+    pub(crate) quiet: bool,
+
+    /// Show what happens as `plain` lines, or as the `classic` console of the original
+    #[arg(long, value_enum, value_name = "STYLE", default_value_t = ConsoleStyle::Plain)]
+    pub(crate) console: ConsoleStyle,
+
+    /// Run the timer under SCHED_FIFO with locked memory
+    #[arg(long)]
+    pub(crate) realtime: bool,
+
+    /// How much later the kernel may wake the timer to save power; 1ns is the most punctual
+    #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    pub(crate) timer_slack: Duration,
+
+    /// How long an execution may hold up the others before a spare thread takes over
+    #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    pub(crate) budget: Duration,
+
+    /// How long a component may take to end before it is abandoned
+    #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    pub(crate) grace: Duration,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ConsoleStyle {
+    Plain,
+    Classic,
+}
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut files = arguments.fleet.clone();

@@ -2,16 +2,30 @@
 
 use std::sync::Arc;
 
+use clap::Args;
 use saoms_lang::check::{Options, expand as expanded};
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::source::FileId;
 use saoms_lang::xml;
 use saoms_tools::format::{Formatted, WIDTH};
 
+use super::EXIT_CODES;
 use crate::Exit;
-use crate::arguments::ExpandArguments;
+use crate::arguments::FleetArguments;
 use crate::fleet::checked;
 use crate::output::{counted, eprint, print};
+
+/// Print the one composite that is left when includes, inner composites, property sources and wires are resolved
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ExpandArguments {
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
+
+    /// Take classes that this program does not know as given, and implementations of other kinds: resolve all that can be resolved without them
+    #[arg(long)]
+    pub(crate) assume_classes: bool,
+}
 
 pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
     let options = Options { assume_classes: arguments.assume_classes, ..Options::default() };

@@ -5,11 +5,48 @@ mod files;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use clap::{Args, Subcommand, ValueEnum};
+
 use crate::Exit;
-use crate::arguments::{NewArguments, NewWhat, PluginKind};
 use crate::output::{eprint, print};
 
 use files::Names;
+
+/// Make a plugin or a composite that works, to start from
+#[derive(Debug, Args)]
+pub(crate) struct NewArguments {
+    #[command(subcommand)]
+    pub(crate) what: NewWhat,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum NewWhat {
+    /// Make the crate of a plugin: its code, its tests, and a composite that uses it
+    Plugin {
+        /// The folder to make; its name becomes that of the package
+        path: PathBuf,
+
+        /// What the plugin brings: a component, the hardware of a robot, or a loop of robots
+        #[arg(long, value_enum, default_value_t = PluginKind::Component)]
+        kind: PluginKind,
+
+        /// Where saoms-api comes from: a folder with a checkout, a git URL, or a version; by default the checkout that made this program
+        #[arg(long, value_name = "SOURCE")]
+        api: Option<String>,
+    },
+    /// Make a composite with one robot
+    Composite {
+        /// The file to make
+        path: PathBuf,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PluginKind {
+    Component,
+    Robot,
+    Loop,
+}
 
 /// Makes what was asked for. Nothing that is there is touched.
 pub(crate) fn new(arguments: &NewArguments) -> Exit {

@@ -3,8 +3,9 @@
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::{Args, ValueEnum};
 use saoms_core::plugin::open_named;
 use saoms_lang::check::{Census, Options, Variable};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Human, Severity};
@@ -14,11 +15,43 @@ use saoms_lang::source::Sources;
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
 use crate::Exit;
-use crate::arguments::{GraphArguments, Picture};
+use crate::arguments::FleetArguments;
 use crate::fleet::{SET, SEVERITY, options, read_or_input};
 use crate::folder::one_fleet;
 use crate::output::{eprint, unless_closed};
 use crate::plugins::{registry, search};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  drawn, also where the composite has mistakes: what is missing is drawn so
+  1  the picture could not be written
+  2  the file cannot be read or is no composite, or nothing says the format";
+
+/// Draw composites: components, services, references, properties, wires, promotions, topics
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct GraphArguments {
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
+
+    /// Where the picture goes; the ending says the format (`.svg`, `.mmd`, `.dot`), `-` is standard output
+    #[arg(short, long, value_name = "PICTURE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// The format where no ending says it; SVG by default
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Picture>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Picture {
+    /// A picture in the notation of SCA
+    Svg,
+    /// A flowchart for Mermaid, as Markdown viewers draw it
+    Mermaid,
+    /// A graph for Graphviz
+    Dot,
+}
 
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));

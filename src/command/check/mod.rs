@@ -1,19 +1,50 @@
 //! `saoms check`: finds every mistake, starts nothing.
 
+mod wiring;
+
 use std::mem::ManuallyDrop;
 use std::path::Path;
 
+use clap::{Args, ValueEnum};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::check::Options;
 use saoms_lang::diagnostic::Severity;
 use serde::Serialize;
 use serde::ser::Serializer;
 
+use super::EXIT_CODES;
 use crate::Exit;
-use crate::arguments::{CheckArguments, CheckFormat};
+use crate::arguments::FleetArguments;
 use crate::folder::{Several, checked_each};
 use crate::output::{counted, eprint, print, print_json};
-use crate::wiring::Wiring;
+use wiring::Wiring;
+
+/// Check composites without running anything
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    pub(crate) fleet: FleetArguments,
+
+    /// How diagnostics are shown: for people on standard error, or on standard output as one JSON object or as SARIF 2.1.0
+    #[arg(long, value_enum, default_value_t = CheckFormat::Human)]
+    pub(crate) format: CheckFormat,
+
+    /// Take classes that this program does not know as given, and implementations of other kinds: check all that can be checked without them
+    #[arg(long)]
+    pub(crate) assume_classes: bool,
+
+    /// Report the wiring of the whole fleet: every topic with who publishes and reads it how often, and what is odd about it
+    #[arg(long, conflicts_with = "assume_classes")]
+    pub(crate) wiring: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CheckFormat {
+    Human,
+    Json,
+    Sarif,
+}
 
 pub(crate) fn check(arguments: &CheckArguments) -> Exit {
     let asked =

@@ -8,7 +8,7 @@ use saoms_api::Level;
 use saoms_core::schedule::{Event, Events, Occurrence, Progress};
 use saoms_lang::assembly::Assembly;
 
-use crate::arguments::{ConsoleStyle, RunArguments};
+use super::{ConsoleStyle, RunArguments};
 use crate::output::{eprint, print};
 
 /// How narrow and how wide the column with the names of components may be.

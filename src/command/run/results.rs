@@ -6,10 +6,10 @@ use std::path::Path;
 
 use saoms_core::report::RunReport;
 
-use crate::arguments::RunArguments;
+use super::RunArguments;
+use super::summary::outcome;
 use crate::output::{counted, eprint, try_print};
 use crate::paths::Paths;
-use crate::summary::outcome;
 
 /// Whether the files can be written, asked before a run that may last for days. What they hold stays until there is something new. Where one
 /// cannot, that has been told.

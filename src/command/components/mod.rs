@@ -5,6 +5,7 @@ mod rules;
 
 use std::fmt::Write;
 
+use clap::Args;
 use saoms_api::Properties;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::registry::{
@@ -13,9 +14,23 @@ use saoms_lang::registry::{
 use serde_json::{Value, json};
 
 use crate::Exit;
-use crate::arguments::{ComponentsArguments, Format};
+use crate::arguments::{Format, PluginArguments};
 use crate::output::{eprint, print};
 use crate::plugins::registry;
+
+/// List the component classes, or describe one: properties, topics, services, references
+#[derive(Debug, Args)]
+pub(crate) struct ComponentsArguments {
+    /// The class to describe, by any of its names
+    pub(crate) name: Option<String>,
+
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
+
+    /// Text for people, or JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
+}
 
 pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
     let registry = match registry(&arguments.plugins, &[]) {

@@ -1,0 +1,27 @@
+//! `saoms lsp`: serves editors.
+
+use clap::Args;
+
+use crate::Exit;
+use crate::arguments::PluginArguments;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  the editor ended the session
+  1  the editor went away without ending it";
+
+/// Serve editors over standard input and output: diagnostics, completion, and more (Language Server Protocol)
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct LspArguments {
+    #[command(flatten)]
+    pub(crate) plugins: PluginArguments,
+
+    /// Take classes that this program does not know as given, as `saoms check --assume-classes` does
+    #[arg(long)]
+    pub(crate) assume_classes: bool,
+}
+
+pub(super) fn lsp(arguments: &LspArguments) -> Exit {
+    crate::lsp::lsp(arguments)
+}

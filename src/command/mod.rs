@@ -1,0 +1,80 @@
+//! The command line: one file or folder per subcommand, with its options and what it does.
+
+mod check;
+mod components;
+mod expand;
+mod fmt;
+mod graph;
+pub(crate) mod lsp;
+mod new;
+mod run;
+mod schema;
+mod why;
+
+use std::path::Path;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Parser, Subcommand};
+
+use crate::Exit;
+
+/// Exit codes of the subcommands that take a fleet.
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done, also when --for elapsed with work left (the report says so)
+  1    the run failed: a component failed for good, a message was lost, a finished report or picture could not be written
+  2    the input is wrong: a composite, a value, the command line, a place where no file can be; nothing was started
+  130  ended by Ctrl-C";
+
+/// Deploys a fleet of self-adaptive robots from composite files.
+#[derive(Debug, Parser)]
+#[command(name = "saoms", version, after_help = EXIT_CODES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::RunArguments),
+    Check(check::CheckArguments),
+    Expand(expand::ExpandArguments),
+    Fmt(fmt::FmtArguments),
+    Graph(graph::GraphArguments),
+    Why(why::WhyArguments),
+    New(new::NewArguments),
+    Schema(schema::SchemaArguments),
+    Lsp(lsp::LspArguments),
+    Components(components::ComponentsArguments),
+}
+
+/// Parses the command line and executes its subcommand.
+pub(crate) fn execute() -> Exit {
+    match parsed().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Expand(arguments) => expand::expand(&arguments),
+        Command::Fmt(arguments) => fmt::fmt(&arguments),
+        Command::Graph(arguments) => graph::graph(&arguments),
+        Command::Why(arguments) => why::why(&arguments),
+        Command::New(arguments) => new::new(&arguments),
+        Command::Schema(arguments) => schema::schema(&arguments),
+        Command::Lsp(arguments) => lsp::lsp(&arguments),
+        Command::Components(arguments) => components::components(&arguments),
+    }
+}
+
+/// The parsed command line. A wrong one is reported and ends the process.
+fn parsed() -> Arguments {
+    Arguments::try_parse().unwrap_or_else(|mut error| {
+        // Whoever names a composite alone wants to run it.
+        if error.kind() == ErrorKind::InvalidSubcommand
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand)
+            && Path::new(word).exists()
+        {
+            let tip = format!("to run a composite, write `saoms run {word}`");
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        error.exit()
+    })
+}
