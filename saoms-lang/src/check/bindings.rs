@@ -8,7 +8,7 @@ use crate::model::{Binding, Part, Service};
 
 /// Checks the targets of all references that say how they are bound, at components that are taken as given.
 pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    for member in fleet.members.iter().filter(|member| !member.is_usual) {
+    for member in &fleet.members {
         report.about(member);
         for reference in member.component.references.iter().filter(|one| !one.bindings().is_empty()) {
             for target in &reference.targets {

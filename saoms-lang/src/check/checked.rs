@@ -190,17 +190,16 @@ impl Checks {
     /// Starts the next component, which gives at most so many values.
     pub(super) fn start(&mut self, count: usize) -> Open<'_> {
         let own = if count == self.before.0 { self.before.1 } else { count };
-        let (start, task) = (self.given.len(), self.of_tasks.len());
-        Open { start, task, count, values: Vec::with_capacity(own), next: 0, checks: self }
+        let start = self.given.len();
+        Open { start, count, values: Vec::with_capacity(own), next: 0, checks: self }
     }
 }
 
 /// A component whose values are added.
 pub(super) struct Open<'c> {
     checks: &'c mut Checks,
-    /// Where its values start, and those for properties of tasks alone.
+    /// The index of its first value.
     start: usize,
-    task: usize,
     count: usize,
     values: Vec<(SmolStr, PropertyValue)>,
     /// From this place on own properties have no value yet.
@@ -254,14 +253,6 @@ impl Open<'_> {
             }
         }
         at
-    }
-
-    /// Takes back all of it.
-    pub(super) fn cancel(self) {
-        let Self { checks, start, task, .. } = self;
-        checks.given.truncate(start);
-        checks.of_tasks.truncate(task);
-        checks.elsewhere.truncate(checks.elsewhere.partition_point(|(of, _)| (*of as usize) < start));
     }
 
     /// What is given so far.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 
 use super::classes::ClassIndex;
-use super::fleet::{Fleet, Kind};
+use super::fleet::Fleet;
 use super::offer::Offer;
 use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, codes, quoted};
@@ -16,10 +16,6 @@ use crate::xml::{Document, escaped};
 /// Checks the services and references of every component.
 pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
     for (place, member) in fleet.members.iter().enumerate() {
-        // There is nothing that it could be held against.
-        if member.kind == Kind::Given && member.is_single {
-            continue;
-        }
         report.about(member);
         let component = member.component;
         if component.services.len() > 1 {

@@ -7,7 +7,7 @@ use super::checked::Elsewhere;
 use super::fleet::Member;
 use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
-use crate::model::{Component, Properties, Property};
+use crate::model::{Component, Property};
 use crate::source::Location;
 use crate::xml::escaped;
 
@@ -21,25 +21,9 @@ pub(super) struct Subject<'a> {
     pub(super) at: Location,
     pub(super) values: &'a [(SmolStr, PropertyValue)],
     /// What the composite says of its properties.
-    pub(super) properties: Written<'a>,
+    pub(super) properties: &'a [Property],
     /// The values that are not one text there, with their places.
     pub(super) elsewhere: &'a [Elsewhere],
-}
-
-/// What the composite says of the properties of a component, or of a loop.
-#[derive(Clone, Copy)]
-pub(super) enum Written<'a> {
-    Component(&'a Properties),
-    Loop(&'a [Property]),
-}
-
-impl<'a> Written<'a> {
-    fn all(self) -> &'a [Property] {
-        match self {
-            Self::Component(properties) => properties,
-            Self::Loop(properties) => properties,
-        }
-    }
 }
 
 /// Where the composite gives a property.
@@ -57,7 +41,6 @@ impl<'a> Subject<'a> {
         elsewhere: &'a [Elsewhere],
     ) -> Self {
         let Component { name, properties, .. } = member.component;
-        let properties = Written::Component(properties);
         Self { what: "component", name: name.as_str(), at: name.location, values, properties, elsewhere }
     }
 
@@ -70,7 +53,7 @@ impl<'a> Subject<'a> {
         if let Some(Elsewhere { places, source, .. }) = self.elsewhere.iter().find(|one| one.name == name) {
             return Some(Given { places: places.clone(), source: *source });
         }
-        let text = self.properties.all().iter().find(|one| one.name == *name)?.only_text()?;
+        let text = self.properties.iter().find(|one| one.name == *name)?.only_text()?;
         Some(Given { places: vec![text.location], source: None })
     }
 }

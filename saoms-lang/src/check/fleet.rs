@@ -80,10 +80,6 @@ pub(super) struct Member<'a> {
     pub(super) is_partial: bool,
     /// Whether it has the name of an earlier one, which is reported.
     pub(super) is_repeated: bool,
-    /// Whether the component has nothing that few have, so that there is no need to look for that in it: see [`Component::is_usual`].
-    pub(super) is_usual: bool,
-    /// Whether besides it has no more than one property, one service and one reference: nothing can be there twice.
-    pub(super) is_single: bool,
     /// Its path, where that is more than its name: a pointer of one word, as few have one.
     #[expect(clippy::box_collection, reason = "of a large fleet, a word of each component matters")]
     path: Option<Box<String>>,
@@ -116,8 +112,6 @@ impl<'a> Member<'a> {
             is_absent: false,
             is_partial: false,
             is_repeated: false,
-            is_usual: component.is_usual(),
-            is_single: component.is_usual() && component.has_single_parts(),
             path: None,
         }
     }

@@ -176,20 +176,6 @@ pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> Set<(usize, &'a str, Option<&'a
     all
 }
 
-/// Whether all that is said about the references of a component that is taken as given is one target each, that there is nothing to be told of:
-/// what most say.
-pub(super) fn has_usual_targets(member: usize, fleet: &Fleet<'_>) -> bool {
-    let Member { component, scope, kind, is_usual, .. } = &fleet.members[member];
-    *kind == Kind::Given
-        && *is_usual
-        && !fleet.contribution.describes_any()
-        && component.references.iter().all(|reference| match &reference.targets[..] {
-            [] => true,
-            [only] => is_component(only, *scope, fleet),
-            _ => false,
-        })
-}
-
 /// Whether a text is nothing but the name of a component that has one service as far as anybody knows: what most targets are.
 pub(super) fn is_component(text: &str, scope: usize, fleet: &Fleet<'_>) -> bool {
     let is_odd = |byte: u8| matches!(byte, b'/' | b':' | b'*' | b'$');
@@ -206,10 +192,6 @@ pub(super) fn unwired<'f>(
     report: &mut Report<'_>,
 ) {
     let member = &fleet.members[place];
-    // Neither it nor a file says that a reference needs a target.
-    if member.is_usual && !fleet.contribution.describes_any() {
-        return;
-    }
     let component = member.component;
     let is_promoted = |name| promoted.contains(&(member.scope, component.name.as_str(), name));
     if member.kind != Kind::Given || is_promoted(None) || is_wired("") || fleet.lacks_include(member.scope) {

@@ -41,7 +41,6 @@ mod once;
 mod options;
 mod parameters;
 mod path;
-mod placed;
 mod presence;
 mod promotable;
 mod promote;
@@ -96,7 +95,6 @@ use findings::Subject;
 use fleet::{Fleet, Kind, Member};
 pub use options::Options;
 use parameters::Parameters;
-use placed::Patterns;
 use properties::Giver;
 use report::Report;
 pub use setting::Setting;
@@ -253,7 +251,7 @@ fn examine<T>(
 
 /// The files of values of components that are taken as given may come with what implements them: that they are not there is a warning.
 fn elsewhere(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    let given = fleet.members.iter().filter(|member| member.kind == Kind::Given && !member.is_usual);
+    let given = fleet.members.iter().filter(|member| member.kind == Kind::Given);
     let properties = given.flat_map(|member| &member.component.properties);
     let places: HashSet<Location> = properties.filter_map(|one| Some(one.file()?.location)).collect();
     report.diagnostics().adjust(0, |one| {
@@ -308,30 +306,20 @@ fn properties<'a>(
     report: &mut Report<'_>,
 ) -> (Checks, bool) {
     let mut values = Values::default();
-    let mut patterns = Patterns::default();
     let mut sieve = unique::Sieve::default();
     let with_class = || fleet.members.iter().filter(|member| matches!(member.kind, Kind::Class(_)));
     let given = with_class().map(|member| member.component.properties.len()).sum();
     let mut all = Checks::with_capacity(fleet.members.len(), with_class().count(), given);
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
-        if !member.is_usual {
-            parameters.types(member, report);
-        }
+        parameters.types(member, report);
         if let Kind::Class(index) = member.kind {
             let (slots, described) = (&classes[index].slots, fleet.component_type(place));
-            if described.is_some() || !patterns.take(member, slots, &mut all) {
-                let giver = Giver::component(member, described);
-                properties::check(&giver, slots, parameters, &mut values, &mut all, report);
-            }
+            let giver = Giver::component(member, described);
+            properties::check(&giver, slots, parameters, &mut values, &mut all, report);
             if let Some(checked) = all.get(place) {
                 sieve.add(member, &classes[index], checked);
             }
-            continue;
-        }
-        // Texts of which nobody says what they should be.
-        if member.kind == Kind::Given && has_distinct_texts(member) && fleet.known(place).is_none() {
-            all.add_none();
             continue;
         }
         properties::repeated(member.component, report);
@@ -343,13 +331,6 @@ fn properties<'a>(
     }
     report.about_all();
     (all, sieve.may_share())
-}
-
-/// Whether all that a component, which is no replica, says of properties is a text each, every one of another name.
-fn has_distinct_texts(member: &Member<'_>) -> bool {
-    let placed = || member.component.properties.as_placed();
-    let is_distinct = member.is_single || placed().is_some_and(|one| one.pattern().has_distinct_names());
-    member.is_usual && member.instance.is_none() && is_distinct
 }
 
 /// Checks everything else about components that needs no look at wires; `None` for one with a fault, of which what is known stands in

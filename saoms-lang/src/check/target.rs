@@ -316,7 +316,6 @@ pub(super) fn has_several(member: usize, fleet: &Fleet<'_>) -> bool {
     match fleet.members[member].kind {
         Kind::Class(_) | Kind::Nothing => false,
         Kind::Composite(_) => fleet.inner(member).is_some_and(|inner| inner.services().nth(1).is_some()),
-        Kind::Given if fleet.members[member].is_single && !fleet.contribution.describes_any() => false,
         Kind::Given => {
             let written = fleet.members[member].component.services.len();
             written > 1 || fleet.component_type(member).is_some_and(|one| !one.services.is_empty())

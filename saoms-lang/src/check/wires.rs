@@ -194,9 +194,6 @@ impl<'f, 'a> Wires<'f, 'a> {
     /// Looks at the targets of a component that has no class: whether they are there is all that can be known.
     fn given(&mut self, member: usize, report: &mut Report<'_>) {
         let fleet = self.fleet;
-        if self.wires_of(member).is_empty() && given::has_usual_targets(member, fleet) {
-            return;
-        }
         let Some(names) = fleet.reference_names(member, self.classes) else {
             let component = fleet.members[member].component;
             for reference in &component.references {

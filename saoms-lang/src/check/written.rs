@@ -29,7 +29,7 @@ pub(super) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             binding::of_reference(one, composite.version, &composite.document, report);
         }
     }
-    for member in fleet.members.iter().filter(|member| !member.is_usual) {
+    for member in &fleet.members {
         report.about(member);
         let component = member.component;
         // Types and elements are among the details of a property, and few have any.

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use super::Loader;
-use super::plan::starts_wrongly;
 use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, OutsideKind, OutsideName, Policy, SAOMS_NAMESPACE, Version};
@@ -14,30 +13,14 @@ use crate::xml::{Attribute, Element, escaped};
 const MOST_WORDS: usize = 1_000_000;
 
 impl Loader<'_> {
-    /// Whether an element of this kind has no attribute but these usual ones, which it can have: there is nothing else to read. The others
-    /// of one that has more are checked.
-    #[inline(always)]
-    pub(super) fn is_plain(&mut self, element: Element<'_>, kind: &'static Kind, usual: &[&str]) -> bool {
-        let is_plain = self.has_only(element, usual);
-        if !is_plain {
-            self.check_attributes(element, kind);
-        }
-        is_plain
-    }
-
     /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
     pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
-        if self.is_sound(element, kind) {
-            return;
-        }
-        let mut is_sound = true;
         let mut free: Option<Vec<&'static str>> = None;
         for attribute in element.attributes() {
             if attribute.namespace().is_empty()
                 && let Some(known) = kind.find(attribute.name(), self.version)
             {
                 if known.only_1_1 && !self.version.is_1_1() {
-                    is_sound = false;
                     self.newer(element, attribute, known);
                 }
                 continue;
@@ -50,7 +33,6 @@ impl Loader<'_> {
                 }
                 _ => continue,
             };
-            is_sound = false;
             // What is given already is not meant a second time.
             let free = free.get_or_insert_with(|| {
                 let names = kind.names(self.version);
@@ -61,9 +43,6 @@ impl Loader<'_> {
             } else {
                 self.prefixed(element, attribute, free);
             }
-        }
-        if is_sound {
-            self.set_sound(element, kind);
         }
     }
 
@@ -181,9 +160,8 @@ impl Loader<'_> {
     }
 
     /// The value of an attribute, white space at its ends left out.
-    #[inline(always)]
     pub(super) fn optional(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
-        self.attribute(element, name).map(Attribute::trimmed)
+        element.attribute(name).map(Attribute::trimmed)
     }
 
     /// The value of an attribute of SAOMS on an element of SCA.
@@ -198,9 +176,8 @@ impl Loader<'_> {
     }
 
     /// The value of an attribute that has to be there, and not be empty.
-    #[inline(always)]
     pub(super) fn required(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
-        let attribute = self.attribute(element, name);
+        let attribute = element.attribute(name);
         let value = attribute.map(Attribute::trimmed).filter(|value| !value.is_empty());
         if value.is_none() {
             self.empty_or_missing(element, attribute, name);
@@ -208,7 +185,6 @@ impl Loader<'_> {
         value
     }
 
-    #[cold]
     fn empty_or_missing(&mut self, element: Element<'_>, attribute: Option<Attribute<'_>>, name: &str) {
         match attribute {
             None => self.missing(element, name),
@@ -235,15 +211,6 @@ impl Loader<'_> {
 
     /// The name of a part; empty, at the tag, when there is none.
     pub(super) fn name(&mut self, element: Element<'_>) -> Text {
-        if let Some(attribute) = self.attribute(element, "name")
-            && let Some(plain) = attribute.plain_name()
-        {
-            let name = attribute.as_it_is(plain);
-            if starts_wrongly(plain) {
-                self.no_name(&name);
-            }
-            return name;
-        }
         let Some(name) = self.required(element, "name") else {
             return Located::new("".into(), element.name_location());
         };
@@ -273,9 +240,8 @@ impl Loader<'_> {
     }
 
     /// The value of a boolean attribute.
-    #[inline(always)]
     pub(super) fn boolean(&mut self, element: Element<'_>, name: &str) -> Option<Located<bool>> {
-        let attribute = self.attribute(element, name)?;
+        let attribute = element.attribute(name)?;
         self.truth(attribute, name)
     }
 
@@ -301,7 +267,7 @@ impl Loader<'_> {
 
     /// The value of `multiplicity`.
     pub(super) fn multiplicity(&mut self, element: Element<'_>) -> Option<Located<Multiplicity>> {
-        let attribute = self.attribute(element, "multiplicity")?;
+        let attribute = element.attribute("multiplicity")?;
         let text = attribute.trimmed();
         if let Some(value) = Multiplicity::from_name(&text) {
             return Some(Located::new(value, text.location));
@@ -320,18 +286,14 @@ impl Loader<'_> {
     }
 
     /// The words of an attribute that is a list.
-    #[inline(always)]
     pub(super) fn list(&mut self, element: Element<'_>, name: &str) -> Vec<Text> {
-        match self.attribute(element, name) {
+        match element.attribute(name) {
             Some(attribute) => self.words(attribute, name),
             None => Vec::new(),
         }
     }
 
     fn words(&mut self, attribute: Attribute<'_>, name: &str) -> Vec<Text> {
-        if let Some(word) = attribute.only_word() {
-            return vec![word];
-        }
         let mut words = if self.is_replicated {
             attribute.words_with_expressions().take(MOST_WORDS + 1).collect()
         } else {

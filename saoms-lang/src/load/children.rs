@@ -32,13 +32,19 @@ pub(super) enum Family {
 impl Loader<'_> {
     /// Whose an element is. One of no namespace, or of another version of SCA than the root, is reported.
     pub(super) fn family(&mut self, element: Element<'_>) -> Family {
-        if let Some(family) = self.tag(element).family {
-            return family;
-        }
         let root = element.document().root();
-        let Some(version) = Version::from_namespace(element.namespace()) else {
-            self.without_namespace(element, root);
-            return Family::Nobody;
+        let version = match element.namespace() {
+            // The root is of SCA, or counts as that.
+            namespace if namespace == self.namespace || namespace == root.namespace() => return Family::Sca,
+            SAOMS_NAMESPACE => return Family::Own,
+            "" => {
+                self.without_namespace(element, root);
+                return Family::Nobody;
+            }
+            namespace => match Version::from_namespace(namespace) {
+                Some(version) => version,
+                None => return Family::Foreign,
+            },
         };
         let location = element.name_location();
         if self.diagnostics.skip(&codes::OTHER_VERSION, Severity::Error, location) {
@@ -57,18 +63,9 @@ impl Loader<'_> {
         Family::Sca
     }
 
-    /// The same, where there is nothing to report.
-    pub(super) fn sure_family(&self, element: Element<'_>) -> Option<Family> {
-        // The root is of SCA, or counts as that.
-        if element.shares_namespace(element.document().root()) {
-            return Some(Family::Sca);
-        }
-        match element.namespace() {
-            namespace if namespace == self.namespace => Some(Family::Sca),
-            SAOMS_NAMESPACE => Some(Family::Own),
-            "" => None,
-            namespace => Version::from_namespace(namespace).is_none().then_some(Family::Foreign),
-        }
+    /// The vocabulary of an element, and its name there; see [`meant_name`].
+    pub(super) fn meaning<'a>(&mut self, element: Element<'a>) -> (Family, &'a str) {
+        (self.family(element), meant_name(element))
     }
 
     /// Reports an element of SCA, or of SAOMS, that cannot be where it is. Gives the name that is meant where it is misspelt, to be read on as
@@ -223,15 +220,7 @@ impl Loader<'_> {
     }
 
     /// Reports text in an element that holds elements alone.
-    #[inline]
     pub(super) fn no_text(&mut self, element: Element<'_>) {
-        if element.has_text() {
-            self.text_in(element);
-        }
-    }
-
-    #[cold]
-    fn text_in(&mut self, element: Element<'_>) {
         let Some(span) = element.text_span() else { return };
         let location = span.in_file(element.document().file());
         if self.is_closed_early(element)

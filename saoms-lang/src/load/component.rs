@@ -1,62 +1,51 @@
 //! Components and their implementations.
 
-use super::Loader;
-use super::children::{Family, variant};
+use super::children::{Family, is_defined, variant};
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
 };
+use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
-    Component, ComponentDetails, Implementation, ImplementationKind, Names, Origin, Policy, Replicas,
-    SAOMS_NAMESPACE,
+    Component, ComponentDetails, Implementation, ImplementationKind, Origin, Replicas, SAOMS_NAMESPACE,
 };
 use crate::source::Text;
 use crate::xml::{Element, Tangle};
 
 impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> Component {
-        let is_plain = self.is_plain(element, &COMPONENT, &["name"]);
+        self.check_attributes(element, &COMPONENT);
         self.no_text(element);
         let name = self.name(element);
-        let replicas = if is_plain { None } else { self.replicas(element) };
+        let replicas = self.replicas(element);
         // A name with an expression is one of replicas, also where nothing says how many there are.
         let replicas = replicas.or_else(|| is_of_replicas(&name, element).then(Replicas::default));
         self.is_replicated = replicas.is_some();
-        let [properties, services, references, ..] = self.counted(element);
+        let details = ComponentDetails {
+            path: self.path(element),
+            condition: self.own(element, "if"),
+            replicas,
+            autowire: self.boolean(element, "autowire"),
+            constraining_type: self.optional(element, "constrainingType"),
+            loops: Vec::new(),
+            policy: self.policy(element),
+        };
         let mut component = Component {
             origin: Origin::of(element),
             name,
             implementation: None,
-            properties: Vec::with_capacity(properties).into(),
-            services: Vec::with_capacity(services),
-            references: Vec::with_capacity(references),
-            details: None,
-            has_plain_parts: false,
+            properties: Vec::new(),
+            services: Vec::new(),
+            references: Vec::new(),
+            details: boxed(details),
         };
-        if !is_plain || replicas.is_some() {
-            let details = ComponentDetails {
-                path: self.path(element),
-                condition: self.own(element, "if"),
-                replicas,
-                autowire: self.boolean(element, "autowire"),
-                constraining_type: self.optional(element, "constrainingType"),
-                loops: Vec::new(),
-                policy: self.policy(element),
-                names: None,
-            };
-            component.details = (details != ComponentDetails::default()).then(|| Box::new(details));
-        }
         let mut has_faulty = false;
         for child in element.children() {
             let (family, name) = self.meaning(child);
             has_faulty |= self.part_of(element, (child, family, name), &mut component);
         }
-        if let Some(names) = Names::of(&component.services, &component.references) {
-            component.details.get_or_insert_default().names = Some(names);
-        }
-        component.find_plain_parts();
         self.is_replicated = false;
         // An element that was not read to its end may have had one.
         let is_whole = element.is_closed() && self.tangle != Some(Tangle::ClosedEarly(element.id()));
@@ -164,7 +153,7 @@ impl Loader<'_> {
                 _ = self.unexpected(element, &COMPONENT, family);
                 return None;
             }
-            (Family::Sca, _) if !self.is_defined(element) => {
+            (Family::Sca, _) if !is_defined(element) => {
                 let meant = self.unexpected(element, &COMPONENT, family)?;
                 let is_read = matches!(
                     meant,
@@ -180,16 +169,12 @@ impl Loader<'_> {
                 }
             }
         };
-        let policy =
-            if self.has_only(element, &["class"]) { Policy::default() } else { self.policy(element) };
-        Some(Implementation { origin: Origin::of(element), kind, policy })
+        Some(Implementation { origin: Origin::of(element), kind, policy: self.policy(element) })
     }
 
     /// Checks attributes, text and children of an element that the model keeps without its children.
     pub(super) fn parts_of(&mut self, element: Element<'_>, kind: &'static Kind) {
-        if !self.has_only(element, &[]) {
-            self.check_attributes(element, kind);
-        }
+        self.check_attributes(element, kind);
         self.no_text(element);
         self.leaf(element, kind);
     }

@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use super::Loader;
 use super::children::Family;
-use super::plan::Plans;
 use super::vocabulary::{
     COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INCLUDE, WIRE,
 };
+use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Composite, Include, Origin, Wire, WireDetails};
 use crate::source::{Located, Text};
@@ -20,7 +19,6 @@ impl Loader<'_> {
         self.check_attributes(root, &COMPOSITE);
         self.no_text(root);
         let name = self.name(root);
-        let [properties, services, references, components, wires] = self.counted(root);
         let mut composite = Composite {
             origin: Origin::of(root),
             document: Arc::clone(document),
@@ -30,33 +28,19 @@ impl Loader<'_> {
             autowire: self.boolean(root, "autowire"),
             constraining_type: self.optional(root, "constrainingType"),
             includes: Vec::new(),
-            properties: Vec::with_capacity(properties),
-            services: Vec::with_capacity(services),
-            references: Vec::with_capacity(references),
-            components: Vec::with_capacity(components),
-            wires: Vec::with_capacity(wires),
+            properties: Vec::new(),
+            services: Vec::new(),
+            references: Vec::new(),
+            components: Vec::new(),
+            wires: Vec::new(),
             severities: Vec::new(),
             outside: Vec::new(),
-            unusual: Vec::new(),
             policy: self.policy(root),
             name,
         };
-        let mut alike = document.alike().iter().peekable();
-        let mut plans = Plans::default();
         for child in root.children() {
-            let alike = alike.next_if(|one| one.element == child.id());
-            if let Some(made) = alike.and_then(|one| plans.make(*one, child, &composite)) {
-                composite.components.push(made);
-                continue;
-            }
             let (family, name) = self.meaning(child);
-            let (count, told) = (composite.components.len(), self.told());
             self.part(child, family, name, &mut composite);
-            if let (Some(alike), Some(read)) = (alike, composite.components.get(count))
-                && told == self.told()
-            {
-                self.plan(&mut plans, alike.form, count, (child, read), document);
-            }
         }
         composite.severities = std::mem::take(&mut self.severities);
         composite.outside = std::mem::take(&mut self.outside);
@@ -68,26 +52,13 @@ impl Loader<'_> {
         match (family, name) {
             (Family::Foreign | Family::Nobody, _) => {}
             (Family::Sca, "component") => {
-                let component = self.component(child);
-                if !component.is_nothing() {
-                    if !component.is_usual() {
-                        // A text of at most 4 GiB has fewer.
-                        composite.unusual.push(composite.components.len() as u32);
-                    }
-                    composite.components.push(component);
-                }
+                composite.components.push(self.component(child));
             }
             (Family::Sca, "include") => {
-                let include = self.include(child);
-                if !include.name.is_empty() || include.uri.is_some() || !child.is_bare() {
-                    composite.includes.push(include);
-                }
+                composite.includes.push(self.include(child));
             }
             (Family::Sca, "wire") => {
-                let wire = self.wire(child);
-                if wire.source.is_some() || wire.target.is_some() || !child.is_bare() {
-                    composite.wires.push(wire);
-                }
+                composite.wires.push(self.wire(child));
             }
             (Family::Sca, "property") => {
                 composite.properties.push(self.property(child, &COMPOSITE_PROPERTY));
@@ -143,24 +114,14 @@ impl Loader<'_> {
     }
 
     fn wire(&mut self, element: Element<'_>) -> Wire {
-        let is_plain = self.is_plain(element, &WIRE, &["source", "target"]);
+        self.check_attributes(element, &WIRE);
         self.no_text(element);
         self.leaf(element, &WIRE);
-        let mut wire = Wire {
-            origin: Origin::of(element),
-            source: self.required(element, "source"),
-            target: self.required(element, "target"),
-            details: None,
-        };
-        if !is_plain {
-            // What is wrong was meant to say something: the targets of the reference are not counted then.
-            let meant = |attribute: Attribute<'_>| Located::new(true, attribute.location());
-            let replace =
-                self.boolean(element, "replace").or_else(|| element.attribute("replace").map(meant));
-            let condition = self.own(element, "if");
-            let is_given = replace.is_some() || condition.is_some();
-            wire.details = is_given.then(|| Box::new(WireDetails { replace, condition }));
-        }
-        wire
+        let (source, target) = (self.required(element, "source"), self.required(element, "target"));
+        // What is wrong was meant to say something: the targets of the reference are not counted then.
+        let meant = |attribute: Attribute<'_>| Located::new(true, attribute.location());
+        let replace = self.boolean(element, "replace").or_else(|| element.attribute("replace").map(meant));
+        let details = boxed(WireDetails { replace, condition: self.own(element, "if") });
+        Wire { origin: Origin::of(element), source, target, details }
     }
 }

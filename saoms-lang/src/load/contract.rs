@@ -1,11 +1,11 @@
 //! Services and references, their interfaces, callbacks and bindings.
 
-use super::Loader;
-use super::children::{Family, variant};
+use super::children::{Family, is_defined, variant};
 use super::vocabulary::{
     BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST,
     INTERFACE_WSDL, Kind,
 };
+use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
     Binding, Callback, Contract, Interface, InterfaceKind, Origin, Reference, ReferenceDetails, Service,
@@ -15,22 +15,22 @@ use crate::xml::Element;
 
 impl Loader<'_> {
     pub(super) fn service(&mut self, element: Element<'_>, kind: &'static Kind) -> Service {
-        let is_plain = self.is_plain(element, kind, &["name"]);
+        self.check_attributes(element, kind);
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_SERVICE);
         let promote = if is_promoting { self.required(element, "promote") } else { None };
-        let contract = self.contract(element, kind, is_plain);
+        let contract = self.contract(element, kind);
         Service { origin: Origin::of(element), name, promote: promote.map(Box::new), contract }
     }
 
     pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> Reference {
-        let is_plain = self.is_plain(element, kind, &["name", "target"]);
+        self.check_attributes(element, kind);
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_REFERENCE);
         let promote = if is_promoting { self.promoted(element) } else { Vec::new() };
         let targets = self.list(element, "target");
         if targets.is_empty()
-            && let Some(attribute) = self.attribute(element, "target")
+            && let Some(attribute) = element.attribute("target")
         {
             let one =
                 Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), "`target` names nothing");
@@ -38,25 +38,23 @@ impl Loader<'_> {
             // The schema lets the list be empty.
             self.report(Diagnostic { rule: None, ..one });
         }
-        let contract = self.contract(element, kind, is_plain);
-        let details = if is_plain { None } else { self.reference_details(element, promote) };
+        let contract = self.contract(element, kind);
+        let details = self.reference_details(element, promote);
         Reference { origin: Origin::of(element), name, targets, details, contract }
     }
 
-    /// What few references have; `None` for the others.
     fn reference_details(
         &mut self,
         element: Element<'_>,
         promote: Vec<Text>,
     ) -> Option<Box<ReferenceDetails>> {
-        let details = ReferenceDetails {
+        boxed(ReferenceDetails {
             promote,
             multiplicity: self.multiplicity(element),
             autowire: self.boolean(element, "autowire"),
             wired_by_impl: self.boolean(element, "wiredByImpl"),
             non_overridable: self.boolean(element, "nonOverridable"),
-        };
-        (details != ReferenceDetails::default()).then(|| Box::new(details))
+        })
     }
 
     /// What a composite's reference promotes. The schema lets the list be empty.
@@ -76,17 +74,9 @@ impl Loader<'_> {
         list
     }
 
-    /// What a service or a reference holds, and its intents; one that is plain has none. `None` for one with neither.
-    fn contract(
-        &mut self,
-        element: Element<'_>,
-        kind: &'static Kind,
-        is_plain: bool,
-    ) -> Option<Box<Contract>> {
+    /// The children and the policy of a service or a reference.
+    fn contract(&mut self, element: Element<'_>, kind: &'static Kind) -> Option<Box<Contract>> {
         self.no_text(element);
-        if is_plain && element.children().next().is_none() {
-            return None;
-        }
         let mut contract = Contract::default();
         for child in element.children() {
             let (family, name) = self.meaning(child);
@@ -100,14 +90,14 @@ impl Loader<'_> {
                     Family::Sca,
                     "operation" | "requires" | "policySetAttachment" | "documentation" | "extensions",
                 ) => self.beside(child),
-                (Family::Sca, name) if name.starts_with("interface.") && self.is_defined(child) => {
+                (Family::Sca, name) if name.starts_with("interface.") && is_defined(child) => {
                     self.interface(child, family, kind, &mut contract);
                 }
                 (Family::Own, "interface.rust") => self.interface(child, family, kind, &mut contract),
                 (Family::Foreign, name) if name.starts_with("interface.") => {
                     self.interface(child, family, kind, &mut contract);
                 }
-                (Family::Sca, name) if name.starts_with("binding.") && self.is_defined(child) => {
+                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
                     contract.bindings.push(self.binding(child, family));
                 }
                 (Family::Foreign, name) if name.starts_with("binding.") => {
@@ -119,10 +109,8 @@ impl Loader<'_> {
             }
         }
         contract.bindings.shrink_to_fit();
-        if !is_plain {
-            contract.policy = self.policy(element);
-        }
-        (contract != Contract::default()).then(|| Box::new(contract))
+        contract.policy = self.policy(element);
+        boxed(contract)
     }
 
     fn interface(
@@ -188,7 +176,7 @@ impl Loader<'_> {
             self.extension(element, family);
         }
         let name = self.optional(element, "name");
-        if let (Some(name), Some(attribute)) = (&name, self.attribute(element, "name")) {
+        if let (Some(name), Some(attribute)) = (&name, element.attribute("name")) {
             self.binding_name(name, attribute);
         }
         Binding {
@@ -209,7 +197,7 @@ impl Loader<'_> {
             let (family, name) = self.meaning(child);
             match (family, name) {
                 (Family::Nobody, _) => {}
-                (Family::Sca, name) if name.starts_with("binding.") && self.is_defined(child) => {
+                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
                     bindings.push(self.binding(child, family));
                 }
                 (Family::Foreign, name) if name.starts_with("binding.") => {

@@ -26,7 +26,6 @@ mod looping;
 mod missing;
 mod named;
 mod near;
-mod plan;
 mod policy;
 mod property;
 mod read;
@@ -35,7 +34,6 @@ mod severity;
 mod shelf;
 mod side;
 mod table;
-mod tags;
 mod tangle;
 #[cfg(test)]
 mod tests;
@@ -55,7 +53,6 @@ pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 pub use shelf::{composites_near, description_near};
 pub use side::SideFile;
 pub use table::table;
-use tags::Tag;
 use tangle::Swallowed;
 pub use values::read_values;
 
@@ -173,8 +170,6 @@ struct Loader<'d> {
     severities: Vec<SeverityRule>,
     /// The names of what other files declare.
     outside: Vec<OutsideName>,
-    /// What is known of each shape of start tags of the document.
-    tags: Vec<Tag>,
     /// Why its tags do not fit, where they do not.
     tangle: Option<xml::Tangle>,
     swallowed: Option<Swallowed>,
@@ -191,7 +186,6 @@ impl<'d> Loader<'d> {
             newer: Vec::new(),
             severities: Vec::new(),
             outside: Vec::new(),
-            tags: Vec::new(),
             tangle: None,
             swallowed: None,
         }
@@ -200,4 +194,9 @@ impl<'d> Loader<'d> {
     fn report(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
     }
+}
+
+/// Rarely needed fields in a box; `None` where all have their defaults.
+fn boxed<T: Default + PartialEq>(fields: T) -> Option<Box<T>> {
+    (fields != T::default()).then(|| Box::new(fields))
 }

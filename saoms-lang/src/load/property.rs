@@ -1,25 +1,17 @@
 //! Properties.
 
-use super::Loader;
 use super::children::Family;
 use super::vocabulary::{COMPONENT, COMPOSITE, Kind, OWN_ELEMENTS};
+use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::{Origin, OutsideKind, Part, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
-use crate::xml::{Attribute, Element, ElementId};
+use crate::xml::{Element, ElementId};
 
 impl Loader<'_> {
     pub(super) fn property(&mut self, element: Element<'_>, kind: &'static Kind) -> Property {
-        // In SCA 1.0 the first `value` is told.
-        let knows_value = self.version.is_1_1() || self.newer.contains(&"value");
-        let usual: &[&str] = if knows_value { &["name", "value"] } else { &["name"] };
-        let is_plain = self.is_plain(element, kind, usual);
+        self.check_attributes(element, kind);
         let name = self.name(element);
-        if is_plain && element.is_empty() {
-            let simple = self.attribute(element, "value").map(Attribute::trimmed);
-            let is_attribute = simple.is_some();
-            return Property { origin: Origin::of(element), name, simple, is_attribute, details: None };
-        }
         let mut values = Vec::new();
         let mut content = Vec::new();
         for child in element.children() {
@@ -48,22 +40,16 @@ impl Loader<'_> {
             let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message);
             self.report(one.label(first.tag(), "the other one").help("keep one of them"));
         }
-        let value = self.attribute(element, "value").map(Attribute::trimmed);
+        let value = self.optional(element, "value");
         let is_attribute = value.is_some();
         let (simple, inside) = match text {
             Some(text) if is_attribute => (value, Some(text)),
             text => (value.or(text), None),
         };
-        let is_plain = is_plain && values.is_empty() && content.is_empty() && inside.is_none();
-        let details = if is_plain {
-            None
-        } else {
-            Some(Box::new(self.details(element, kind, inside, values, content)))
-        };
+        let details = boxed(self.details(element, kind, inside, values, content));
         Property { origin: Origin::of(element), name, simple, is_attribute, details }
     }
 
-    /// What few properties have.
     fn details(
         &mut self,
         element: Element<'_>,

@@ -26,7 +26,7 @@ pub fn read_values(
     let folder = own.parent().map(Path::to_owned).unwrap_or_default();
     // Many components may share a file.
     let mut known: HashMap<PathBuf, FileValue> = HashMap::new();
-    let properties = composite.unusual_mut().flat_map(|component| {
+    let properties = composite.components.iter_mut().flat_map(|component| {
         let of_loops = component
             .details
             .iter_mut()
@@ -58,9 +58,8 @@ pub fn read_values(
             (details.from_file, details.document) = (text, document);
         }
     }
-    for replicas in
-        composite.unusual_mut().filter_map(|component| component.details.as_mut()?.replicas.as_mut())
-    {
+    let components = composite.components.iter_mut();
+    for replicas in components.filter_map(|component| component.details.as_mut()?.replicas.as_mut()) {
         let Some(file) = &replicas.overrides else { continue };
         let path = folder.join(file.as_str());
         match read::value(&path, max_size, file.location, sources.open()) {

@@ -44,9 +44,6 @@ pub struct Composite {
     pub policy: Policy,
     /// The names in it of what other files declare, in order.
     pub outside: Vec<OutsideName>,
-    /// The places of the components that have more than most ([`Component::is_usual`]), in order: some look for what those alone can have, and
-    /// of a large fleet there are few.
-    pub(crate) unusual: Vec<u32>,
 }
 
 /// The name of something that another file declares.
@@ -158,19 +155,5 @@ impl Composite {
     /// The first component of this name.
     pub fn component(&self, name: &str) -> Option<&Component> {
         self.components.iter().find(|component| component.name == name)
-    }
-
-    /// The components that have more than most.
-    pub(crate) fn unusual(&self) -> impl Iterator<Item = &Component> {
-        self.unusual.iter().filter_map(|place| self.components.get(*place as usize))
-    }
-
-    /// The same, to be changed.
-    pub(crate) fn unusual_mut(&mut self) -> impl Iterator<Item = &mut Component> {
-        let (mut rest, mut next) = (self.components.iter_mut(), 0);
-        self.unusual.iter().filter_map(move |place| {
-            let skipped = std::mem::replace(&mut next, place + 1);
-            rest.nth((place - skipped) as usize)
-        })
     }
 }

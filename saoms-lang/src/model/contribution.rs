@@ -91,7 +91,7 @@ impl Composite {
     /// All places in it that name other composites, in no order.
     pub fn namings(&self) -> impl Iterator<Item = Naming<'_>> {
         let includes = self.includes.iter().filter_map(Naming::of_include);
-        includes.chain(self.unusual().filter_map(Naming::of_component))
+        includes.chain(self.components.iter().filter_map(Naming::of_component))
     }
 
     /// Its target namespace; empty for none.

@@ -12,15 +12,12 @@ mod contract;
 mod contribution;
 mod looping;
 mod origin;
-mod place;
 mod policy;
-mod properties;
 mod property;
 mod replicas;
 mod severity;
 mod version;
 
-pub(crate) use component::Names;
 pub use component::{Component, ComponentDetails, Implementation, ImplementationKind};
 pub use component_type::ComponentType;
 pub use composite::{Composite, Include, OutsideKind, OutsideName, Wire, WireDetails};
@@ -30,10 +27,7 @@ pub use contract::{
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
 pub use looping::Loop;
 pub use origin::{Origin, Part};
-pub(crate) use place::{Copied, Place};
 pub use policy::Policy;
-pub use properties::Properties;
-pub(crate) use properties::{Pair, Pattern, Placed, Value};
 pub use property::{Property, PropertyDetails, PropertyValue, ValueDocument};
 pub use replicas::{Replicas, Row, Table};
 pub use severity::SeverityRule;

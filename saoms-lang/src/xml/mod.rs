@@ -29,7 +29,6 @@ mod tree;
 mod unbound;
 mod value;
 
-pub(crate) use arena::Alike;
 pub use attribute::Attribute;
 pub use element::Element;
 pub use escape::escaped;
@@ -37,7 +36,7 @@ pub(crate) use mend::{Mended, mend};
 pub use node::Node;
 pub use parse::{Parsed, Tangle, parse};
 pub use tree::{Document, ElementId};
-pub(crate) use value::{Writing, is_plain};
+pub(crate) use value::Writing;
 
 /// The namespace to which the prefix `xml` is bound always.
 pub const XML_NAMESPACE: &str = "http://www.w3.org/XML/1998/namespace";

@@ -2,7 +2,6 @@
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests, outside test functions")]
 
-mod alike;
 mod assemblies;
 mod classes;
 mod component_types;

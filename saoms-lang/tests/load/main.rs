@@ -8,7 +8,6 @@ mod definitions;
 mod exchange;
 mod files;
 mod folders;
-mod forms;
 mod imports;
 mod intents;
 mod named;

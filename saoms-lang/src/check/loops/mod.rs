@@ -11,7 +11,7 @@ use smol_str::SmolStr;
 
 use super::checked::{Checks, Elsewhere, Kept};
 use super::classes::ClassIndex;
-use super::findings::{Subject, Written};
+use super::findings::Subject;
 use super::fleet::{Fleet, Kind, Member};
 use super::parameters::Parameters;
 use super::properties::{self, Giver};
@@ -46,7 +46,7 @@ impl Resolved<'_> {
     pub(super) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
         self.changed.iter().flat_map(|changed| changed.iter()).map(|one| {
             let (spec, Loop { name, properties, .. }) = (&self.specs[one.place], one.element);
-            let (values, elsewhere, properties) = (&spec.values, &one.elsewhere, Written::Loop(properties));
+            let (values, elsewhere, properties) = (&spec.values, &one.elsewhere, properties);
             (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, elsewhere })
         })
     }
@@ -100,7 +100,7 @@ pub(super) fn resolve<'a>(
         };
         let class = &classes[index];
         // A component that says nothing about its loops has them as those have that were there before it.
-        let has_none = member.is_usual || member.component.loops().is_empty();
+        let has_none = member.component.loops().is_empty();
         let plain = has_none.then(|| (index, list::choice(class, checked)));
         if let Some((index, choice)) = plain {
             let is_same = |one: &&Usual| one.of.0 == index && one.of.1.as_deref() == choice;
@@ -187,9 +187,6 @@ fn sources<'a>(
 
 /// What can be said of the loops of a component that has no class.
 fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
-    if member.is_usual {
-        return;
-    }
     let loops = member.component.loops();
     sources(loops.iter().flat_map(|one| &one.properties), member, parameters, report);
     if let (Kind::Composite(_), Some(first)) = (member.kind, loops.first()) {

@@ -144,7 +144,7 @@ impl Loader<'_> {
         self.check_attributes(element, &INTENT_MAP);
         self.no_text(element);
         let provides = self.needed(element, "provides", OutsideKind::Intent);
-        let default = self.attribute(element, "default");
+        let default = element.attribute("default");
         if let Some(old) = default.filter(|_| is_1_1) {
             let at = old.name_span().in_file(element.document().file());
             let one = "`default` is an attribute of SCA 1.0, and this file is of SCA 1.1";

@@ -1,8 +1,6 @@
 mod extension;
 mod finder;
-mod forms;
 mod large;
-mod many;
 mod mended;
 mod reading;
 mod slips;
