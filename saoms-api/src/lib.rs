@@ -69,6 +69,7 @@ mod component;
 pub mod contain;
 mod context;
 pub mod declaration;
+pub mod extension;
 mod failure;
 mod field;
 mod finding;

@@ -95,6 +95,16 @@ pub(crate) enum WrongDuration {
     Other,
 }
 
+/// The units of durations that [`parse_duration`] reads, with their names; the most frequent come first.
+pub const DURATION_UNITS: [(&str, &str); 6] = [
+    ("ms", "milliseconds"),
+    ("s", "seconds"),
+    ("us", "microseconds"),
+    ("min", "minutes"),
+    ("h", "hours"),
+    ("ns", "nanoseconds"),
+];
+
 /// [`parse_duration`] that can run while a program is compiled. The arithmetic is exact.
 pub(crate) const fn read_duration(text: &str) -> Result<Duration, WrongDuration> {
     let text = text.as_bytes().trim_ascii();

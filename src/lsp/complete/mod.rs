@@ -4,9 +4,9 @@ mod attributes;
 mod elements;
 mod ends;
 mod item;
+mod language;
 pub(super) mod names;
 mod paths;
-mod scenario;
 mod sources;
 pub(super) mod table;
 #[cfg(test)]
@@ -90,8 +90,8 @@ fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
             {
                 return Some(inside);
             }
-            scenario::is_one(scene, file, property.element)
-                .then(|| scenario::complete(scene, file, whole, at))
+            let language = language::of_property(scene, file, property.element)?;
+            Some(language::complete(language, scene, file, whole, at))
         })
     });
     found.unwrap_or_default()

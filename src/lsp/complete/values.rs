@@ -3,24 +3,15 @@
 use std::ops::Range;
 
 use saoms_api::declaration::PropertyKind;
+use saoms_api::extension::DURATION_UNITS;
 use saoms_lang::registry::PropertyDeclaration;
 
-use super::{Proposal, names, scenario, topics, value};
+use super::{Proposal, language, names, topics, value};
 use crate::lsp::describe;
 use crate::lsp::scene::Scene;
 use crate::lsp::symbol::Symbol;
 use crate::lsp::syntax::local;
 use crate::lsp::topics::RENAME;
-
-/// The units of durations, as often as they are meant.
-pub(super) const UNITS: &[(&str, &str)] = &[
-    ("ms", "milliseconds"),
-    ("s", "seconds"),
-    ("us", "microseconds"),
-    ("min", "minutes"),
-    ("h", "hours"),
-    ("ns", "nanoseconds"),
-];
 
 /// The values that a property of a component, or of a loop, can have.
 pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Proposal> {
@@ -31,8 +22,8 @@ pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: 
     if name == RENAME {
         return topics::complete(scene, property, range, at);
     }
-    if scenario::is_one(scene, 0, property) {
-        return scenario::complete(scene, 0, range, at);
+    if let Some(language) = language::of_property(scene, 0, property) {
+        return language::complete(language, scene, 0, range, at);
     }
     let declared = names::declared(scene, parent);
     let Some((one, preset)) = declared.into_iter().find(|(one, _)| one.name == name) else {
@@ -108,7 +99,7 @@ fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> 
         PropertyKind::Boolean => ["true", "false"].map(|word| value(word, range)).into(),
         PropertyKind::Duration => {
             let number = typed.trim_end_matches(|c: char| c.is_ascii_alphabetic()).trim();
-            let units = UNITS.iter().zip(1..);
+            let units = DURATION_UNITS.iter().zip(1..);
             match number.parse::<f64>() {
                 Ok(_) => units
                     .map(|((unit, what), rank)| {

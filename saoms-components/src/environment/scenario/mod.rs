@@ -1,5 +1,6 @@
 //! What a scenario says: lines of events, as `docs/scenarios.md` describes them.
 
+mod complete;
 mod draw;
 mod event;
 mod line;

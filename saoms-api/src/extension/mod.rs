@@ -1,0 +1,13 @@
+//! What a crate of components adds to the program beside classes, loops and rules.
+//!
+//! A crate knows its domain; the program does not. The crate registers with [`submit!`] what only it can tell, and the program shows it:
+//! [`PropertyLanguage`] in editors.
+//!
+//! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
+
+mod language;
+
+pub use inventory::submit;
+
+pub use crate::time::DURATION_UNITS;
+pub use language::{Completion, CompletionKind, PropertyLanguage, PropertyText};

@@ -1,0 +1,91 @@
+//! Completion of scenarios in editors.
+
+use saoms_api::extension::{
+    Completion, CompletionKind, DURATION_UNITS, PropertyLanguage, PropertyText, submit,
+};
+
+use super::{Next, next};
+
+submit! { PropertyLanguage { class: "saoms.Environment", property: "scenario", complete } }
+
+/// The class of the components that break down.
+const ROBOT: &str = "saoms.Robot";
+
+/// The words that can stand at the cursor.
+fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
+    let PropertyText { text, at, components } = *scenario;
+    let line = text[..at].rfind(['\n', '\r', ';']).map_or(0, |found| found + 1);
+    let before = &text[line..at];
+    if before.contains('#') {
+        return Vec::new();
+    }
+    let start = word_start(before);
+    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    let typed = before[start..].trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let rest = &text[at..];
+    let end = at + rest.find(|c: char| c.is_whitespace() || ";.)<".contains(c)).unwrap_or(rest.len());
+    let end = end + usize::from(before[start..].starts_with('(') && text[end..].starts_with(')'));
+    let word = line + start..end;
+    let value = |label: &str| Completion::new(label, CompletionKind::Value, &word);
+    let mut all = Vec::new();
+    for (one, rank) in next(&before[..start]).into_iter().zip(0..) {
+        match one {
+            Next::Word(name) => {
+                let one = Completion::new(name, CompletionKind::Keyword, &word);
+                all.push(one.detail(meaning(name)).rank(rank));
+            }
+            Next::Time if is_number(typed) => {
+                let units = DURATION_UNITS.iter().zip(1..);
+                all.extend(
+                    units.map(|((unit, name), rank)| {
+                        value(&format!("{typed}{unit}")).detail(*name).rank(rank)
+                    }),
+                );
+            }
+            Next::Time => all.push(value("1s").detail("a time: `500ms`, `6s`, or a range `2s..8s`")),
+            Next::Times => {
+                let number = if is_number(typed) { typed } else { "3" };
+                all.push(value(&format!("{number} times")).detail("how often").rank(6));
+            }
+            Next::Pieces => all.push(value("4").detail("how many pieces of luggage, or a range `2..8`")),
+            Next::Place => {
+                let block = value("(0,0)").snippet("(${1:0},${2:0})");
+                all.push(block.detail("column and row of a block, or a range `(0,0)..(9,9)`"));
+                all.push(value("random").detail("any block of the area"));
+            }
+            Next::Robot => {
+                let robot = |name| Completion::new(name, CompletionKind::Component, &word);
+                all.extend(components(ROBOT).into_iter().map(robot));
+            }
+        }
+    }
+    all
+}
+
+/// The byte at which the last word of a line begins.
+fn word_start(line: &str) -> usize {
+    // A block is one word, also where it has blanks.
+    match (line.rfind('('), line.rfind(')')) {
+        (Some(open), close) if close.is_none_or(|close| close < open) => open,
+        _ => {
+            let blank = line.trim_end_matches(|c: char| !c.is_whitespace()).len();
+            line.rfind("..").map_or(0, |dots| dots + 2).max(blank)
+        }
+    }
+}
+
+fn meaning(word: &str) -> &'static str {
+    match word {
+        "at" => "once, at a time from the start",
+        "from" => "again and again, from a time on",
+        "then" => "after the event of the line before",
+        "every" => "the time from one event to the next",
+        "until" => "the time after which there are no more",
+        "luggage" => "luggage waits at a block to be brought `to` another one",
+        "landing" => "an airplane lands, and so many pieces are expected",
+        "takeoff" => "an airplane is about to take off, and so many pieces are expected",
+        "breakdown" => "a robot breaks down where it is",
+        "end" => "nothing; the run goes on until then",
+        _ => "",
+    }
+}
