@@ -23,7 +23,7 @@ const ORDERS: &[(&str, &[&str])] = &[
             "check",
         ],
     ),
-    ("saoms-core", &["hash", "plugin", "assemble", "bus", "journal", "report", "schedule"]),
+    ("saoms-core", &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "schedule"]),
 ];
 
 fn root() -> &'static Path {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 // Its classes are found only where the crate is used.
 use saoms_components as _;
 use saoms_core::report::{RunReport, Status};
-use saoms_core::schedule::{Fleet, Quiet, Settings};
+use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::{Diagnostics, Severity, human};
@@ -48,7 +48,7 @@ pub(crate) fn checked(text: String) -> Outcome<Checked> {
 
 /// Starts the fleet of a composite. Nobody is told what happens in it.
 pub(crate) fn start(assembly: Assembly, settings: Settings) -> Outcome<Fleet> {
-    Ok(Fleet::start(assembly, settings, Arc::new(Quiet))?)
+    Ok(Fleet::start(assembly, settings, Vec::new())?)
 }
 
 /// The report of a fleet that has to end without a failure.

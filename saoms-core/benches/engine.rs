@@ -12,7 +12,7 @@ use saoms_api::{
     Class, Component, Context, DynLoop, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
     Properties, PropertyValue, Publisher, Record, Registration, Subscription, Time, Topic, record,
 };
-use saoms_core::schedule::{Fleet, Quiet, Settings};
+use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, TaskSettings};
 use saoms_lang::registry::Registry;
 
@@ -246,7 +246,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
             loops: std::sync::Arc::default(),
         });
     }
-    Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Arc::new(Quiet))?)
+    Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
 }
 
 /// The memory of this process, in bytes.

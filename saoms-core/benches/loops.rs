@@ -12,7 +12,7 @@ use saoms_api::{
     Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties,
     Record, Registration, Time, record,
 };
-use saoms_core::schedule::{Fleet, Quiet, Settings};
+use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskSettings};
 use saoms_lang::registry::Registry;
 
@@ -217,5 +217,5 @@ fn start(changes: Option<&str>) -> Result<Fleet, Box<dyn std::error::Error>> {
         references: Vec::new(),
         loops: changes.map(of).into_iter().collect(),
     }];
-    Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Arc::new(Quiet))?)
+    Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
 }

@@ -4,6 +4,7 @@ pub mod assemble;
 pub mod bus;
 mod hash;
 pub mod journal;
+pub mod observe;
 pub mod plugin;
 pub mod report;
 pub mod schedule;

@@ -1,16 +1,15 @@
 //! Real-time scheduling, in a process of its own because it locks the memory of the process.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_core::report::Status;
-use saoms_core::schedule::{Fleet, Quiet, Settings, StartError};
+use saoms_core::schedule::{Fleet, Settings, StartError};
 use saoms_lang::assembly::Assembly;
 
 #[test]
 fn realtime_works_or_says_what_to_grant() {
     let settings = Settings { realtime: true, limit: Some(Duration::from_millis(20)), ..Settings::default() };
-    match Fleet::start(Assembly::default(), settings, Arc::new(Quiet)) {
+    match Fleet::start(Assembly::default(), settings, Vec::new()) {
         Ok(fleet) => assert_eq!(fleet.run_to_end().outcome.status, Status::Elapsed),
         Err(error @ StartError::Realtime(_)) => {
             let text = error.to_string();

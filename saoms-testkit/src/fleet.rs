@@ -3,9 +3,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_core::observe::Observer;
 use saoms_core::plugin::{Search, open_named};
 use saoms_core::report::RunReport;
-use saoms_core::schedule::{Events, Settings};
+use saoms_core::schedule::Settings;
 use saoms_lang::assembly::Assembly;
 use saoms_lang::check::{Options, Setting, SeveritySetting, Variable, check};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, human};
@@ -147,7 +148,7 @@ impl Fleet {
     /// With all diagnostics when the composites have errors, and with the component's words when one does not start.
     pub fn run(&self, seed: u64, limit: Duration) -> Run {
         let log = Arc::new(Log::default());
-        let report = self.run_with(seed, limit, Arc::clone(&log) as Arc<dyn Events>);
+        let report = self.run_with(seed, limit, log.clone());
         Run::new(report, &log)
     }
 
@@ -156,11 +157,11 @@ impl Fleet {
     /// # Panics
     /// As [`run`](Fleet::run).
     #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
-    pub fn run_with(&self, seed: u64, limit: Duration, events: Arc<dyn Events>) -> RunReport {
+    pub fn run_with(&self, seed: u64, limit: Duration, observer: Arc<dyn Observer>) -> RunReport {
         let (assembly, sources, diagnostics, _) = self.checked();
         let Some(assembly) = assembly else { panic!("{}", human(&diagnostics, &sources, false)) };
         let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
-        match saoms_core::schedule::Fleet::start(assembly, settings, events) {
+        match saoms_core::schedule::Fleet::start(assembly, settings, vec![observer]) {
             Ok(fleet) => fleet.run_to_end(),
             Err(error) => panic!("{error}"),
         }

@@ -4,8 +4,8 @@ use std::sync::{Mutex, PoisonError};
 
 use saoms_api::{Level, Time};
 use saoms_core::journal::Journal;
+use saoms_core::observe::{Event, Observer};
 use saoms_core::report::RunReport;
-use saoms_core::schedule::{Event, Events};
 
 /// A run that has ended: its report, its journal and its log.
 ///
@@ -70,7 +70,7 @@ impl Log {
     }
 }
 
-impl Events for Log {
+impl Observer for Log {
     fn event(&self, event: &Event) {
         if event.what.level() <= Level::Info {
             self.events().push(event.clone());

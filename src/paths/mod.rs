@@ -20,7 +20,7 @@ mod recording;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use saoms_api::TopicDeclaration;
-use saoms_core::schedule::Sent;
+use saoms_core::observe::Sent;
 
 use recording::Recording;
 

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use saoms_api::Time;
+use saoms_core::observe::{Event, Interest, Observer, Occurrence};
 use saoms_core::report::RunReport;
-use saoms_core::schedule::{Event, Events, Occurrence};
 use saoms_testkit::Fleet;
 
 /// A run that is over.
@@ -28,7 +28,7 @@ struct Line {
 #[derive(Default)]
 struct Listener(Mutex<Vec<Line>>);
 
-impl Events for Listener {
+impl Observer for Listener {
     fn event(&self, event: &Event) {
         let (log, text) = match &event.what {
             Occurrence::Console { text } => (false, text),
@@ -40,8 +40,8 @@ impl Events for Listener {
         self.0.lock().unwrap().push(line);
     }
 
-    fn wants_console(&self) -> bool {
-        true
+    fn interest(&self) -> Interest {
+        Interest { console: true, ..Interest::default() }
     }
 }
 

@@ -130,15 +130,23 @@ impl Bus {
         subscription.topic
     }
 
-    /// Lets [`is_observed`](Bus::is_observed) answer that somebody outside the fleet wants the messages of a topic.
-    pub fn observe(&mut self, topic: TopicId) {
-        self.topics[topic.0 as usize].observed = true;
+    /// Notes the numbers of observers outside the fleet that want the messages of a topic.
+    pub fn observe(&mut self, topic: TopicId, observers: &[u32]) {
+        let known = &mut self.topics[topic.0 as usize].observers;
+        let more: Vec<u32> = observers
+            .iter()
+            .copied()
+            .filter(|one| known.as_ref().is_none_or(|known| !known.contains(one)))
+            .collect();
+        if !more.is_empty() {
+            *known = Some(known.iter().flat_map(|known| known.iter().copied()).chain(more).collect());
+        }
     }
 
-    /// Whether somebody outside the fleet wants its messages.
+    /// The numbers of the observers outside the fleet that want its messages; `None` where nobody does.
     #[inline]
-    pub fn is_observed(&self, topic: TopicId) -> bool {
-        self.topics[topic.0 as usize].observed
+    pub fn observers(&self, topic: TopicId) -> Option<&Arc<[u32]>> {
+        self.topics[topic.0 as usize].observers.as_ref()
     }
 
     /// The name of a topic.

@@ -13,8 +13,8 @@ pub(super) struct Topic {
     pub(super) name_hash: u64,
     /// Publishers and subscribers together. A topic without any may change its type.
     pub(super) users: usize,
-    /// Somebody outside the fleet wants its messages.
-    pub(super) observed: bool,
+    /// The numbers of the observers outside the fleet that want its messages.
+    pub(super) observers: Option<Arc<[u32]>>,
     message: String,
     schema: String,
     first_user: Arc<str>,
@@ -49,7 +49,7 @@ impl Topic {
             name_hash: name.bytes().fold(0, |hash, byte| fold(hash, u64::from(byte))),
             name,
             users: 1,
-            observed: false,
+            observers: None,
             message: declared.message.to_owned(),
             schema: declared.schema.to_owned(),
             first_user: Arc::clone(by),
@@ -80,7 +80,7 @@ impl Topic {
         if !same {
             self.message = declared.message.to_owned();
             self.schema = declared.schema.to_owned();
-            self.observed = false;
+            self.observers = None;
             self.store = store(declared.kind);
         }
         self.users += 1;

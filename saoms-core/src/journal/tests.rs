@@ -1,10 +1,9 @@
-use std::fs::File;
 use std::sync::atomic::AtomicU64;
 
 use saoms_api::{Cause, Phase, Time, Value, record};
 
 use super::recorder::{Recorder, Stamp};
-use super::{Journal, JournalFile, Named, ReadError, Stream, read};
+use super::{Journal, ReadError, read};
 
 /// A recorder in its first execution, and what stamps its records.
 fn recorder() -> (Recorder, AtomicU64) {
@@ -59,50 +58,6 @@ fn a_loop_that_paused_begins_anew() {
         recorder.write(stamp(&ids), Phase::Symptom, &record!("sees it"), &[]);
     }
     assert_eq!(recorder.batch.len(), 2);
-}
-
-#[test]
-fn a_full_disk_is_told_once_and_all_that_is_missing_is_counted() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("journal");
-    let named = Named { name: "A".to_owned(), id: None };
-    let mut file = JournalFile::create(&path, 1, true, &[named]).unwrap();
-    // As good as a full disk: nothing can be written to it any more.
-    file.replace(File::open(&path).unwrap());
-    let stream = Stream::new(true);
-    let (mut recorder, ids) = recorder();
-    for _ in 0..5 {
-        recorder.write(stamp(&ids), Phase::Effect, &record!("acts"), &[]);
-    }
-    stream.put(0, &recorder);
-    stream.close(Time::START);
-    let told = AtomicU64::new(0);
-    let written = stream.write_to(file, |_| {
-        told.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-    });
-    assert_eq!(written.lost, 5);
-    assert!(written.error.is_some());
-    assert_eq!(told.into_inner(), 1);
-}
-
-#[test]
-fn in_real_time_what_finds_no_room_is_counted() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("journal");
-    let named = Named { name: "A".to_owned(), id: None };
-    let file = JournalFile::create(&path, 1, false, &[named]).unwrap();
-    let stream = Stream::new(false);
-    let (mut recorder, ids) = recorder();
-    for _ in 0..1000 {
-        recorder.write(stamp(&ids), Phase::Effect, &record!("acts"), &[]);
-    }
-    for _ in 0..70 {
-        stream.put(0, &recorder);
-    }
-    stream.close(Time::from_nanos(5));
-    assert_eq!(stream.write_to(file, |_| {}).lost, 4000);
-    let text = std::fs::read_to_string(&path).unwrap();
-    assert_eq!(text.lines().last(), Some(r#"{"end":{"lost":4000,"records":70000,"time_s":5e-9}}"#));
 }
 
 const HEAD: &str = r#"{"journal":1,"seed":7,"clock":"virtual","components":[{"name":"A","id":"1"}]}"#;

@@ -1,11 +1,11 @@
 use std::sync::atomic::Ordering;
 
 use super::engine::{Engine, Phase};
-use super::observe::Occurrence;
 use super::slot::State;
 use super::sys;
 use crate::assemble::Plan;
 use crate::journal::Journal;
+use crate::observe::Occurrence;
 use crate::report::{
     ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, Sections, Status, Votes,
 };

@@ -6,14 +6,14 @@ use saoms_api::{Chance, Failure, Time, Work};
 
 use super::body::{Body, Job, Part};
 use super::ending::Cause;
-use super::observe::{Event, News, Occurrence, Sent};
 use super::queue::Queue;
 use super::settings::{ClockKind, Settings, nanos};
 use super::slot::{NEVER, Policy, Slot, State, Wish};
 use super::trace::{Step, Trace};
 use crate::bus::Bus;
 use crate::hash::fold;
-use crate::journal::Stream;
+use crate::journal::RecordQueue;
+use crate::observe::{Event, News, Occurrence, Sent};
 use saoms_lang::assembly::{Assembly, Loss, Overrun};
 
 /// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives
@@ -30,11 +30,11 @@ pub(super) struct Engine {
     /// Somebody gave the sleeping timer something to do.
     pub(super) wake: bool,
     pub(super) trace: Option<Trace>,
-    /// On the way to the file of the journal.
-    pub(super) stream: Option<Arc<Stream>>,
+    /// Records for the observers of the journal; `None` where there is none.
+    pub(super) records: Option<Arc<RecordQueue>>,
     /// How many records of each component are kept.
     journal_capacity: usize,
-    /// Records that are not in that file.
+    /// Records that did not reach those observers.
     pub(super) lost_records: u64,
     /// Executions of all components.
     pub(super) executions: Arc<AtomicU64>,
@@ -120,7 +120,7 @@ impl Engine {
             news: Vec::new(),
             wake: false,
             trace: (settings.clock == ClockKind::Virtual).then(Trace::default),
-            stream: None,
+            records: None,
             journal_capacity: settings.journal / assembly.components.len().max(1),
             lost_records: 0,
             executions: Arc::default(),
@@ -369,8 +369,8 @@ impl Engine {
                 trace.record(head);
             }
         }
-        if let Some(stream) = &self.stream {
-            stream.put(part.index, recorder);
+        if let Some(records) = &self.records {
+            records.put(part.index, recorder);
         }
         self.slots[part.index as usize].journal.take(recorder, self.journal_capacity);
     }
@@ -384,9 +384,10 @@ impl Engine {
             if let Some(trace) = &mut self.trace {
                 trace.message(now, part.index, self.bus.name_hash(topic), &message);
             }
-            if self.bus.is_observed(topic) {
+            if let Some(observers) = self.bus.observers(topic) {
                 let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(&part.name));
-                self.news.push(News::Sent(Sent { topic, component, message: message.clone() }));
+                let sent = Sent { topic, component, message: message.clone() };
+                self.news.push(News::Sent(sent, Arc::clone(observers)));
             }
             if self.phase == Phase::Running {
                 self.bus.publish(topic, message);

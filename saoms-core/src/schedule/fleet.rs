@@ -1,7 +1,6 @@
 use std::fmt;
 use std::fs::File;
 use std::io;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
@@ -13,14 +12,14 @@ use super::clock::Clock;
 use super::drive;
 use super::engine::Phase;
 use super::lifecycle::Request;
-use super::observe::{Events, Progress};
 use super::realtime;
 use super::replace::{self, ReplaceError, Replacement};
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::slot::NEVER;
 use super::start::{self, StartError};
-use crate::journal::{JournalFile, Named, Stream, Written};
+use crate::journal::Named;
+use crate::observe::{Beginning, Observer, Progress, Told, tell_records};
 use crate::report::RunReport;
 use saoms_api::contain;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
@@ -28,15 +27,14 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 /// A fleet that runs.
 ///
 /// ```
-/// use std::sync::Arc;
 /// use std::time::Duration;
 ///
 /// use saoms_lang::assembly::Assembly;
 /// use saoms_core::report::Status;
-/// use saoms_core::schedule::{Fleet, Quiet, Settings};
+/// use saoms_core::schedule::{Fleet, Settings};
 ///
 /// let settings = Settings { limit: Some(Duration::from_secs(3600)), ..Settings::simulated(7) };
-/// let fleet = Fleet::start(Assembly::default(), settings, Arc::new(Quiet))?;
+/// let fleet = Fleet::start(Assembly::default(), settings, Vec::new())?;
 /// let report = fleet.run_to_end();
 /// assert_eq!(report.outcome.status, Status::Elapsed);
 /// assert_eq!(report.time_s, 3600.0);
@@ -50,9 +48,10 @@ pub struct Fleet {
     handle: Handle,
     /// Under `realtime`, what keeps the processors awake.
     _awake: Option<File>,
+    /// Tells observers what happens.
     teller: Option<JoinHandle<()>>,
-    /// Writes the file of the journal.
-    writer: Option<JoinHandle<Written>>,
+    /// Tells observers the records of the journal.
+    journal: Option<JoinHandle<Told>>,
 }
 
 /// A remote control of a fleet. It may be cloned and used from any thread; after the end of the run it does nothing.
@@ -94,7 +93,7 @@ impl Fleet {
     pub fn start(
         assembly: Assembly,
         settings: Settings,
-        events: Arc<dyn Events>,
+        observers: Vec<Arc<dyn Observer>>,
     ) -> Result<Fleet, StartError> {
         contain::install_hook();
         let settings = settings.checked();
@@ -105,12 +104,12 @@ impl Fleet {
         }
         let awake = realtime.then(realtime::keep_awake).transpose();
         let clock = if simulated { Clock::simulated() } else { Clock::real() };
-        let file = journal_file(&assembly, &settings).map_err(StartError::Journal)?;
-        let shared = Arc::new(Shared::new(assembly, settings, clock, events));
+        let shared = Arc::new(Shared::new(assembly, settings, clock, observers));
+        begin_observers(&shared).map_err(StartError::Observer)?;
         let teller = Arc::clone(&shared);
         let teller = thread::Builder::new()
             .name("saoms-events".to_owned())
-            .spawn(move || teller.line.tell(&teller.events, || teller.progress()))
+            .spawn(move || teller.events.tell(&teller.observers, || teller.progress()))
             .map_err(StartError::Thread)?;
         // From here on, dropping the fleet ends whatever has begun.
         let handle = Handle { shared };
@@ -121,10 +120,8 @@ impl Fleet {
             handle.shared.note(Level::Warning, text);
         }
         let mut fleet =
-            Fleet { handle, _awake: awake.unwrap_or_default(), teller: Some(teller), writer: None };
-        if let Some(file) = file {
-            fleet.writer = Some(write_journal(&fleet.handle.shared, file).map_err(StartError::Thread)?);
-        }
+            Fleet { handle, _awake: awake.unwrap_or_default(), teller: Some(teller), journal: None };
+        fleet.journal = spawn_journal(&fleet.handle.shared).map_err(StartError::Thread)?;
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
         start::start(shared)?;
@@ -164,6 +161,7 @@ impl Fleet {
         let shared = &self.handle.shared;
         let report = shared.lock().report(&shared.assembly, &shared.sections());
         self.finish();
+        self.handle.shared.observers.end(&report);
         report
     }
 
@@ -177,28 +175,28 @@ impl Fleet {
         shared.timer.wake();
     }
 
-    /// Lets the last records be written.
+    /// Lets the last records be told.
     fn finish_journal(&mut self) {
-        let Some(writer) = self.writer.take() else { return };
+        let Some(journal) = self.journal.take() else { return };
         let shared = &self.handle.shared;
-        let (stream, end) = {
+        let (records, end) = {
             let engine = shared.lock();
-            (engine.stream.clone(), Time::from_nanos(engine.ended.0))
+            (engine.records.clone(), Time::from_nanos(engine.ended.0))
         };
-        if let Some(stream) = stream {
-            stream.close(end);
+        if let Some(records) = records {
+            records.close(end);
         }
-        // Only a fault of the program itself lets it panic, which has been told on standard error.
-        let Ok(written) = writer.join() else { return };
+        // An observer that panics over records has said so on standard error.
+        let Ok(told) = journal.join() else { return };
         let mut engine = shared.lock();
-        engine.lost_records = written.lost;
-        engine.reasons.extend(written.error.map(|error| unwritten(shared, &error)));
+        engine.lost_records = told.lost;
+        engine.reasons.extend(told.failures.iter().map(ToString::to_string));
     }
 
     /// Lets the last events be told.
     fn finish(&mut self) {
         self.finish_journal();
-        self.handle.shared.close_line();
+        self.handle.shared.close_events();
         if let Some(teller) = self.teller.take() {
             // A program that panics over an event has been told so on standard error.
             let _ = teller.join();
@@ -206,29 +204,24 @@ impl Fleet {
     }
 }
 
-/// Opens the file of the journal, if there is to be one.
-fn journal_file(assembly: &Assembly, settings: &Settings) -> io::Result<Option<JournalFile>> {
-    let Some(path) = &settings.journal_file else { return Ok(None) };
-    let named = assembly
-        .components
-        .iter()
+/// Lets every observer prepare itself.
+fn begin_observers(shared: &Shared) -> Result<(), Failure> {
+    let components = shared.assembly.components.iter();
+    let named = components
         .map(|spec| Named { name: spec.path.clone(), id: spec.task.as_ref().map(|task| task.id.clone()) });
-    let simulated = settings.clock == ClockKind::Virtual;
-    JournalFile::create(path, settings.seed, simulated, &named.collect::<Vec<_>>()).map(Some)
+    let components: Vec<Named> = named.collect();
+    let (seed, is_virtual) = (shared.settings.seed, shared.clock.is_virtual());
+    shared.observers.begin(&Beginning { seed, is_virtual, components: &components })
 }
 
-/// Starts the thread that writes the journal to its file.
-fn write_journal(shared: &Arc<Shared>, file: JournalFile) -> io::Result<JoinHandle<Written>> {
-    let stream = Arc::new(Stream::new(shared.clock.is_virtual()));
-    shared.lock().stream = Some(Arc::clone(&stream));
+/// Starts the thread that tells observers the records of the journal, where one wants them.
+fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<Told>>> {
+    let Some(records) = shared.lock().records.clone() else { return Ok(None) };
     let shared = Arc::clone(shared);
-    let write = move || stream.write_to(file, |error| shared.note(Level::Error, unwritten(&shared, error)));
-    thread::Builder::new().name("saoms-journal".to_owned()).spawn(write)
-}
-
-fn unwritten(shared: &Shared, error: &io::Error) -> String {
-    let path = shared.settings.journal_file.as_deref().unwrap_or(Path::new(""));
-    format!("the journal could not be written to `{}`: {error}", path.display())
+    let tell = move || {
+        tell_records(&records, &shared.observers, |failure| shared.note(Level::Error, failure.to_string()))
+    };
+    thread::Builder::new().name("saoms-journal".to_owned()).spawn(tell).map(Some)
 }
 
 impl Drop for Fleet {

@@ -8,10 +8,10 @@ use saoms_api::{
 };
 
 use super::body::Part;
-use super::observe::{Event, Occurrence};
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::journal::Stamp;
+use crate::observe::{Event, Occurrence};
 use crate::report::Sections;
 use saoms_lang::assembly::{ComponentSpec, TaskSettings, Wire};
 use saoms_lang::registry::{ClassDeclaration, LoopDeclaration, TopicDeclaration as DeclaredTopic};
@@ -183,14 +183,12 @@ impl Host for ComponentHost<'_> {
     fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
         let task = self.may_use(topic.name, Use::Publish)?;
         let name = renamed(task, topic.name);
-        let observed = self.shared.events.wants_topic(name, topic);
+        let observers = self.shared.observers.of_topic(name, topic);
         let bus = &mut self.shared.lock().bus;
         let id = bus
             .publisher(name, topic, &self.part.name)
             .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
-        if observed {
-            bus.observe(id);
-        }
+        bus.observe(id, &observers);
         self.part.publishers.push(id);
         Ok((self.part.publishers.len() - 1) as u32)
     }
@@ -326,17 +324,17 @@ impl Host for ComponentHost<'_> {
     }
 
     fn listens(&self, level: Option<Level>) -> bool {
-        level.map_or_else(|| self.shared.line.wants_console(), |level| self.shared.line.wants(level))
+        level.map_or_else(|| self.shared.events.wants_console(), |level| self.shared.events.wants(level))
     }
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
-        if self.shared.line.wants(level) {
+        if self.shared.events.wants(level) {
             self.tell(Occurrence::Log { level, text: line.to_string() });
         }
     }
 
     fn console(&mut self, line: fmt::Arguments<'_>) {
-        if self.shared.line.wants_console() {
+        if self.shared.events.wants_console() {
             self.tell(Occurrence::Console { text: line.to_string() });
         }
     }
@@ -360,7 +358,11 @@ impl Host for ComponentHost<'_> {
 
 impl ComponentHost<'_> {
     fn tell(&self, what: Occurrence) {
-        self.shared.line.put(Event { time: self.now(), component: Some(Arc::clone(&self.part.name)), what });
+        self.shared.events.put(Event {
+            time: self.now(),
+            component: Some(Arc::clone(&self.part.name)),
+            what,
+        });
     }
 
     /// Components cannot write over what the program itself reports.

@@ -5,10 +5,10 @@ use saoms_api::{Failure, Work};
 use super::body::{Body, Job};
 use super::ending::Cause;
 use super::engine::{Engine, Phase};
-use super::observe::Occurrence;
 use super::settings::nanos;
 use super::slot::{NEVER, State, Wish};
 use super::trace::Step;
+use crate::observe::Occurrence;
 use saoms_lang::assembly::Restart;
 
 /// What can be asked of the engine about a periodic component, at any time and from anywhere. It takes effect after the code that runs at

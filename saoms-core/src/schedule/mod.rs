@@ -17,7 +17,6 @@ mod engine;
 mod fleet;
 mod host;
 mod lifecycle;
-mod observe;
 mod pulse;
 mod queue;
 mod realtime;
@@ -32,7 +31,6 @@ mod tests;
 mod trace;
 
 pub use fleet::{Fleet, Handle, UnknownComponent};
-pub use observe::{Event, Events, Occurrence, Progress, Quiet, Sent};
 pub use realtime::RealtimeError;
 pub use replace::{ReplaceError, Replacement};
 pub use settings::{ClockKind, Settings};

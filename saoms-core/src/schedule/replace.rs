@@ -11,11 +11,11 @@ use saoms_api::{DynComponent, Failure, Saved};
 use super::body::{Body, Part};
 use super::engine::{Engine, Phase};
 use super::lifecycle::Request;
-use super::observe::Occurrence;
 use super::shared::Shared;
 use super::slot::{NEVER, State};
 use crate::bus::{Subscription, TopicId};
 use crate::journal::Recorder;
+use crate::observe::Occurrence;
 use saoms_lang::assembly::ComponentSpec;
 
 /// What became of a component whose class was built anew.

@@ -1,4 +1,3 @@
-use std::path::PathBuf;
 use std::time::Duration;
 
 /// How a fleet runs.
@@ -26,8 +25,6 @@ pub struct Settings {
     /// How many records of the journal stay in memory, shared out evenly among the components; each keeps its newest 128 at least. What is
     /// older is overwritten, and counted.
     pub journal: usize,
-    /// Where the whole journal goes, as lines of JSON.
-    pub journal_file: Option<PathBuf>,
 }
 
 /// Which time a fleet runs in.
@@ -52,7 +49,6 @@ impl Default for Settings {
             grace: Duration::from_secs(2),
             virtual_watchdog: Duration::from_secs(10),
             journal: 65_536,
-            journal_file: None,
         }
     }
 }

@@ -5,10 +5,11 @@ use saoms_api::Time;
 
 use super::clock::Clock;
 use super::engine::Engine;
-use super::observe::{Event, Events, Line, Occurrence, Progress};
 use super::pulse::Pulse;
 use super::settings::Settings;
 use super::sys::Gate;
+use crate::journal::RecordQueue;
+use crate::observe::{Event, EventQueue, Observer, Observers, Occurrence, Progress};
 use crate::report::Sections;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 
@@ -20,9 +21,9 @@ pub(super) struct Shared {
     pub(super) assembly: Assembly,
     pub(super) settings: Settings,
     pub(super) clock: Clock,
-    pub(super) line: Line,
-    /// Who is told what happens; what it wants to be told is asked directly.
-    pub(super) events: Arc<dyn Events>,
+    /// What happens, on its way to the observers.
+    pub(super) events: EventQueue,
+    pub(super) observers: Observers,
     /// Where the thread with the timer's work sleeps.
     pub(super) timer: Gate,
     /// Where the spare thread that watches it sleeps.
@@ -41,6 +42,8 @@ pub(super) struct Shared {
     executions: Arc<AtomicU64>,
     /// How many threads have freed the engine and not told yet what was new.
     telling: AtomicUsize,
+    /// The queue of events is about to be closed.
+    closing: AtomicBool,
 }
 
 impl Shared {
@@ -48,10 +51,17 @@ impl Shared {
         assembly: Assembly,
         settings: Settings,
         clock: Clock,
-        events: Arc<dyn Events>,
+        observers: Vec<Arc<dyn Observer>>,
     ) -> Shared {
-        let engine = Engine::new(&assembly, &settings);
-        let line = Line::new(events.as_ref(), clock.is_virtual());
+        let mut engine = Engine::new(&assembly, &settings);
+        let observers = Observers::new(observers);
+        let interest = observers.interest();
+        let events = EventQueue::new(interest, clock.is_virtual());
+        if interest.journal {
+            let records = RecordQueue::new(clock.is_virtual());
+            engine.slots.iter().for_each(|slot| records.join(Arc::clone(&slot.name)));
+            engine.records = Some(Arc::new(records));
+        }
         Shared {
             executions: Arc::clone(&engine.executions),
             engine: Mutex::new(engine),
@@ -59,8 +69,8 @@ impl Shared {
             assembly,
             settings,
             clock,
-            line,
             events,
+            observers,
             timer: Gate::default(),
             spare: Gate::default(),
             end: Gate::default(),
@@ -70,6 +80,7 @@ impl Shared {
             ended: AtomicBool::new(false),
             records: AtomicU64::new(0),
             telling: AtomicUsize::new(0),
+            closing: AtomicBool::new(false),
         }
     }
 
@@ -89,24 +100,33 @@ impl Shared {
         }
         drop(engine);
         for event in news {
-            self.line.put(event);
+            self.events.put(event);
         }
-        if is_telling {
-            self.telling.fetch_sub(1, Ordering::Release);
+        // Both are sequentially consistent: either the thread that closes the queue sees the lower count, or it is woken.
+        if is_telling
+            && self.telling.fetch_sub(1, Ordering::SeqCst) == 1
+            && self.closing.load(Ordering::SeqCst)
+        {
+            self.end.wake();
         }
         if wake {
             self.timer.wake();
         }
     }
 
-    /// Lets everything be told that was new when the run ended, and closes the line behind it.
-    pub(super) fn close_line(&self) {
-        // Whoever has something to tell took the engine before it was seen to have ended, and needs but a moment more.
+    /// Lets everything be told that was new when the run ended, and closes the queue behind it.
+    pub(super) fn close_events(&self) {
+        // Whoever has something to tell took the engine before it was seen to have ended.
         drop(self.lock());
-        while self.telling.load(Ordering::Acquire) > 0 {
-            std::thread::yield_now();
+        self.closing.store(true, Ordering::SeqCst);
+        loop {
+            let ticket = self.end.ticket();
+            if self.telling.load(Ordering::SeqCst) == 0 {
+                break;
+            }
+            self.end.wait(ticket, None);
         }
-        self.line.close();
+        self.events.close();
     }
 
     pub(super) fn sections(&self) -> MutexGuard<'_, Sections> {
@@ -120,7 +140,7 @@ impl Shared {
     /// Something about the fleet as a whole.
     pub(super) fn note(&self, level: saoms_api::Level, text: String) {
         let time = Time::from_nanos(self.clock.now());
-        self.line.put(Event { time, component: None, what: Occurrence::Note { level, text } });
+        self.events.put(Event { time, component: None, what: Occurrence::Note { level, text } });
     }
 
     pub(super) fn progress(&self) -> Progress {

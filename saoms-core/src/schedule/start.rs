@@ -6,12 +6,12 @@ use saoms_api::Failure;
 
 use super::body::Job;
 use super::engine::{Engine, Phase};
-use super::observe::Occurrence;
 use super::realtime::RealtimeError;
 use super::shared::Shared;
 use super::slot::{State, Wish};
 use super::trace::Step;
 use crate::assemble::Plan;
+use crate::observe::Occurrence;
 use saoms_lang::assembly::Assembly;
 
 /// Why a fleet did not start. Nothing of it runs.
@@ -29,8 +29,8 @@ pub enum StartError {
     },
     /// Real-time scheduling was asked for and is not permitted.
     Realtime(RealtimeError),
-    /// The file of the journal cannot be written.
-    Journal(io::Error),
+    /// An observer of the run cannot do its work.
+    Observer(Failure),
     /// The system gives no thread.
     Thread(io::Error),
 }
@@ -42,7 +42,7 @@ impl fmt::Display for StartError {
                 write!(formatter, "component `{component}` of class `{class}` could not start: {failure}")
             }
             StartError::Realtime(error) => error.fmt(formatter),
-            StartError::Journal(error) => write!(formatter, "the journal cannot be written: {error}"),
+            StartError::Observer(failure) => failure.fmt(formatter),
             StartError::Thread(error) => {
                 write!(formatter, "the system gives no thread to run the fleet on: {error}")
             }
@@ -53,9 +53,9 @@ impl fmt::Display for StartError {
 impl std::error::Error for StartError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            StartError::Component { .. } => None,
+            StartError::Component { .. } | StartError::Observer(_) => None,
             StartError::Realtime(error) => Some(error),
-            StartError::Journal(error) | StartError::Thread(error) => Some(error),
+            StartError::Thread(error) => Some(error),
         }
     }
 }

@@ -1,11 +1,7 @@
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
-use saoms_api::{Level, Time};
-
-use super::observe::{Event, Events, Line, Occurrence, Progress};
 use super::queue::Queue;
 use super::slot::Apart;
 use super::sys::{self, Gate};
@@ -80,64 +76,4 @@ fn panics_are_contained_with_message_and_place() {
     }));
     assert!(inner.ends_with(": outer"), "{inner}");
     assert!(text(contained(|| std::panic::panic_any(5))).ends_with("panicked without a message"));
-}
-
-/// Listens slowly.
-#[derive(Default)]
-struct Listener {
-    told: Mutex<Vec<String>>,
-    progress: AtomicUsize,
-}
-
-impl Events for Listener {
-    fn event(&self, event: &Event) {
-        self.told.lock().unwrap().push(event.to_string());
-    }
-
-    fn progress_every(&self) -> Option<Duration> {
-        Some(Duration::from_millis(1))
-    }
-
-    fn progress(&self, _: &Progress) {
-        self.progress.fetch_add(1, Ordering::Relaxed);
-    }
-}
-
-fn event(number: usize) -> Event {
-    let what = Occurrence::Log { level: Level::Info, text: number.to_string() };
-    Event { time: Time::START, component: Some(Arc::from("A")), what }
-}
-
-#[test]
-fn events_beyond_the_bound_are_counted_and_lost_in_real_time() {
-    let listener = Arc::new(Listener::default());
-    let line = Line::new(listener.as_ref(), false);
-    for number in 0..70_000 {
-        line.put(event(number));
-    }
-    line.close();
-    line.tell(&(Arc::clone(&listener) as Arc<dyn Events>), Progress::default);
-    let told = listener.told.lock().unwrap();
-    assert_eq!(told.len(), 65_536 + 1);
-    assert_eq!(told[65_535], "[0.000 s] A: 65535");
-    assert_eq!(told[65_536], "[0.000 s] 4464 events came faster than they could be shown, and are lost");
-    assert!(listener.progress.load(Ordering::Relaxed) > 0);
-}
-
-#[test]
-fn events_beyond_the_bound_wait_in_virtual_time() {
-    let listener = Arc::new(Listener::default());
-    let line = Arc::new(Line::new(listener.as_ref(), true));
-    let teller = {
-        let (line, listener) = (Arc::clone(&line), Arc::clone(&listener) as Arc<dyn Events>);
-        thread::spawn(move || line.tell(&listener, Progress::default))
-    };
-    for number in 0..200_000 {
-        line.put(event(number));
-    }
-    line.close();
-    teller.join().unwrap();
-    let told = listener.told.lock().unwrap();
-    assert_eq!(told.len(), 200_000);
-    assert_eq!(told[199_999], "[0.000 s] A: 199999");
 }

@@ -168,8 +168,8 @@ fn what_is_sent_at_the_end_overflows_no_queue() {
 #[test]
 fn a_program_that_listens_slowly_does_not_make_a_component_look_stuck() {
     struct Slow(std::sync::atomic::AtomicUsize);
-    impl saoms_core::schedule::Events for Slow {
-        fn event(&self, _: &saoms_core::schedule::Event) {
+    impl saoms_core::observe::Observer for Slow {
+        fn event(&self, _: &saoms_core::observe::Event) {
             if self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) == 0 {
                 std::thread::sleep(std::time::Duration::from_millis(1500));
             }
@@ -181,7 +181,7 @@ fn a_program_that_listens_slowly_does_not_make_a_component_look_stuck() {
     };
     let assembly = crate::fleet::assembly("A actor period=1 each=[log a]");
     let slow = std::sync::Arc::new(Slow(std::sync::atomic::AtomicUsize::new(0)));
-    let fleet = saoms_core::schedule::Fleet::start(assembly, settings, slow.clone()).unwrap();
+    let fleet = saoms_core::schedule::Fleet::start(assembly, settings, vec![slow.clone()]).unwrap();
     assert_eq!(outcome(&fleet.run_to_end()), "Elapsed after 70 s");
     assert_eq!(slow.0.load(std::sync::atomic::Ordering::Relaxed), 70_002);
 }

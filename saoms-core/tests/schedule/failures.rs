@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use saoms_core::schedule::Occurrence;
+use saoms_core::observe::Occurrence;
 
 use crate::fleet::{check, of, outcome, run, simulated};
 
@@ -83,7 +83,7 @@ fn a_restart_that_fails_counts_too() {
     assert_eq!(of(&report, "A").restarts, 2);
     assert_eq!(of(&report, "A").failures, 3);
     assert_eq!(diary.count(|event| matches!(event.what, Occurrence::Restarted { .. })), 2);
-    let pause = |event: &saoms_core::schedule::Event| match event.what {
+    let pause = |event: &saoms_core::observe::Event| match event.what {
         Occurrence::Failed { restart, .. } => restart,
         _ => None,
     };

@@ -5,9 +5,10 @@ use std::fmt::Write;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use saoms_api::{Level, PropertyValue, Registration, parse_duration};
+use saoms_api::{PropertyValue, Registration, parse_duration};
+use saoms_core::observe::{Event, Interest, Observer, Occurrence};
 use saoms_core::report::{ComponentReport, RunReport};
-use saoms_core::schedule::{Event, Events, Fleet, Occurrence, Settings, StartError};
+use saoms_core::schedule::{Fleet, Settings, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, Target, TaskSettings, Wire};
 use saoms_lang::registry::Registry;
 
@@ -125,17 +126,13 @@ pub(crate) struct Diary {
     pub(crate) events: Mutex<Vec<Event>>,
 }
 
-impl Events for Diary {
+impl Observer for Diary {
     fn event(&self, event: &Event) {
         self.events.lock().unwrap().push(event.clone());
     }
 
-    fn log_level(&self) -> Option<Level> {
-        Some(Level::Info)
-    }
-
-    fn wants_console(&self) -> bool {
-        true
+    fn interest(&self) -> Interest {
+        Interest { console: true, ..Interest::default() }
     }
 }
 
@@ -179,7 +176,7 @@ pub(crate) fn real(milliseconds: u64) -> Settings {
 /// Starts the fleet of a text.
 pub(crate) fn start(text: &str, settings: Settings) -> (Result<Fleet, StartError>, Arc<Diary>) {
     let diary = Arc::new(Diary::default());
-    (Fleet::start(assembly(text), settings, Arc::clone(&diary) as Arc<dyn Events>), diary)
+    (Fleet::start(assembly(text), settings, vec![diary.clone()]), diary)
 }
 
 /// Runs the fleet of a text to its end.

@@ -2,18 +2,25 @@
 
 mod actors;
 
+use std::path::Path;
 use std::sync::Arc;
 
 use saoms_core::journal::{Journal, LoopCounts, read};
+use saoms_core::observe::JournalFile;
 use saoms_core::report::{RunReport, Status};
-use saoms_core::schedule::{Fleet, Quiet, Settings};
+use saoms_core::schedule::{Fleet, Settings};
 
 use crate::fleet::{simulated, unindent};
 
 use actors::fleet;
 
 fn run(text: &str, settings: Settings) -> RunReport {
-    Fleet::start(fleet(text), settings, Arc::new(Quiet)).unwrap().run_to_end()
+    Fleet::start(fleet(text), settings, Vec::new()).unwrap().run_to_end()
+}
+
+/// The same with a file of the journal.
+fn run_to_file(text: &str, settings: Settings, path: &Path) -> RunReport {
+    Fleet::start(fleet(text), settings, vec![Arc::new(JournalFile::new(path))]).unwrap().run_to_end()
 }
 
 /// The records of a run in virtual time: number, cause, and the record itself.
@@ -174,9 +181,9 @@ fn place() -> (tempfile::TempDir, std::path::PathBuf) {
 #[test]
 fn the_file_holds_every_record_in_the_form_of_the_report() {
     let (_folder, path) = place();
-    let settings = Settings { journal: 0, journal_file: Some(path.clone()), ..simulated(100_000) };
+    let settings = Settings { journal: 0, ..simulated(100_000) };
     let text = PAIR.replace("every=4", "every=2");
-    let report = run(&text, settings);
+    let report = run_to_file(&text, settings, &path);
     let whole = run(&text, Settings { journal: 1_000_000, ..simulated(100_000) });
     let document = read(&std::fs::read_to_string(&path).unwrap()).unwrap();
     assert_eq!(document.journal.entries(), whole.journal.entries());
@@ -196,8 +203,8 @@ fn the_file_holds_every_record_in_the_form_of_the_report() {
 #[test]
 fn the_file_is_whole_in_real_time_too() {
     let (_folder, path) = place();
-    let settings = Settings { journal_file: Some(path.clone()), ..crate::fleet::real(60) };
-    let report = run(&PAIR.replace("period=100", "period=2").replace("delay=50", "delay=1"), settings);
+    let text = PAIR.replace("period=100", "period=2").replace("delay=50", "delay=1");
+    let report = run_to_file(&text, crate::fleet::real(60), &path);
     let document = read(&std::fs::read_to_string(&path).unwrap()).unwrap();
     assert_eq!(document.journal.entries(), report.journal.entries());
     assert!(report.journal.records > 10, "{}", report.journal.records);
@@ -205,9 +212,8 @@ fn the_file_is_whole_in_real_time_too() {
 
 #[test]
 fn a_file_that_takes_nothing_fails_the_run_and_says_why() {
-    let full = std::path::PathBuf::from("/dev/full");
-    let settings = Settings { journal_file: Some(full), ..simulated(1000) };
-    let error = Fleet::start(fleet(PAIR), settings, Arc::new(Quiet)).unwrap_err();
+    let full = Arc::new(JournalFile::new("/dev/full"));
+    let error = Fleet::start(fleet(PAIR), simulated(1000), vec![full]).unwrap_err();
     assert_eq!(error.to_string(), "the journal cannot be written: No space left on device (os error 28)");
 }
 

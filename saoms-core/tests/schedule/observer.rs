@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::sync::{Arc, Mutex};
 
 use saoms_api::{Message, TopicDeclaration};
-use saoms_core::schedule::{Event, Events, Fleet, Occurrence, Sent, Settings};
+use saoms_core::observe::{Event, Observer, Occurrence, Sent};
+use saoms_core::schedule::{Fleet, Settings};
 
 use crate::actor::Words;
 use crate::fleet::{assembly, run, simulated, unindent};
@@ -15,7 +16,7 @@ struct Reader {
     told: Mutex<String>,
 }
 
-impl Events for Reader {
+impl Observer for Reader {
     fn event(&self, event: &Event) {
         if let Occurrence::Log { .. } = event.what {
             writeln!(self.told.lock().unwrap(), "{event}").unwrap();
@@ -43,8 +44,7 @@ impl Events for Reader {
 
 fn read(topic: &'static str, fleet: &str, settings: Settings) -> (String, Option<String>) {
     let reader = Arc::new(Reader { topic, told: Mutex::default() });
-    let report =
-        Fleet::start(assembly(fleet), settings, Arc::clone(&reader) as Arc<dyn Events>).unwrap().run_to_end();
+    let report = Fleet::start(assembly(fleet), settings, vec![reader.clone()]).unwrap().run_to_end();
     let told = reader.told.lock().unwrap();
     (told.clone(), report.trace_hash)
 }

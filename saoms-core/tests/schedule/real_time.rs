@@ -1,11 +1,11 @@
 //! In real time. No test here asserts how long something took: machines are noisy.
 
-use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use saoms_core::observe::Occurrence;
 use saoms_core::report::Status;
-use saoms_core::schedule::{Fleet, Occurrence, Quiet, Settings};
+use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::Assembly;
 
 use crate::fleet::{Diary, of, outcome, real, run, start};
@@ -298,14 +298,15 @@ fn a_real_run_ends_when_the_work_is_done() {
 #[test]
 fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
     struct Clumsy;
-    impl saoms_core::schedule::Events for Clumsy {
-        fn event(&self, _: &saoms_core::schedule::Event) {
+    impl saoms_core::observe::Observer for Clumsy {
+        fn event(&self, _: &saoms_core::observe::Event) {
             // Not `panic!`, whose message would be shown among those of the tests.
             std::panic::resume_unwind(Box::new("clumsy"));
         }
     }
     let assembly = crate::fleet::assembly("A actor period=5 each=[log a]");
-    let fleet = saoms_core::schedule::Fleet::start(assembly, real(60), std::sync::Arc::new(Clumsy)).unwrap();
+    let fleet =
+        saoms_core::schedule::Fleet::start(assembly, real(60), vec![std::sync::Arc::new(Clumsy)]).unwrap();
     assert_eq!(fleet.run_to_end().outcome.status, Status::Elapsed);
 }
 
@@ -314,7 +315,7 @@ fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
 fn a_fleet_without_tasks_ends_when_its_time_is_over() {
     for _ in 0..50 {
         let settings = Settings { limit: Some(Duration::from_millis(1)), ..Settings::default() };
-        let fleet = Fleet::start(Assembly::default(), settings, Arc::new(Quiet)).unwrap();
+        let fleet = Fleet::start(Assembly::default(), settings, Vec::new()).unwrap();
         assert_eq!(fleet.run_to_end().outcome.status, Status::Elapsed);
     }
 }

@@ -1,20 +1,22 @@
-//! Shows what happens in a fleet while it happens.
+//! The observer that shows what happens in a fleet, and a summary at the end.
 
 use std::io::IsTerminal;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use saoms_api::Level;
-use saoms_core::schedule::{Event, Events, Occurrence, Progress};
+use saoms_core::observe::{Event, Interest, Observer, Occurrence, Progress};
+use saoms_core::report::RunReport;
 use saoms_lang::assembly::Assembly;
 
+use super::summary::summary;
 use super::{ConsoleStyle, RunArguments};
 use crate::output::{eprint, print};
 
-/// How narrow and how wide the column with the names of components may be.
+/// The least and the greatest width of the column with the names of components.
 const NAMES: (usize, usize) = (14, 32);
 
-/// What of the events is shown, and how.
+/// The console of a run.
 pub(crate) struct Console {
     shown: Shown,
     /// The width of the column with the names of components.
@@ -62,15 +64,7 @@ impl Console {
     }
 }
 
-impl Drop for Console {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-impl Events for Console {
+impl Observer for Console {
     fn event(&self, event: &Event) {
         let level = event.what.level();
         match (self.shown, &event.what) {
@@ -83,20 +77,18 @@ impl Events for Console {
         }
     }
 
-    fn log_level(&self) -> Option<Level> {
-        Some(match self.shown {
+    fn interest(&self) -> Interest {
+        let log = match self.shown {
             Shown::Quiet => Level::Error,
             Shown::Classic => Level::Warning,
             Shown::Plain => Level::Info,
-        })
-    }
-
-    fn wants_console(&self) -> bool {
-        self.shown == Shown::Classic
-    }
-
-    fn progress_every(&self) -> Option<Duration> {
-        self.bar.as_ref().map(|_| Duration::from_millis(100))
+        };
+        Interest {
+            log: Some(log),
+            console: self.shown == Shown::Classic,
+            progress: self.bar.as_ref().map(|_| Duration::from_millis(100)),
+            journal: false,
+        }
     }
 
     fn progress(&self, progress: &Progress) {
@@ -108,6 +100,15 @@ impl Events for Console {
             };
             bar.set_message(format!("{time} · {periods} executions{luggage}"));
             bar.tick();
+        }
+    }
+
+    fn end(&self, report: &RunReport) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+        if self.shown != Shown::Quiet {
+            print(&summary(report));
         }
     }
 }

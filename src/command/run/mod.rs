@@ -1,10 +1,11 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
 mod console;
+mod outputs;
+mod picture_file;
 mod reload;
-mod results;
+mod report_file;
 mod summary;
-mod watch;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use std::thread;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use saoms_core::observe::{JournalFile, Observer};
 use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
 use saoms_lang::assembly::Assembly;
@@ -25,12 +27,11 @@ use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{INPUT, checked};
-use crate::output::{counted, eprint, eprint_json, print, print_json};
-use crate::paths::Paths;
+use crate::output::{counted, eprint, eprint_json, print_json};
 use console::Console;
+use picture_file::PictureFile;
 use reload::{Reload, Watched};
-use summary::summary;
-use watch::Watch;
+use report_file::ReportFile;
 
 /// Check composites and run the fleet that they describe together
 #[derive(Debug, Args)]
@@ -110,15 +111,22 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         return Exit::WrongInput;
     }
     let Some(assembly) = assembly(arguments, &files) else { return Exit::WrongInput };
-    if !results::writable(arguments) {
+    if !outputs::are_writable(arguments) {
         return Exit::WrongInput;
     }
-    let paths = arguments.paths.is_some().then(Arc::<Paths>::default);
-    let watch = Watch { console: Console::new(arguments, &assembly), paths: paths.clone() };
+    let report = arguments.report.as_deref().map(|path| Arc::new(ReportFile::new(path)));
+    let picture = arguments.paths.as_deref().map(|path| Arc::new(PictureFile::new(path, title(arguments))));
+    // At the end, they write in this order.
+    let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, &assembly))];
+    observers.extend(
+        arguments.journal.as_deref().map(|path| Arc::new(JournalFile::new(path)) as Arc<dyn Observer>),
+    );
+    observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
+    observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
     let signals = Signals::new([SIGINT, SIGTERM]);
     let watched = arguments.reload.then(|| Watched::of(&assembly));
-    let fleet = match Fleet::start(assembly, settings(arguments), Arc::new(watch)) {
+    let fleet = match Fleet::start(assembly, settings(arguments), observers) {
         Ok(fleet) => fleet,
         Err(error) => {
             eprint(&format!("error: {error}\n\nthe fleet did not start: nothing runs\n"));
@@ -127,15 +135,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     };
     end_on_signals(signals, fleet.handle());
     let reload = watched.map(|watched| Reload::start(&files, &watched, fleet.handle()));
-    let report = fleet.run_to_end();
+    let outcome = fleet.run_to_end().outcome;
     drop(reload);
-    if !arguments.quiet {
-        print(&summary(&report));
-    }
-    if !results::write(arguments, &report, paths.as_deref()) {
+    if report.is_some_and(|report| report.output.has_failed())
+        || picture.is_some_and(|picture| picture.output.has_failed())
+    {
         return Exit::Failed;
     }
-    match report.outcome.status {
+    match outcome.status {
         Status::Done | Status::Elapsed => Exit::Done,
         Status::Failed => Exit::Failed,
         Status::Interrupted => Exit::Interrupted,
@@ -168,9 +175,14 @@ fn settings(arguments: &RunArguments) -> Settings {
         timer_slack: arguments.timer_slack,
         realtime: arguments.realtime,
         grace: arguments.grace,
-        journal_file: arguments.journal.clone(),
         ..Settings::default()
     }
+}
+
+/// The names of the composites.
+fn title(arguments: &RunArguments) -> String {
+    let names = arguments.fleet.files.iter().filter_map(|path| path.file_stem());
+    names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
 }
 
 /// The first Ctrl-C ends every component through its shutdown, a second one ends the process at once.

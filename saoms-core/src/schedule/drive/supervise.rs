@@ -72,7 +72,7 @@ impl Stuck {
         let allowed = nanos(shared.settings.virtual_watchdog);
         let piece = shared.pulse.begun();
         // Who waits for a program that does not listen is not stuck by itself.
-        if piece != self.piece || engine.roles.running.is_none() || shared.line.is_jammed() {
+        if piece != self.piece || engine.roles.running.is_none() || shared.events.is_jammed() {
             *self = Stuck { piece, since: now };
         }
         let culprit = engine.roles.running.filter(|_| now - self.since >= allowed);

@@ -23,7 +23,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             return shared.release(engine);
         }
         heed_stop(shared, &mut engine, now);
-        if engine.stream.as_ref().is_some_and(|stream| stream.is_full()) {
+        if engine.records.as_ref().is_some_and(|records| records.is_full()) {
             engine = wait_for_journal(shared, engine);
             continue;
         }
@@ -76,15 +76,15 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     announce_end(shared);
 }
 
-/// Waits until the file of the journal has taken some records.
+/// Waits until the observers of the journal have taken some records.
 fn wait_for_journal<'a>(
     shared: &'a Shared,
     engine: std::sync::MutexGuard<'a, Engine>,
 ) -> std::sync::MutexGuard<'a, Engine> {
-    let stream = engine.stream.clone();
+    let records = engine.records.clone();
     shared.release(engine);
-    if let Some(stream) = stream {
-        stream.wait_for_room();
+    if let Some(records) = records {
+        records.wait_for_room();
     }
     shared.lock()
 }

@@ -5,13 +5,13 @@ use std::sync::atomic::{Ordering, fence};
 use saoms_api::Level;
 
 use super::super::engine::Engine;
-use super::super::observe::Occurrence;
 use super::super::realtime::{SPARE_PRIORITY, TIMER_PRIORITY};
 use super::super::settings::nanos;
 use super::super::shared::Shared;
 use super::super::slot::NEVER;
 use super::super::sys;
 use super::{prepare_thread, real, spawn_thread};
+use crate::observe::Occurrence;
 
 /// Starts the spare thread that watches whoever does the timer's work.
 pub(super) fn spawn(shared: &Arc<Shared>) -> io::Result<()> {

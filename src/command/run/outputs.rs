@@ -1,19 +1,16 @@
-//! The files that a run leaves behind: asked for before it starts, written when it has ended.
+//! Files that a run leaves behind: tried before it starts, written when it has ended.
 
 use std::fs::File;
 use std::io;
-use std::path::Path;
-
-use saoms_core::report::RunReport;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::RunArguments;
-use super::summary::outcome;
 use crate::output::{counted, eprint, try_print};
-use crate::paths::Paths;
 
-/// Whether the files can be written, asked before a run that may last for days. What they hold stays until there is something new. Where one
+/// True if the files can be written, asked before a run that may last for days. What they hold stays until there is something new. Where one
 /// cannot, that has been told.
-pub(crate) fn writable(arguments: &RunArguments) -> bool {
+pub(super) fn are_writable(arguments: &RunArguments) -> bool {
     let files = [
         ("report", "--report", &arguments.report),
         ("picture", "--paths", &arguments.paths),
@@ -71,33 +68,34 @@ fn try_open(path: &Path) -> io::Result<()> {
     std::fs::remove_file(path)
 }
 
-/// Writes what was asked for; `false` where that was not possible, which has been told.
-pub(crate) fn write(arguments: &RunArguments, report: &RunReport, paths: Option<&Paths>) -> bool {
-    let report_written = arguments.report.as_ref().is_none_or(|path| {
-        let text = serde_json::to_string_pretty(report).map(|text| text + "\n");
-        told("report", path, text.map_err(io::Error::from).and_then(|text| put(path, &text)))
-    });
-    let picture = arguments.paths.as_ref().zip(paths);
-    let picture_written = picture.is_none_or(|(path, paths)| {
-        told("picture", path, put(path, &paths.picture(&title(arguments), &outcome(report))))
-    });
-    report_written && picture_written
+/// A file to write when a run has ended.
+#[derive(Debug)]
+pub(super) struct Output {
+    what: &'static str,
+    path: PathBuf,
+    has_failed: AtomicBool,
 }
 
-/// `-` is standard output.
-fn put(path: &Path, text: &str) -> io::Result<()> {
-    if path == Path::new("-") { try_print(text) } else { std::fs::write(path, text) }
-}
-
-fn told(what: &str, path: &Path, result: io::Result<()>) -> bool {
-    if let Err(problem) = &result {
-        eprint(&format!("error: the {what} could not be written to `{}`: {problem}\n", path.display()));
+impl Output {
+    pub(super) fn new(what: &'static str, path: &Path) -> Output {
+        Output { what, path: path.to_owned(), has_failed: AtomicBool::new(false) }
     }
-    result.is_ok()
-}
 
-/// The names of the composites.
-fn title(arguments: &RunArguments) -> String {
-    let names = arguments.fleet.files.iter().filter_map(|path| path.file_stem());
-    names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
+    /// Writes the text, to standard output where the path is `-`. A failure is told.
+    pub(super) fn write(&self, text: io::Result<String>) {
+        let put = |text: String| match self.path == Path::new("-") {
+            true => try_print(&text),
+            false => std::fs::write(&self.path, text),
+        };
+        if let Err(problem) = text.and_then(put) {
+            let (what, path) = (self.what, self.path.display());
+            eprint(&format!("error: the {what} could not be written to `{path}`: {problem}\n"));
+            self.has_failed.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// True if it could not be written.
+    pub(super) fn has_failed(&self) -> bool {
+        self.has_failed.load(Ordering::Relaxed)
+    }
 }

@@ -2,20 +2,20 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{Level, SharedMessage, Time, TopicDeclaration};
+use saoms_api::{Level, SharedMessage, Time};
 
-/// Something that happened in a fleet, as [`Events`] is told it.
+/// Something that happened in a fleet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {
     /// When, in the time of the run.
     pub time: Time,
     /// The path of the component that it concerns; `None` is the fleet as a whole.
     pub component: Option<Arc<str>>,
-    /// What.
+    /// What happened.
     pub what: Occurrence,
 }
 
-/// What can happen in a fleet.
+/// Kinds of events.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Occurrence {
@@ -71,11 +71,11 @@ pub enum Occurrence {
     },
     /// The component did not end in time, and is left behind.
     Abandoned,
-    /// Something that concerns the whole fleet.
+    /// A remark about the whole fleet.
     Note {
         /// How much it matters.
         level: Level,
-        /// What it is.
+        /// The remark.
         text: String,
     },
 }
@@ -149,7 +149,7 @@ impl fmt::Display for Event {
     }
 }
 
-/// A message that a component sent, as [`Events`] is told it.
+/// A message that a component sent.
 #[derive(Clone, Debug)]
 pub struct Sent {
     /// The topic, by the name that it has after renaming.
@@ -160,7 +160,7 @@ pub struct Sent {
     pub message: SharedMessage,
 }
 
-/// How far a run is.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
     /// The time of the run.
@@ -171,55 +171,4 @@ pub struct Progress {
     pub requested: i64,
     /// `luggage.delivered` of the report so far.
     pub delivered: i64,
-}
-
-/// Who is told what happens. The calls come from one thread that does nothing else, in the order of events, so that they may take their
-/// time: in real time, events that pile up beyond a bound are counted and lost, in virtual time the run waits.
-pub trait Events: Send + Sync + 'static {
-    /// Something happened.
-    fn event(&self, event: &Event);
-
-    /// Up to which level log lines are wanted; those beyond are not even formatted. Asked once, at the start.
-    fn log_level(&self) -> Option<Level> {
-        Some(Level::Info)
-    }
-
-    /// Whether the lines of the original's console are wanted. Asked once, at the start.
-    fn wants_console(&self) -> bool {
-        false
-    }
-
-    /// Whether the messages of a topic are wanted, where its publishers declare it so and call it `name` after renaming. Asked when a component
-    /// becomes a publisher, on a thread of the run, and not to be answered slowly. The messages of other topics cost nothing.
-    fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
-        let _ = (name, declared);
-        false
-    }
-
-    /// A component sent a message on a topic that is wanted. All messages are told, those that no reader gets as well.
-    fn message(&self, sent: &Sent) {
-        let _ = sent;
-    }
-
-    /// How often to call [`progress`](Events::progress); `None` is never. Asked once, at the start.
-    fn progress_every(&self) -> Option<Duration> {
-        None
-    }
-
-    /// How far the run is.
-    fn progress(&self, progress: &Progress) {
-        let _ = progress;
-    }
-}
-
-/// Nobody is told anything.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Quiet;
-
-impl Events for Quiet {
-    fn event(&self, _: &Event) {}
-
-    fn log_level(&self) -> Option<Level> {
-        None
-    }
 }

@@ -1,0 +1,150 @@
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use saoms_api::Time;
+
+use super::Entry;
+use super::batch::Batch;
+use super::entry::What;
+use super::recorder::{Notice, Recorder};
+use super::ring::Names;
+
+/// How many records may wait for their reader.
+const CAPACITY: usize = 65_536;
+/// From how many waiting records on the reader is woken; before that it looks by itself.
+const HURRY: usize = CAPACITY / 4;
+/// How often it looks.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// A queue of records for the thread that tells the observers of the journal. Putting one in never waits in real time.
+#[derive(Debug)]
+pub(crate) struct RecordQueue {
+    waiting: Mutex<Waiting>,
+    reader: Mutex<Reader>,
+    filled: Condvar,
+    emptied: Condvar,
+    /// True if those who write wait for room, as in virtual time; otherwise records that find no room are counted and lost.
+    is_patient: bool,
+}
+
+#[derive(Debug, Default)]
+struct Waiting {
+    batch: Batch,
+    /// Names of loops, by component and place.
+    names: Vec<(u32, u16, String)>,
+    /// Names of components, in the order of their numbers.
+    joined: Vec<Arc<str>>,
+    lost: u64,
+    writers_sleep: bool,
+    /// When the run ended.
+    closed: Option<Time>,
+}
+
+/// What the reading thread knows of the records before.
+#[derive(Debug, Default)]
+struct Reader {
+    batch: Batch,
+    /// Components and their loops, by their numbers.
+    components: Vec<(Arc<str>, Names)>,
+}
+
+impl RecordQueue {
+    pub(crate) fn new(is_patient: bool) -> RecordQueue {
+        RecordQueue {
+            waiting: Mutex::default(),
+            reader: Mutex::default(),
+            filled: Condvar::new(),
+            emptied: Condvar::new(),
+            is_patient,
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A component has the next number from now on.
+    pub(crate) fn join(&self, component: Arc<str>) {
+        self.lock().joined.push(component);
+    }
+
+    /// Takes over what a component has written.
+    pub(crate) fn put(&self, component: u32, recorder: &Recorder) {
+        let mut waiting = self.lock();
+        for notice in &recorder.notices {
+            if let Notice::Name(place, name) = notice {
+                waiting.names.push((component, *place, name.clone()));
+            }
+        }
+        if waiting.batch.len() >= CAPACITY && !self.is_patient {
+            waiting.lost += recorder.batch.len() as u64;
+            return;
+        }
+        let before = waiting.batch.len();
+        waiting.batch.append(&recorder.batch);
+        if before < HURRY && waiting.batch.len() >= HURRY {
+            self.filled.notify_one();
+        }
+    }
+
+    /// Whether those who are patient should wait.
+    pub(crate) fn is_full(&self) -> bool {
+        self.is_patient && self.lock().batch.len() >= CAPACITY
+    }
+
+    /// Waits until it is not full any more.
+    pub(crate) fn wait_for_room(&self) {
+        let mut waiting = self.lock();
+        while waiting.batch.len() >= CAPACITY && waiting.closed.is_none() {
+            waiting.writers_sleep = true;
+            waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// The run has ended: [`write_to`](RecordQueue::write_to) returns when it has written what is there.
+    pub(crate) fn close(&self, end: Time) {
+        self.lock().closed = Some(end);
+        self.filled.notify_all();
+        self.emptied.notify_all();
+    }
+
+    /// Waits until there is something to tell, and takes all of it. Returns how many records found no room, and when the run ended, where
+    /// these are the last ones.
+    pub(crate) fn next(&self, entries: &mut Vec<Entry>) -> (u64, Option<Time>) {
+        let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
+        let Reader { batch, components } = &mut *reader;
+        batch.clear();
+        let mut waiting = self.lock();
+        if waiting.batch.len() < HURRY && waiting.closed.is_none() {
+            waiting = self.filled.wait_timeout(waiting, PAUSE).unwrap_or_else(PoisonError::into_inner).0;
+        }
+        std::mem::swap(batch, &mut waiting.batch);
+        let names = std::mem::take(&mut waiting.names);
+        let joined = std::mem::take(&mut waiting.joined);
+        let lost = std::mem::take(&mut waiting.lost);
+        let end = waiting.closed;
+        if std::mem::take(&mut waiting.writers_sleep) {
+            self.emptied.notify_all();
+        }
+        drop(waiting);
+        components.extend(joined.into_iter().map(|name| (name, Names::default())));
+        for (component, place, name) in names {
+            components[component as usize].1.set(place, &name);
+        }
+        entries.clear();
+        entries.extend(batch.heads().iter().map(|head| {
+            let (component, loops) = &components[head.component as usize];
+            Entry {
+                id: head.id,
+                time: head.time(),
+                component: Arc::clone(component),
+                loop_name: loops.get(head.place),
+                phase: head.phase,
+                cause: head.cause,
+                change: head.change,
+                what: What::Noted(batch.record(head)),
+            }
+        }));
+        (lost, end)
+    }
+}

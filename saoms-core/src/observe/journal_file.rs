@@ -1,0 +1,88 @@
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use saoms_api::{Failure, Time};
+use serde_json::json;
+
+use super::{Beginning, Interest, Observer, Records};
+
+/// An observer that writes every record of the journal to a file, as lines of JSON.
+///
+/// The file is created when the fleet starts. Its first line says what it is and which components there are, its last one when the run ended.
+pub struct JournalFile {
+    path: PathBuf,
+    file: Mutex<Option<Open>>,
+}
+
+struct Open {
+    file: File,
+    text: Vec<u8>,
+    records: u64,
+    lost: u64,
+}
+
+impl JournalFile {
+    /// The observer that writes to this path.
+    pub fn new(path: impl Into<PathBuf>) -> JournalFile {
+        JournalFile { path: path.into(), file: Mutex::default() }
+    }
+}
+
+impl fmt::Debug for JournalFile {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_tuple("JournalFile").field(&self.path).finish()
+    }
+}
+
+impl Observer for JournalFile {
+    fn interest(&self) -> Interest {
+        Interest { journal: true, ..Interest::NONE }
+    }
+
+    fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
+        let open = Open::create(&self.path, beginning)
+            .map_err(|error| Failure::new(format!("the journal cannot be written: {error}")))?;
+        *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some(open);
+        Ok(())
+    }
+
+    fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(open) = &mut *file else { return Ok(()) };
+        open.write(records).map_err(|error| {
+            let path = self.path.display();
+            Failure::new(format!("the journal could not be written to `{path}`: {error}"))
+        })
+    }
+}
+
+impl Open {
+    fn create(path: &Path, beginning: &Beginning<'_>) -> io::Result<Open> {
+        let mut file = File::create(path)?;
+        let clock = if beginning.is_virtual { "virtual" } else { "real" };
+        let head = json!({
+            "journal": 1, "seed": beginning.seed, "clock": clock, "components": beginning.components
+        });
+        file.write_all(format!("{head}\n").as_bytes())?;
+        Ok(Open { file, text: Vec::new(), records: 0, lost: 0 })
+    }
+
+    fn write(&mut self, records: &Records<'_>) -> io::Result<()> {
+        self.records += records.entries.len() as u64 + records.lost;
+        self.lost += records.lost;
+        self.text.clear();
+        for entry in records.entries {
+            serde_json::to_writer(&mut self.text, entry)?;
+            self.text.push(b'\n');
+        }
+        if let Some(end) = records.end {
+            let (time_s, records, lost) = (Time::as_secs_f64(end), self.records, self.lost);
+            let end = json!({ "end": { "time_s": time_s, "records": records, "lost": lost } });
+            writeln!(self.text, "{end}")?;
+        }
+        self.file.write_all(&self.text)
+    }
+}

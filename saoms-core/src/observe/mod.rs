@@ -1,0 +1,20 @@
+//! Observers of a run: programs that see what happens in a fleet without being part of it.
+//!
+//! An [`Observer`] is told events, the messages of topics that it asks for, records of the journal, and the report at the end. What it does
+//! changes nothing in the fleet, the trace included, and what nobody asks for costs nothing. Events and messages are put into a queue
+//! while the fleet runs, and told by a thread that does nothing else; records go by a queue and a thread of their own.
+
+mod event;
+mod journal_file;
+mod observer;
+mod queue;
+mod records;
+#[cfg(test)]
+mod tests;
+
+pub use event::{Event, Occurrence, Progress, Sent};
+pub use journal_file::JournalFile;
+pub(crate) use observer::Observers;
+pub use observer::{Beginning, Interest, Observer, Records};
+pub(crate) use queue::{EventQueue, News};
+pub(crate) use records::{Told, tell_records};

@@ -1,0 +1,193 @@
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::Arc;
+use std::time::Duration;
+
+use saoms_api::{Failure, Level, Time, TopicDeclaration};
+
+use super::{Event, Occurrence, Progress, Sent};
+use crate::journal::{Entry, Named};
+use crate::report::RunReport;
+
+/// A program that sees what happens in a fleet.
+///
+/// Events, messages and progress come from one thread that does nothing else, in the order in which they happened, so that an observer may take
+/// its time; but observers wait for each other. In real time, events that pile up beyond a bound are counted and lost; in virtual time the
+/// run waits. An observer that panics over something loses that alone.
+pub trait Observer: Send + Sync + 'static {
+    /// Events that the observer wants beside those that everybody gets. Asked once, before the start.
+    fn interest(&self) -> Interest {
+        Interest::default()
+    }
+
+    /// The fleet is about to start.
+    ///
+    /// # Errors
+    /// The observer cannot do its work: then the fleet does not start.
+    fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
+        let _ = beginning;
+        Ok(())
+    }
+
+    /// Something happened.
+    fn event(&self, event: &Event) {
+        let _ = event;
+    }
+
+    /// True if the messages of a topic are wanted, where its publishers declare it so and call it `name` after renaming. Asked when a
+    /// component becomes a publisher, on a thread of the run, and not to be answered slowly.
+    fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        let _ = (name, declared);
+        false
+    }
+
+    /// A component sent a message on a topic that is wanted. All messages are told, those that no reader gets as well.
+    fn message(&self, sent: &Sent) {
+        let _ = sent;
+    }
+
+    /// How far the run is.
+    fn progress(&self, progress: &Progress) {
+        let _ = progress;
+    }
+
+    /// New records of the journal, from a thread that does nothing else.
+    ///
+    /// # Errors
+    /// The observer cannot take them, nor any that follow: the run says so at once, and fails at its end.
+    fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
+        let _ = records;
+        Ok(())
+    }
+
+    /// The run has ended, and everything before has been told. Called by the thread that waited for the end.
+    fn end(&self, report: &RunReport) {
+        let _ = report;
+    }
+}
+
+/// What an observer wants to be told beside the events that everybody gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interest {
+    /// Up to which level it wants lines of the log. A line that nobody wants is not even formatted.
+    pub log: Option<Level>,
+    /// Lines of the original's console.
+    pub console: bool,
+    /// How often it wants [`Observer::progress`]; `None` is never.
+    pub progress: Option<Duration>,
+    /// Records of the journal.
+    pub journal: bool,
+}
+
+impl Interest {
+    /// No line, no progress, no record.
+    pub const NONE: Interest = Interest { log: None, console: false, progress: None, journal: false };
+}
+
+impl Default for Interest {
+    /// Lines of the log up to [`Level::Info`].
+    fn default() -> Interest {
+        Interest { log: Some(Level::Info), ..Interest::NONE }
+    }
+}
+
+/// The fleet that is about to start.
+#[derive(Clone, Copy, Debug)]
+pub struct Beginning<'a> {
+    /// The seed of all chance.
+    pub seed: u64,
+    /// True if it runs in virtual time.
+    pub is_virtual: bool,
+    /// Its components in document order.
+    pub components: &'a [Named],
+}
+
+/// Records of the journal, in the order in which executions handed them over.
+#[derive(Clone, Copy, Debug)]
+pub struct Records<'a> {
+    /// The records.
+    pub entries: &'a [Entry],
+    /// How many found no room since the last ones, and are lost.
+    pub lost: u64,
+    /// When the run ended; these are the last ones then.
+    pub end: Option<Time>,
+}
+
+/// The observers of a run, each with its interest.
+#[derive(Default)]
+pub(crate) struct Observers {
+    all: Vec<(Arc<dyn Observer>, Interest)>,
+}
+
+impl Observers {
+    pub(crate) fn new(observers: Vec<Arc<dyn Observer>>) -> Observers {
+        let all = observers.into_iter().map(|one| {
+            let interest = one.interest();
+            (one, interest)
+        });
+        Observers { all: all.collect() }
+    }
+
+    pub(crate) fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
+        self.all.iter().try_for_each(|(observer, _)| observer.begin(beginning))
+    }
+
+    pub(crate) fn end(&self, report: &RunReport) {
+        for (observer, _) in &self.all {
+            contained(|| observer.end(report));
+        }
+    }
+
+    /// All wishes together.
+    pub(crate) fn interest(&self) -> Interest {
+        let wider = |one: Interest, other: Interest| Interest {
+            log: one.log.max(other.log),
+            console: one.console || other.console,
+            progress: one.progress.into_iter().chain(other.progress).min(),
+            journal: one.journal || other.journal,
+        };
+        self.all.iter().map(|(_, interest)| *interest).fold(Interest::NONE, wider)
+    }
+
+    /// The numbers of the observers that want the messages of a topic.
+    pub(crate) fn of_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> Vec<u32> {
+        let wants = |(_, (observer, _)): &(usize, &(Arc<dyn Observer>, Interest))| {
+            contained(|| observer.wants_topic(name, declared)).unwrap_or(false)
+        };
+        self.all.iter().enumerate().filter(wants).map(|(number, _)| number as u32).collect()
+    }
+
+    pub(crate) fn event(&self, event: &Event) {
+        for (observer, interest) in &self.all {
+            let is_wanted = match &event.what {
+                Occurrence::Log { level, .. } => interest.log.is_some_and(|most| *level <= most),
+                Occurrence::Console { .. } => interest.console,
+                _ => true,
+            };
+            if is_wanted {
+                contained(|| observer.event(event));
+            }
+        }
+    }
+
+    pub(crate) fn message(&self, sent: &Sent, observers: &[u32]) {
+        for (observer, _) in observers.iter().filter_map(|number| self.all.get(*number as usize)) {
+            contained(|| observer.message(sent));
+        }
+    }
+
+    pub(crate) fn progress(&self, progress: &Progress) {
+        for (observer, _) in self.all.iter().filter(|(_, interest)| interest.progress.is_some()) {
+            contained(|| observer.progress(progress));
+        }
+    }
+
+    /// The observers of the journal.
+    pub(crate) fn of_journal(&self) -> impl Iterator<Item = &Arc<dyn Observer>> {
+        self.all.iter().filter(|(_, interest)| interest.journal).map(|(observer, _)| observer)
+    }
+}
+
+/// The result of an observer's code; `None` when it panics, which the panic hook has told on standard error.
+pub(super) fn contained<T>(code: impl FnOnce() -> T) -> Option<T> {
+    panic::catch_unwind(AssertUnwindSafe(code)).ok()
+}

@@ -1,0 +1,168 @@
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::Duration;
+
+use saoms_api::{Cause, Failure, Level, Phase, Time, record};
+
+use super::{
+    Beginning, Event, EventQueue, Interest, JournalFile, Observer, Observers, Occurrence, Progress, Records,
+    tell_records,
+};
+use crate::journal::{Named, RecordQueue, Recorder, Stamp};
+
+/// Listens slowly.
+#[derive(Default)]
+struct Listener {
+    told: Mutex<Vec<String>>,
+    progress: AtomicUsize,
+}
+
+impl Observer for Listener {
+    fn event(&self, event: &Event) {
+        self.told.lock().unwrap().push(event.to_string());
+    }
+
+    fn interest(&self) -> Interest {
+        Interest { progress: Some(Duration::from_millis(1)), ..Interest::default() }
+    }
+
+    fn progress(&self, _: &Progress) {
+        self.progress.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+fn event(number: usize) -> Event {
+    let what = Occurrence::Log { level: Level::Info, text: number.to_string() };
+    Event { time: Time::START, component: Some(Arc::from("A")), what }
+}
+
+#[test]
+fn events_beyond_the_bound_are_counted_and_lost_in_real_time() {
+    let listener = Arc::new(Listener::default());
+    let observers = Observers::new(vec![listener.clone()]);
+    let queue = EventQueue::new(observers.interest(), false);
+    for number in 0..70_000 {
+        queue.put(event(number));
+    }
+    queue.close();
+    queue.tell(&observers, Progress::default);
+    let told = listener.told.lock().unwrap();
+    assert_eq!(told.len(), 65_536 + 1);
+    assert_eq!(told[65_535], "[0.000 s] A: 65535");
+    assert_eq!(told[65_536], "[0.000 s] 4464 events came faster than they could be shown, and are lost");
+    assert!(listener.progress.load(Ordering::Relaxed) > 0);
+}
+
+#[test]
+fn events_beyond_the_bound_wait_in_virtual_time() {
+    let listener = Arc::new(Listener::default());
+    let observers = Observers::new(vec![listener.clone()]);
+    let queue = Arc::new(EventQueue::new(observers.interest(), true));
+    let teller = {
+        let queue = Arc::clone(&queue);
+        thread::spawn(move || queue.tell(&observers, Progress::default))
+    };
+    for number in 0..200_000 {
+        queue.put(event(number));
+    }
+    queue.close();
+    teller.join().unwrap();
+    let told = listener.told.lock().unwrap();
+    assert_eq!(told.len(), 200_000);
+    assert_eq!(told[199_999], "[0.000 s] A: 199999");
+}
+
+#[test]
+fn an_observer_gets_the_lines_that_it_wants_and_panics_alone() {
+    struct Clumsy;
+    impl Observer for Clumsy {
+        fn interest(&self) -> Interest {
+            Interest { log: Some(Level::Debug), console: true, ..Interest::NONE }
+        }
+
+        fn event(&self, _: &Event) {
+            // Not `panic!`, whose message would be shown among those of the tests.
+            std::panic::resume_unwind(Box::new("clumsy"));
+        }
+    }
+    let listener = Arc::new(Listener::default());
+    let observers = Observers::new(vec![Arc::new(Clumsy), listener.clone()]);
+    let interest = observers.interest();
+    assert_eq!((interest.log, interest.console, interest.journal), (Some(Level::Debug), true, false));
+    for what in [
+        Occurrence::Log { level: Level::Debug, text: "unasked".to_owned() },
+        Occurrence::Console { text: "unasked".to_owned() },
+        Occurrence::Log { level: Level::Info, text: "asked".to_owned() },
+        Occurrence::Started,
+    ] {
+        observers.event(&Event { time: Time::START, component: None, what });
+    }
+    assert_eq!(*listener.told.lock().unwrap(), ["[0.000 s] asked", "[0.000 s] started"]);
+}
+
+/// Counts records until it has no room for more.
+struct Shelf {
+    room: usize,
+    records: AtomicUsize,
+}
+
+impl Observer for Shelf {
+    fn interest(&self) -> Interest {
+        Interest { journal: true, ..Interest::NONE }
+    }
+
+    fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
+        let before = self.records.fetch_add(records.entries.len(), Ordering::Relaxed);
+        if before + records.entries.len() > self.room { Err(Failure::new("full")) } else { Ok(()) }
+    }
+}
+
+/// A recorder with so many records of the component with number 0.
+fn recorder(records: usize) -> Recorder {
+    let (mut recorder, ids) = (Recorder::default(), AtomicU64::new(0));
+    recorder.begin(Cause::default());
+    let stamp = Stamp { ids: &ids, component: 0, time: 1_000_000_000 };
+    for _ in 0..records {
+        recorder.write(stamp, Phase::Effect, &record!("acts"), &[]);
+    }
+    recorder
+}
+
+#[test]
+fn an_observer_that_takes_no_records_is_told_once_and_all_that_is_missing_is_counted() {
+    let small = Arc::new(Shelf { room: 0, records: AtomicUsize::new(0) });
+    let large = Arc::new(Shelf { room: 99, records: AtomicUsize::new(0) });
+    let observers = Observers::new(vec![small, large.clone()]);
+    let queue = RecordQueue::new(true);
+    queue.join(Arc::from("A"));
+    queue.put(0, &recorder(5));
+    queue.close(Time::START);
+    let said = AtomicU64::new(0);
+    let told = tell_records(&queue, &observers, |_| {
+        said.fetch_add(1, Ordering::Relaxed);
+    });
+    assert_eq!((told.lost, told.failures), (5, vec![Failure::new("full")]));
+    assert_eq!(said.into_inner(), 1);
+    assert_eq!(large.records.load(Ordering::Relaxed), 5);
+}
+
+#[test]
+fn in_real_time_records_that_find_no_room_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal");
+    let file = Arc::new(JournalFile::new(&path));
+    let components = [Named { name: "A".to_owned(), id: None }];
+    file.begin(&Beginning { seed: 1, is_virtual: false, components: &components }).unwrap();
+    let queue = RecordQueue::new(false);
+    queue.join(Arc::from("A"));
+    let recorder = recorder(1000);
+    for _ in 0..70 {
+        queue.put(0, &recorder);
+    }
+    queue.close(Time::from_nanos(5));
+    let told = tell_records(&queue, &Observers::new(vec![file]), |_| {});
+    assert_eq!((told.lost, told.failures), (4000, Vec::new()));
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(text.lines().last(), Some(r#"{"end":{"lost":4000,"records":70000,"time_s":5e-9}}"#));
+}
