@@ -14,11 +14,10 @@ use saoms_lang::registry::Registry;
 use saoms_lang::source::{OpenTexts, Sources, identity};
 
 use saoms_api::contain::contained;
+use saoms_tools::editor::{Fleet, Scene, Workspace};
 
 use super::diagnostics::{Reported, reported};
 use super::registries::Registries;
-use super::scene::{Fleet, Scene};
-use super::workspace::Workspace;
 use crate::fleet::{Asked, checked_with};
 use crate::folder::is_of_user;
 use crate::output::eprint;
@@ -117,7 +116,7 @@ impl Checker {
     /// The fleets that one file is part of, and of each whether others elsewhere may use it; then what it is itself.
     fn fleets(&mut self, path: &Path) -> (Vec<(Vec<PathBuf>, bool)>, Sort) {
         let around = self.workspace.around(path);
-        if around.files.first().is_none_or(|first| first.path != path) {
+        if around.file().is_none_or(|first| first.path != path) {
             return (Vec::new(), Sort::Composite);
         }
         let scene = Scene::new(around, self.registries.of(path, &[]));

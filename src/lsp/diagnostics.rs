@@ -10,8 +10,9 @@ use lsp_types::{
 use saoms_lang::diagnostic::{Diagnostic, Severity, codes};
 use saoms_lang::source::{FileId, Location as Place, Sources, identity};
 
-use super::describe;
-use super::position::Lines;
+use saoms_tools::editor::{LineIndex, describe_code};
+
+use super::position;
 use super::uri;
 
 /// A diagnostic with the ways to mend it.
@@ -67,7 +68,7 @@ pub(super) fn reported<'d>(
             tags: is_unused.then(|| vec![DiagnosticTag::UNNECESSARY]),
             ..lsp_types::Diagnostic::default()
         };
-        let meaning = describe::code(one.code, one.rule);
+        let meaning = describe_code(one.code, one.rule);
         let fixes = one.suggestions.iter().map(|suggestion| Fix {
             title: capitalized(&suggestion.description),
             edits: suggestion.edits.iter().fold(BTreeMap::new(), |mut edits, edit| {
@@ -90,7 +91,7 @@ pub(super) fn reported<'d>(
 /// Translates the places of a check.
 struct Places<'s> {
     sources: &'s Sources,
-    lines: HashMap<FileId, Lines>,
+    lines: HashMap<FileId, LineIndex>,
 }
 
 impl Places<'_> {
@@ -104,8 +105,8 @@ impl Places<'_> {
 
     fn range(&mut self, at: Place) -> lsp_types::Range {
         let text = self.sources.get(at.file).text();
-        let lines = self.lines.entry(at.file).or_insert_with(|| Lines::new(text));
-        lines.range(text, at.span.start as usize..at.span.end.max(at.span.start) as usize)
+        let lines = self.lines.entry(at.file).or_insert_with(|| LineIndex::new(text));
+        position::range(lines, text, at.span.start as usize..at.span.end.max(at.span.start) as usize)
     }
 }
 

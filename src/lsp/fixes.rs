@@ -10,8 +10,11 @@ use lsp_types::{
     Uri, WorkspaceEdit,
 };
 
-use super::allow::allowed;
+use saoms_tools::editor::{Allowance, allowances};
+
+use super::convert::text_edit;
 use super::diagnostics::Reported;
+use super::position::offset_in;
 use super::server::{Refusal, Server};
 
 impl<W: Write> Server<W> {
@@ -34,8 +37,11 @@ impl<W: Write> Server<W> {
                 }
             }
             for (one, code) in touched.filter_map(|one| Some((one, one.can_be_allowed?))) {
-                let at = scene.file().lines.offset(&scene.file().text, one.shown.range.start);
-                for (title, edits) in allowed(&scene, at, code) {
+                let file = scene.file();
+                for Allowance { title, edits } in
+                    allowances(&scene, offset_in(file, one.shown.range.start), code)
+                {
+                    let edits = edits.into_iter().map(|edit| text_edit(file, edit)).collect();
                     actions.push(self.action(&title, &[one], [(path.as_path(), edits)].into_iter(), false));
                 }
             }

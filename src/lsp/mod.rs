@@ -1,45 +1,22 @@
 //! `saoms lsp`: answers editors, by the Language Server Protocol 3.17 on standard input and output.
 //!
-//! One thread reads, one answers, one checks. Answers come from a reading of the text that understands what is half typed (`syntax`, `outline`);
-//! diagnostics come from the loader and the checker, as `saoms check` has them.
+//! One thread reads, one answers, one checks. Answers come from [`saoms_tools::editor`]; diagnostics come from the loader and the checker, as
+//! `saoms check` has them. This module holds the protocol alone: messages, documents, positions in UTF-16.
 
-mod allow;
 mod capabilities;
 mod check;
-mod complete;
-mod contracts;
-mod describe;
+mod convert;
 mod diagnostics;
 mod documents;
-mod expressions;
-mod file;
 mod fixes;
-mod hover;
-#[cfg(test)]
-mod laws;
-mod links;
-mod loops;
-mod navigate;
-mod occurrences;
-mod outline;
 mod position;
 mod registries;
-mod rename;
 mod requests;
 mod rpc;
-mod scene;
 mod server;
-mod shape;
-mod symbol;
-mod symbols;
-mod syntax;
-#[cfg(test)]
-mod testing;
 #[cfg(test)]
 mod tests;
-mod topics;
 mod uri;
-mod workspace;
 
 use std::io::{self, BufReader};
 use std::sync::Arc;
@@ -47,10 +24,11 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc;
 use std::thread;
 
+use saoms_tools::editor::Workspace;
+
 use check::Checker;
 use registries::Registries;
 use server::{Event, Server};
-use workspace::Workspace;
 
 use crate::Exit;
 use crate::command::lsp::LspArguments;

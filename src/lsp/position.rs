@@ -1,58 +1,45 @@
-//! Places in a text as editors name them: lines from 0, columns in UTF-16 units.
+//! Positions as editors name them: lines from 0, columns in UTF-16 units.
 
 use std::ops::Range;
 
 use lsp_types::Position;
+use saoms_tools::editor::{File, LineIndex};
 
-/// Where each line of a text starts. A line ends with LF, CR LF or a CR alone, as the protocol says.
-#[derive(Clone, Debug)]
-pub(super) struct Lines {
-    starts: Vec<usize>,
+/// The byte at a position: the end of the line for one behind it, the end of the text for a line that is not there.
+pub(super) fn offset(lines: &LineIndex, text: &str, position: Position) -> usize {
+    let Some(line) = lines.range(text, position.line as usize) else { return text.len() };
+    let mut left = position.character as usize;
+    for (at, character) in text[line.clone()].char_indices() {
+        // A position within a character is before it.
+        if left < character.len_utf16() {
+            return line.start + at;
+        }
+        left -= character.len_utf16();
+    }
+    line.end
 }
 
-/// The byte order mark, which editors do not show.
-const MARK: char = '\u{feff}';
+/// The position of a byte; one behind the text counts as its end.
+pub(super) fn position(lines: &LineIndex, text: &str, at: usize) -> Position {
+    let at = text.floor_char_boundary(at);
+    let line = lines.line(at);
+    let before = lines.start(line).and_then(|start| text.get(start..at)).unwrap_or_default();
+    Position::new(line as u32, before.encode_utf16().count() as u32)
+}
 
-impl Lines {
-    pub(super) fn new(text: &str) -> Self {
-        let bytes = text.as_bytes();
-        let mut starts = vec![if text.starts_with(MARK) { MARK.len_utf8() } else { 0 }];
-        for (at, &byte) in bytes.iter().enumerate() {
-            if byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n')) {
-                starts.push(at + 1);
-            }
-        }
-        Self { starts }
-    }
+/// The positions of both ends of a range of bytes.
+pub(super) fn range(lines: &LineIndex, text: &str, range: Range<usize>) -> lsp_types::Range {
+    lsp_types::Range::new(position(lines, text, range.start), position(lines, text, range.end))
+}
 
-    /// The byte at a place: the end of the line for one behind it, the end of the text for a line that is not there.
-    pub(super) fn offset(&self, text: &str, place: Position) -> usize {
-        let Some(&start) = self.starts.get(place.line as usize) else { return text.len() };
-        let end = self.starts.get(place.line as usize + 1).map_or(text.len(), |&next| next);
-        let line = text[start..end].trim_end_matches(['\r', '\n']);
-        let mut left = place.character as usize;
-        for (at, character) in line.char_indices() {
-            // A place within a character is before it.
-            if left < character.len_utf16() {
-                return start + at;
-            }
-            left -= character.len_utf16();
-        }
-        start + line.len()
-    }
+/// The same of a range of bytes of a file.
+pub(super) fn range_in(file: &File, at: Range<usize>) -> lsp_types::Range {
+    range(&file.lines, &file.text, at)
+}
 
-    /// The place of a byte; one behind the text counts as its end.
-    pub(super) fn position(&self, text: &str, at: usize) -> Position {
-        let at = text.floor_char_boundary(at);
-        let line = self.starts.partition_point(|&start| start <= at).max(1) - 1;
-        let before = text.get(self.starts[line]..at).unwrap_or_default();
-        Position::new(line as u32, before.encode_utf16().count() as u32)
-    }
-
-    /// Both ends of a range of bytes.
-    pub(super) fn range(&self, text: &str, range: Range<usize>) -> lsp_types::Range {
-        lsp_types::Range::new(self.position(text, range.start), self.position(text, range.end))
-    }
+/// The byte of a file at a position.
+pub(super) fn offset_in(file: &File, at: Position) -> usize {
+    offset(&file.lines, &file.text, at)
 }
 
 #[cfg(test)]
@@ -62,35 +49,35 @@ mod tests {
     #[test]
     fn columns_are_utf_16_units_there_and_back() {
         let text = "aä\r\n🤖x\rü\n\nz";
-        let lines = Lines::new(text);
+        let lines = LineIndex::new(text);
         for (at, place) in [(0, (0, 0)), (3, (0, 2)), (5, (1, 0)), (9, (1, 2)), (10, (1, 3))]
             .into_iter()
             .chain([(11, (2, 0)), (13, (2, 1)), (14, (3, 0)), (15, (4, 0)), (16, (4, 1))])
         {
-            assert_eq!(lines.position(text, at), Position::new(place.0, place.1), "{at}");
-            assert_eq!(lines.offset(text, Position::new(place.0, place.1)), at, "{place:?}");
+            assert_eq!(position(&lines, text, at), Position::new(place.0, place.1), "{at}");
+            assert_eq!(super::offset(&lines, text, Position::new(place.0, place.1)), at, "{place:?}");
         }
     }
 
     #[test]
     fn places_that_do_not_exist_become_the_nearest() {
         let text = "ä\n🤖\n";
-        let lines = Lines::new(text);
-        let offset = |line, character| lines.offset(text, Position::new(line, character));
+        let lines = LineIndex::new(text);
+        let offset = |line, character| super::offset(&lines, text, Position::new(line, character));
         assert_eq!(offset(0, 99), 2);
         assert_eq!(offset(1, 1), 3, "within the robot");
         assert_eq!(offset(9, 0), text.len());
         assert_eq!(offset(u32::MAX, u32::MAX), text.len());
-        assert_eq!(lines.position(text, 999), Position::new(2, 0));
-        assert_eq!(lines.position(text, 5), Position::new(1, 0));
+        assert_eq!(position(&lines, text, 999), Position::new(2, 0));
+        assert_eq!(position(&lines, text, 5), Position::new(1, 0));
     }
 
     #[test]
     fn a_byte_order_mark_is_not_there() {
         let text = "\u{feff}<a/>";
-        let lines = Lines::new(text);
-        assert_eq!(lines.position(text, 4), Position::new(0, 1));
-        assert_eq!(lines.position(text, 0), Position::new(0, 0));
-        assert_eq!(lines.offset(text, Position::new(0, 1)), 4);
+        let lines = LineIndex::new(text);
+        assert_eq!(position(&lines, text, 4), Position::new(0, 1));
+        assert_eq!(position(&lines, text, 0), Position::new(0, 0));
+        assert_eq!(super::offset(&lines, text, Position::new(0, 1)), 4);
     }
 }

@@ -15,23 +15,16 @@ use lsp_types::{
     Position, PrepareRenameResponse, ReferenceParams, RenameParams, SelectionRange, SelectionRangeParams,
     SymbolInformation, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit, WorkspaceSymbolResponse,
 };
-use saoms_lang::source::Sources;
-use saoms_lang::xml;
-use saoms_tools::format::{WIDTH, format};
+use saoms_tools::editor::{
+    Completion, FileRange, Scene, Target, complete, definition, document_symbols, folds, formatted, hover,
+    linked_tags, links, prepare_rename, references, rename, selections, workspace_symbols,
+};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
-use super::complete::{Proposal, complete};
-use super::hover::hover;
-use super::links::links;
-use super::navigate::{Goal, definition, references};
-use super::rename::{prepare, rename};
-use super::scene::Scene;
+use super::convert::{completion_item, document_symbol, folding_range, symbol_kind};
+use super::position::{offset_in, range_in};
 use super::server::{Refusal, Server, written};
-use super::shape;
-use super::symbol::Place;
-use super::symbols::{matching, symbols};
-use super::syntax::Cursor;
 use super::uri;
 
 /// So many proposals can be looked through; of thousands of components those come that fit what is typed.
@@ -83,8 +76,7 @@ impl<W: Write> Server<W> {
     /// The scene of a document and the byte of a place in it.
     fn place(&mut self, at: &TextDocumentPositionParams) -> Result<(Scene, usize), Refusal> {
         let scene = self.scene(&at.text_document.uri)?;
-        let file = scene.file();
-        let byte = file.lines.offset(&file.text, at.position);
+        let byte = offset_in(scene.file(), at.position);
         Ok((scene, byte))
     }
 
@@ -92,13 +84,13 @@ impl<W: Write> Server<W> {
         let (scene, byte) = self.place(&params.text_document_position)?;
         let knows_snippets = self.client.knows_snippets;
         let file = scene.file();
-        let matching = |one: Proposal| {
+        let matching = |one: Completion| {
             let typed = &file.text[one.range.start..byte];
             one.matching(typed)
         };
-        let mut found: Vec<Proposal> = complete(&scene, byte).into_iter().filter_map(matching).collect();
-        found.sort_by_cached_key(Proposal::order);
-        let items = found.into_iter().take(MOST).map(|one| one.into_item(file, knows_snippets));
+        let mut found: Vec<Completion> = complete(&scene, byte).into_iter().filter_map(matching).collect();
+        found.sort_by_cached_key(Completion::order);
+        let items = found.into_iter().take(MOST).map(|one| completion_item(file, one, knows_snippets));
         // Others come when more is typed, as the units behind a number do.
         let list = CompletionList { is_incomplete: true, items: items.collect() };
         Ok(Some(CompletionResponse::List(list)))
@@ -109,8 +101,7 @@ impl<W: Write> Server<W> {
         let (scene, byte) = self.place(at)?;
         let known = hover(&scene, byte);
         let mut parts: Vec<String> = self.reported_at(&at.text_document.uri, at.position).collect();
-        let range =
-            known.as_ref().map(|(_, range)| scene.file().lines.range(&scene.file().text, range.clone()));
+        let range = known.as_ref().map(|(_, range)| range_in(scene.file(), range.clone()));
         parts.extend(known.map(|(text, _)| text));
         let contents = MarkupContent { kind: MarkupKind::Markdown, value: parts.join("\n\n---\n\n") };
         Ok((!parts.is_empty()).then_some(Hover { contents: HoverContents::Markup(contents), range }))
@@ -121,9 +112,9 @@ impl<W: Write> Server<W> {
         params: &GotoDefinitionParams,
     ) -> Result<Option<GotoDefinitionResponse>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position_params)?;
-        let all = definition(&scene, byte).into_iter().filter_map(|goal| match goal {
-            Goal::Place(place) => self.location(&scene, &place),
-            Goal::File(path) => {
+        let all = definition(&scene, byte).into_iter().filter_map(|target| match target {
+            Target::Range(place) => self.location(&scene, &place),
+            Target::File(path) => {
                 let uri = Uri::from_str(&uri::uri(&path)).ok()?;
                 Some(Location { uri, range: lsp_types::Range::default() })
             }
@@ -151,7 +142,7 @@ impl<W: Write> Server<W> {
         params: &TextDocumentPositionParams,
     ) -> Result<Option<PrepareRenameResponse>, Refusal> {
         let (scene, byte) = self.place(params)?;
-        let place = prepare(&scene, byte).map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
+        let place = prepare_rename(&scene, byte).map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
         Ok(Some(PrepareRenameResponse::Range(range(&scene, &place))))
     }
 
@@ -171,7 +162,9 @@ impl<W: Write> Server<W> {
 
     fn symbols(&mut self, params: &DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>, Refusal> {
         let scene = self.scene(&params.text_document.uri)?;
-        Ok(Some(DocumentSymbolResponse::Nested(symbols(scene.file()))))
+        let file = scene.file();
+        let all = document_symbols(file).into_iter().map(|one| document_symbol(file, one)).collect();
+        Ok(Some(DocumentSymbolResponse::Nested(all)))
     }
 
     /// The composites and components of all files by their names.
@@ -179,13 +172,13 @@ impl<W: Write> Server<W> {
     fn found(&mut self, query: &str) -> Option<WorkspaceSymbolResponse> {
         let open: Vec<PathBuf> = self.documents.iter().map(|(_, one)| one.path.clone()).collect();
         let files = self.workspace.all(&self.client.folders, &open);
-        let all = matching(&files, query).into_iter().filter_map(|(file, name, kind, container)| {
-            let uri = Uri::from_str(&self.uri_of(&file.path)).ok()?;
-            let location = Location { uri, range: file.lines.range(&file.text, name.at.clone()) };
-            let container_name = (!container.is_empty()).then(|| container.to_owned());
+        let all = workspace_symbols(&files, query).into_iter().filter_map(|one| {
+            let uri = Uri::from_str(&self.uri_of(&one.file.path)).ok()?;
+            let location = Location { uri, range: range_in(one.file, one.start..one.end) };
+            let container_name = (!one.container.is_empty()).then(|| one.container.to_owned());
             Some(SymbolInformation {
-                name: name.text.clone(),
-                kind,
+                name: one.name.to_owned(),
+                kind: symbol_kind(one.kind),
                 tags: None,
                 deprecated: None,
                 location,
@@ -199,30 +192,23 @@ impl<W: Write> Server<W> {
     fn linked(&mut self, params: &LinkedEditingRangeParams) -> Result<Option<LinkedEditingRanges>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position_params)?;
         let file = scene.file();
-        let element = match file.tree.cursor(&file.text, byte) {
-            Cursor::ElementName { element, .. } | Cursor::EndTag { element: Some(element), .. } => element,
-            _ => return Ok(None),
-        };
-        let one = &file.tree.elements[element];
-        let Some(tag) = &one.end_tag else { return Ok(None) };
-        let both = [one.name.clone(), tag.start + 2..tag.start + 2 + one.name.len()];
-        let ranges = both.map(|at| file.lines.range(&file.text, at)).into();
-        Ok(Some(LinkedEditingRanges { ranges, word_pattern: None }))
+        let both = linked_tags(file, byte).map(|both| both.map(|at| range_in(file, at)).into());
+        Ok(both.map(|ranges| LinkedEditingRanges { ranges, word_pattern: None }))
     }
 
     fn folds(&mut self, params: &FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>, Refusal> {
         let scene = self.scene(&params.text_document.uri)?;
-        Ok(Some(shape::folds(scene.file())))
+        Ok(Some(folds(scene.file()).into_iter().map(folding_range).collect()))
     }
 
     fn selections(&mut self, params: &SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>, Refusal> {
         let scene = self.scene(&params.text_document.uri)?;
         let file = scene.file();
         let one = |place: &Position| {
-            let around = shape::around(file, file.lines.offset(&file.text, *place));
+            let around = selections(file, offset_in(file, *place));
             let widest_first = around.into_iter().rev();
             let nested = widest_first.fold(None, |parent, range| {
-                let range = file.lines.range(&file.text, range);
+                let range = range_in(file, range);
                 Some(SelectionRange { range, parent: parent.map(Box::new) })
             });
             let nothing = || SelectionRange { range: lsp_types::Range::new(*place, *place), parent: None };
@@ -236,7 +222,7 @@ impl<W: Write> Server<W> {
         let file = scene.file();
         let all = links(&scene).into_iter().filter_map(|(at, path)| {
             let target = Some(Uri::from_str(&self.uri_of(&path)).ok()?);
-            let range = file.lines.range(&file.text, at);
+            let range = range_in(file, at);
             Some(DocumentLink { range, target, tooltip: None, data: None })
         });
         Ok(Some(all.collect()))
@@ -246,19 +232,15 @@ impl<W: Write> Server<W> {
     fn formatting(&mut self, params: &DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>, Refusal> {
         let scene = self.scene(&params.text_document.uri)?;
         let file = scene.file();
-        let mut sources = Sources::new();
-        let id = sources.add(file.path.display().to_string(), file.text.to_string());
-        let parsed = xml::parse(id, sources.get(id).text());
-        let Some(document) = parsed.document.filter(|_| parsed.fault.is_none()) else { return Ok(None) };
-        let formatted = format(&document, WIDTH);
+        let Some(formatted) = formatted(file) else { return Ok(None) };
         if formatted == *file.text {
             return Ok(Some(Vec::new()));
         }
-        let whole = file.lines.range(&file.text, 0..file.text.len());
+        let whole = range_in(file, 0..file.text.len());
         Ok(Some(vec![TextEdit::new(whole, formatted)]))
     }
 
-    fn location(&self, scene: &Scene, place: &Place) -> Option<Location> {
+    fn location(&self, scene: &Scene, place: &FileRange) -> Option<Location> {
         let uri = self.uri_of(&scene.files[place.file].path);
         Some(Location { uri: Uri::from_str(&uri).ok()?, range: range(scene, place) })
     }
@@ -270,9 +252,8 @@ impl<W: Write> Server<W> {
     }
 }
 
-fn range(scene: &Scene, place: &Place) -> lsp_types::Range {
-    let file = &scene.files[place.file];
-    file.lines.range(&file.text, place.start..place.end)
+fn range(scene: &Scene, place: &FileRange) -> lsp_types::Range {
+    range_in(&scene.files[place.file], place.range())
 }
 
 /// Reads the parameters of a question, asks it, and writes its answer.

@@ -15,6 +15,7 @@ use lsp_types::notification::{
 };
 use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri, WorkspaceFolder};
 use saoms_api::contain::contained;
+use saoms_tools::editor::{Scene, Workspace};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::value::{RawValue, to_raw_value};
@@ -26,9 +27,7 @@ use super::diagnostics::Reported;
 use super::documents::Documents;
 use super::registries::Registries;
 use super::rpc::{self, Incoming};
-use super::scene::Scene;
 use super::uri;
-use super::workspace::Workspace;
 use crate::Exit;
 
 /// What can happen to a session.
@@ -309,7 +308,7 @@ impl<W: Write> Server<W> {
             }
         };
         let around = self.workspace.around(&path);
-        let libraries = around.files.first().map(|file| file.outline.libraries.clone()).unwrap_or_default();
+        let libraries = around.file().map(|file| file.libraries().to_vec()).unwrap_or_default();
         Ok(Scene::new(around, self.registries.of(&path, &libraries)))
     }
 }

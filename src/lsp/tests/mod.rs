@@ -1,12 +1,11 @@
-//! Names and what they stand for, text in and text out.
+//! Sessions, and the protocol's side of answers.
 
-mod broken;
-mod expressions;
-mod fleets;
-mod hover;
-mod marked;
-mod names;
+mod positions;
 mod session;
-mod shape;
-mod sound;
-mod topics;
+
+/// A composite of 1.1 with this inside.
+fn composite(inside: &str) -> String {
+    format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:s=\"urn:saoms:1\" name=\"fleet\" targetNamespace=\"urn:f\">\n{inside}\n</composite>"
+    )
+}

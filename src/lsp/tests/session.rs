@@ -7,6 +7,7 @@ use std::sync::mpsc;
 
 use lsp_server::{Message, Notification, Request};
 use saoms_lang::source::OpenTexts;
+use saoms_tools::editor::Workspace;
 use serde_json::{Value, json};
 
 use crate::Exit;
@@ -15,8 +16,7 @@ use crate::lsp::check::{Checker, Job, Outcome};
 use crate::lsp::registries::Registries;
 use crate::lsp::rpc::Incoming;
 use crate::lsp::server::{Event, Server};
-use crate::lsp::testing::composite;
-use crate::lsp::workspace::Workspace;
+use crate::lsp::tests::composite;
 
 const URI: &str = "file:///nowhere/fleet.composite";
 

@@ -1,0 +1,78 @@
+//! Attributes.
+
+use std::ops::Range;
+
+use super::CompletionKind;
+use saoms_lang::load::vocabulary::{Known, own_attributes};
+use saoms_lang::model::{SAOMS_NAMESPACE, Version};
+
+use super::{Completion, value};
+use crate::editor::describe;
+use crate::editor::scene::Scene;
+
+/// The attributes that an element can still get.
+pub(super) fn complete(scene: &Scene, element: usize, name: &Range<usize>) -> Vec<Completion> {
+    let file = scene.file();
+    let Some(kind) = file.kinds[element] else { return Vec::new() };
+    let attributes = &file.tree.elements[element].attributes;
+    let here = attributes.iter().find(|one| one.name == *name);
+    // One that has its value already gets another name and nothing else.
+    let has_value = here.is_some_and(|one| one.value.is_some());
+    let is_taken = |written: &str| {
+        attributes.iter().any(|one| one.name != *name && &file.text[one.name.clone()] == written)
+    };
+    let version = file.tree.version(&file.text);
+    let own = Own::at(scene, element);
+    let added = own.iter().flat_map(|own| {
+        let free = own_attributes(kind).map(|known| (format!("{}:{}", own.prefix, known.name), known));
+        let free = free.filter(|(written, _)| !is_taken(written));
+        free.map(|(written, known)| own.bound(attribute(written, known, has_value, name)))
+    });
+    let all = kind.of(version).map(|known| (known.name.to_owned(), known));
+    let free = all.filter(|(written, _)| !is_taken(written));
+    free.map(|(written, known)| attribute(written, known, has_value, name)).chain(added).collect()
+}
+
+/// How the namespace of SAOMS is written at an element.
+pub(super) struct Own<'s> {
+    pub(super) prefix: &'s str,
+    /// Where a declaration is added that is not there yet.
+    at: Option<usize>,
+}
+
+impl<'s> Own<'s> {
+    /// `None` where the usual prefix means something else.
+    pub(super) fn at(scene: &'s Scene, element: usize) -> Option<Self> {
+        let (text, tree) = (&*scene.file().text, &scene.file().tree);
+        if let Some(prefix) = tree.prefix_of(text, element, SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
+            return Some(Self { prefix, at: None });
+        }
+        let is_free = tree.resolve(text, element, "saoms").is_none();
+        is_free.then(|| Self { prefix: "saoms", at: tree.elements.first().map(|root| root.name.end) })
+    }
+
+    /// A proposal that has the prefix, with its declaration where that is lacking.
+    pub(super) fn bound(&self, one: Completion) -> Completion {
+        match self.at {
+            Some(at) => one.also(at, format!(" xmlns:{}=\"{SAOMS_NAMESPACE}\"", self.prefix)),
+            None => one,
+        }
+    }
+}
+
+fn attribute(written: String, known: &Known, has_value: bool, range: &Range<usize>) -> Completion {
+    let text = if has_value { written.clone() } else { format!("{written}=\"$1\"") };
+    let one = Completion::new(written, CompletionKind::Field, range)
+        .detail(if known.required { "required" } else { "" })
+        .doc(describe::attribute(known))
+        .rank(if known.required { 1 } else { 5 });
+    if has_value { one.insert(text) } else { one.snippet(text) }
+}
+
+/// The namespaces that a composite needs.
+pub(super) fn namespaces(range: &Range<usize>) -> Vec<Completion> {
+    let sca = Version::ALL.map(|version| (version.namespace(), version.label()));
+    let own = [(SAOMS_NAMESPACE, "what SAOMS adds to SCA")];
+    let all = sca.into_iter().chain(own).enumerate();
+    all.map(|(rank, (name, what))| value(name, range).detail(what).rank(rank as u8)).collect()
+}

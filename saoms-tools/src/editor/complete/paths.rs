@@ -1,0 +1,81 @@
+//! Files beside composites.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+
+use super::CompletionKind;
+
+use super::Completion;
+use crate::editor::scene::Scene;
+use crate::editor::scene::outline::{Component, Implementation};
+
+/// So many entries of a folder are looked at.
+const MOST: usize = 2_000;
+
+/// The files that a value can name, folder by folder: those for which `fits` says so.
+pub(super) fn complete(
+    scene: &Scene,
+    value: &Range<usize>,
+    at: usize,
+    fits: fn(&Path) -> bool,
+) -> Vec<Completion> {
+    let file = scene.file();
+    let typed = &file.text[value.start..at];
+    let inner = typed.rfind('/').map_or(0, |slash| slash + 1);
+    let range = value.start + inner..value.end;
+    let folder = file.path.parent().unwrap_or(Path::new("")).join(&typed[..inner]);
+    let entries = fs::read_dir(folder).into_iter().flatten().take(MOST).flatten();
+    entries
+        .filter_map(|entry| {
+            let (path, name) = (entry.path(), entry.file_name().into_string().ok()?);
+            // What would have to be written with references is for nobody.
+            if name.starts_with('.') || name.contains(['&', '<', '"', '\'']) {
+                return None;
+            }
+            match path.is_dir() {
+                true => Some(Completion::new(format!("{name}/"), CompletionKind::Folder, &range).rank(7)),
+                false => fits(&path).then(|| Completion::new(name, CompletionKind::File, &range)),
+            }
+        })
+        .collect()
+}
+
+/// Whether a file can hold a value.
+pub(super) fn is_value(path: &Path) -> bool {
+    !has_ending(path, &["composite", "so"])
+}
+
+/// Whether a file can be a table.
+pub(super) fn is_table(path: &Path) -> bool {
+    has_ending(path, &["csv"])
+}
+
+fn is_library(path: &Path) -> bool {
+    has_ending(path, &["so"])
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    path.extension().is_some_and(|ending| endings.iter().any(|known| ending == *known))
+}
+
+/// The libraries that are known by the classes that they bring, that of the component's class first, and those in the folder.
+pub(super) fn libraries(scene: &Scene, element: usize, value: &Range<usize>, at: usize) -> Vec<Completion> {
+    let class = scene.component_around(element).and_then(|one: &Component| match &one.implementation {
+        Some(Implementation::Class(name)) => scene.registry.get(&name.text)?.origin(),
+        _ => None,
+    });
+    let known: BTreeSet<&Path> = scene.registry.iter().filter_map(|one| one.origin()).collect();
+    let mut all: Vec<Completion> = known
+        .into_iter()
+        .filter_map(|path| {
+            let stem = path.file_stem()?.to_str()?;
+            let one =
+                Completion::new(stem.strip_prefix("lib").unwrap_or(stem), CompletionKind::Module, value);
+            Some(one.detail(path.display().to_string()).rank(if class == Some(path) { 0 } else { 4 }))
+        })
+        .collect();
+    all.extend(complete(scene, value, at, is_library));
+    all
+}

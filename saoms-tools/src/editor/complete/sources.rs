@@ -1,0 +1,271 @@
+//! Where values of properties come from: `$name`, and the parts of complex values that paths lead to.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use super::CompletionKind;
+
+use super::{Completion, names};
+use crate::editor::scene::Scene;
+use crate::editor::scene::outline::Named;
+use crate::editor::syntax::local;
+
+/// How many elements of values are looked at.
+const MOST: usize = 20_000;
+/// How many components are looked at for the values that they give a composite.
+const MOST_GIVERS: usize = 100;
+
+/// How many texts are proposed.
+const MOST_TEXTS: usize = 200;
+
+/// An element of a value: its file and its place there.
+type Part = (usize, usize);
+
+/// What can stand at a place of a `source`: a property of the composite, or behind `/` and `[` the elements and attributes that there are in its value.
+pub(super) fn complete(scene: &Scene, value: Range<usize>, at: usize) -> Vec<Completion> {
+    let text = &scene.file().text;
+    if let Some(all) = texts(scene, &value, at) {
+        return all;
+    }
+    let Some(mut paths) = paths(&text[value.start..at]) else { return Vec::new() };
+    let Some(typed) = paths.pop() else { return Vec::new() };
+    let end = at + text[at..value.end].find(|letter| !is_name(letter)).unwrap_or(value.end - at);
+    let from = around(scene, paths);
+    let Some((steps, last)) = typed.rsplit_once('/') else {
+        return match from {
+            // In a predicate.
+            Some(from) if !typed.starts_with('$') => parts(scene, &from, &(at - typed.len()..end)),
+            _ => names::sources(scene, &(at - typed.len()..end)),
+        };
+    };
+    let range = at - last.len()..end;
+    let (from, steps) = split(steps, scene, from);
+    let from = match steps {
+        None => from.iter().copied().chain(only(scene, &from)).collect(),
+        Some(steps) => walk(scene, from, steps.split('/')),
+    };
+    parts(scene, &from, &range)
+}
+
+/// The elements that paths around one choose from; `None` where there is none around it.
+fn around(scene: &Scene, paths: Vec<&str>) -> Option<Vec<Part>> {
+    paths.into_iter().fold(None, |from, path| {
+        let (start, steps) = split(path, scene, from);
+        Some(walk(scene, start, steps.into_iter().flat_map(|steps| steps.split('/'))))
+    })
+}
+
+/// What an attribute or an element can be equal to, where the quote of a text behind `=` is open.
+fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Completion>> {
+    let text = &scene.file().text;
+    let typed = &text[value.start..at];
+    let (open, quote) = open_quote(typed)?;
+    let operand = typed[..open].trim_end().strip_suffix('=')?;
+    let mut paths = paths(operand.strip_suffix('!').unwrap_or(operand).trim_end())?;
+    let path = paths.pop()?;
+    let (start, steps) = split(path, scene, around(scene, paths));
+    let (steps, last) = steps
+        .map(|steps| steps.rsplit_once('/').map_or((None, steps), |(steps, last)| (Some(steps), last)))?;
+    let here = match steps {
+        Some(steps) => walk(scene, start, steps.split('/')),
+        None => start,
+    };
+    let rest = &text[at..value.end];
+    let end = rest.find(quote).or_else(|| rest.find(|letter| !is_name(letter))).unwrap_or(rest.len());
+    let range = value.start + open + 1..at + end;
+    let mut seen = BTreeSet::new();
+    let mut add = |text: &str| {
+        // What would have to be written with references is for nobody.
+        let is_plain = !text.is_empty() && !text.contains(['&', '<', '"', '\'', '\n']);
+        let is_new = is_plain && seen.len() < MOST_TEXTS && seen.insert(text.to_owned());
+        is_new.then(|| Completion::new(text, CompletionKind::Value, &range))
+    };
+    let mut all = Vec::new();
+    if let Some(name) = last.strip_prefix('@') {
+        for (file, one) in here {
+            let file = &scene.files[file];
+            let attributes = file.tree.elements[one].attributes.iter();
+            let named = attributes.filter(|one| local(&file.text[one.name.clone()]) == local(name));
+            all.extend(named.filter_map(|one| add(&file.text[one.value.clone()?])));
+        }
+        return Some(all);
+    }
+    let elements = if matches!(last, "." | "text()") { here } else { named(scene, &here, local(last)) };
+    for (file, one) in elements {
+        let file = &scene.files[file];
+        all.extend(file.tree.text(&file.text, one).and_then(|at| add(file.text[at].trim())));
+    }
+    Some(all)
+}
+
+/// Where the quote is that is open at the end of a part of an XPath, and which.
+fn open_quote(typed: &str) -> Option<(usize, char)> {
+    typed.char_indices().fold(None, |open, (at, letter)| match open {
+        Some((_, quote)) if quote == letter => None,
+        Some(open) => Some(open),
+        None => matches!(letter, '"' | '\'').then_some((at, letter)),
+    })
+}
+
+fn is_name(letter: char) -> bool {
+    letter.is_alphanumeric() || "_-.:".contains(letter)
+}
+
+/// The paths that are not at their end yet in a part of an XPath: the innermost last, which the others choose by a predicate. `None` within quotes.
+fn paths(typed: &str) -> Option<Vec<&str>> {
+    let mut open: Vec<Range<usize>> = std::iter::once(0..0).collect();
+    let mut quote = None;
+    for (at, letter) in typed.char_indices() {
+        let next = at + letter.len_utf8();
+        match letter {
+            _ if quote == Some(letter) => quote = None,
+            _ if quote.is_some() => continue,
+            '\'' | '"' => quote = Some(letter),
+            '[' => {
+                open.push(next..next);
+                continue;
+            }
+            ']' => {
+                open.pop();
+                open.last_mut()?.end = next;
+                continue;
+            }
+            _ if is_name(letter) || "$@*/".contains(letter) => {
+                open.last_mut()?.end = next;
+                continue;
+            }
+            _ => {}
+        }
+        *open.last_mut()? = next..next;
+    }
+    let all = open.into_iter().map(|range| &typed[range]);
+    quote.is_none().then(|| all.collect())
+}
+
+/// The elements that a path starts from, and its steps: those of a property, or in a predicate those that this is about.
+fn split<'p>(path: &'p str, scene: &Scene, around: Option<Vec<Part>>) -> (Vec<Part>, Option<&'p str>) {
+    let Some(rest) = path.strip_prefix('$') else { return (around.unwrap_or_default(), Some(path)) };
+    let (name, steps) = rest.split_once('/').map_or((rest, None), |(name, steps)| (name, Some(steps)));
+    let name = name.split('[').next().unwrap_or(name);
+    (values(scene, name), steps)
+}
+
+/// What the values of a property of the composite stand in.
+fn values(scene: &Scene, name: &str) -> Vec<Part> {
+    let unit = scene.unit_of(0);
+    let mut all = Vec::new();
+    for &file in unit {
+        let declared = scene.files[file].outline.properties.iter().filter(|one| one.text == name);
+        all.extend(declared.flat_map(|one| values_of(scene, file, one)));
+    }
+    // The components that the composite implements may give it one.
+    for &file in scene.users(0) {
+        let components = scene.files[file].outline.components.iter();
+        let givers = components.filter(|one| scene.inside(file, one).contains(&0)).take(MOST_GIVERS);
+        let given = givers.flat_map(|one| one.properties.iter().filter(|one| one.text == name));
+        all.extend(given.flat_map(|one| values_of(scene, file, one)));
+    }
+    all
+}
+
+/// What the values of one element `property` stand in: itself, each `value`, or each element where its values are such.
+fn values_of(scene: &Scene, file: usize, property: &Named) -> Vec<Part> {
+    let (of, element) = (&scene.files[file], property.element);
+    let children = || of.tree.children(element).take(MOST).map(|child| (file, child));
+    let values: Vec<Part> =
+        children().filter(|(_, child)| of.tree.local(&of.text, *child) == "value").collect();
+    match values.is_empty() {
+        false => values,
+        true if of.tree.attribute(&of.text, element, "element").is_some() => children().collect(),
+        true => vec![(file, element)],
+    }
+}
+
+/// The elements that are alone in what a value stands in: such a value has the parts of its element as well.
+fn only(scene: &Scene, all: &[Part]) -> Vec<Part> {
+    let only = all.iter().filter_map(|&(file, element)| {
+        let mut inside = scene.files[file].tree.children(element);
+        let only = inside.next()?;
+        inside.next().is_none().then_some((file, only))
+    });
+    only.collect()
+}
+
+/// Where steps lead from elements, predicates aside.
+fn walk<'p>(scene: &Scene, from: Vec<Part>, steps: impl Iterator<Item = &'p str>) -> Vec<Part> {
+    let mut here = from;
+    for (place, step) in steps.enumerate() {
+        let name = step.split('[').next().unwrap_or(step);
+        let name = local(name.strip_prefix("child::").unwrap_or(name));
+        let next = match name {
+            "" => descendants(scene, &here),
+            "." => continue,
+            ".." => here
+                .iter()
+                .filter_map(|&(file, one)| Some((file, scene.files[file].tree.elements[one].parent?)))
+                .collect(),
+            _ => match named(scene, &here, name) {
+                none if none.is_empty() && place == 0 => named(scene, &only(scene, &here), name),
+                found => found,
+            },
+        };
+        here = next;
+        here.sort_unstable();
+        here.dedup();
+    }
+    here
+}
+
+fn named(scene: &Scene, of: &[Part], name: &str) -> Vec<Part> {
+    let is_meant = |&(file, one): &Part| {
+        let file = &scene.files[file];
+        name == "*" || file.tree.local(&file.text, one) == name
+    };
+    children(scene, of).filter(is_meant).collect()
+}
+
+fn children(scene: &Scene, of: &[Part]) -> impl Iterator<Item = Part> {
+    let all =
+        of.iter().flat_map(|&(file, one)| scene.files[file].tree.children(one).map(move |one| (file, one)));
+    all.take(MOST)
+}
+
+/// Elements with all that is inside them.
+fn descendants(scene: &Scene, of: &[Part]) -> Vec<Part> {
+    let all = of.iter().flat_map(|&(file, one)| {
+        let elements = &scene.files[file].tree.elements;
+        let end = elements[one].end;
+        let inside = (one + 1..elements.len()).take_while(move |inner| elements[*inner].tag.start < end);
+        std::iter::once(one).chain(inside).map(move |one| (file, one))
+    });
+    all.take(MOST).collect()
+}
+
+/// The names of the elements and attributes in elements, the first text or value of each beside it.
+fn parts(scene: &Scene, of: &[Part], range: &Range<usize>) -> Vec<Completion> {
+    let (mut all, mut seen) = (Vec::new(), BTreeSet::new());
+    for (file, one) in children(scene, of) {
+        let file = &scene.files[file];
+        let name = file.tree.local(&file.text, one);
+        if !name.is_empty() && seen.insert(name.to_owned()) {
+            let text = file.tree.text(&file.text, one).map_or("", |at| &file.text[at]);
+            all.push(Completion::new(name, CompletionKind::Field, range).detail(text).rank(4));
+        }
+    }
+    // A property that a value stands in is no part of that.
+    let of_values = of.iter().filter(|(file, one)| scene.files[*file].kinds[*one].is_none());
+    for &(file, one) in of_values.take(MOST) {
+        let file = &scene.files[file];
+        for attribute in &file.tree.elements[one].attributes {
+            let name = &file.text[attribute.name.clone()];
+            let shown = format!("@{}", local(name));
+            if name.is_empty() || name == "xmlns" || name.starts_with("xmlns:") || !seen.insert(shown.clone())
+            {
+                continue;
+            }
+            let value = attribute.value.clone().map_or("", |at| &file.text[at]);
+            all.push(Completion::new(shown, CompletionKind::Property, range).detail(value));
+        }
+    }
+    all
+}

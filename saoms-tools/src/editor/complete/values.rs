@@ -1,0 +1,135 @@
+//! Values of properties.
+
+use std::ops::Range;
+
+use saoms_api::declaration::PropertyKind;
+use saoms_api::extension::DURATION_UNITS;
+use saoms_lang::registry::PropertyDeclaration;
+
+use super::{Completion, language, names, topics, value};
+use crate::editor::describe;
+use crate::editor::scene::Scene;
+use crate::editor::scene::symbol::Symbol;
+use crate::editor::scene::topics::RENAME;
+use crate::editor::syntax::local;
+
+/// The values that a property of a component, or of a loop, can have.
+pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Completion> {
+    let file = scene.file();
+    let Some(parent) = file.tree.elements[property].parent else { return Vec::new() };
+    let Some(name) = file.tree.value(&file.text, property, "name") else { return Vec::new() };
+    let name = &file.text[name];
+    if name == RENAME {
+        return topics::complete(scene, property, range, at);
+    }
+    if let Some(language) = language::of_property(scene, 0, property) {
+        return language::complete(language, scene, 0, range, at);
+    }
+    let declared = names::declared(scene, parent);
+    let Some((one, preset)) = declared.into_iter().find(|(one, _)| one.name == name) else {
+        let component = scene.component_around(parent);
+        let inner = component.and_then(|one| scene.inside(0, one).first().copied());
+        return inner.map_or_else(Vec::new, |inner| as_used(scene, inner, name, &range, at));
+    };
+    let mut all = explained(one, preset, &file.text[range.start..at], &range);
+    if name == "ID"
+        && let Some(component) = scene.component_around(property)
+    {
+        all.push(value(&component.name.text, &range).detail("the name of the component"));
+    }
+    all
+}
+
+/// The values of a declared property, behind what is typed, each with what there is to say about it.
+pub(super) fn explained(
+    one: &PropertyDeclaration,
+    preset: Option<&str>,
+    typed: &str,
+    range: &Range<usize>,
+) -> Vec<Completion> {
+    let (doc, expected) = (describe::property(one, preset), one.expected());
+    let all = of_declared(one, typed, range).into_iter();
+    all.map(|item| if item.detail.is_empty() { item.detail(&expected) } else { item }.doc(&doc)).collect()
+}
+
+/// The values that a property of the composite can have.
+pub(super) fn of_parameter(
+    scene: &Scene,
+    property: usize,
+    range: Range<usize>,
+    at: usize,
+) -> Vec<Completion> {
+    let file = scene.file();
+    match file.tree.value(&file.text, property, "name") {
+        Some(name) => as_used(scene, 0, &file.text[name], &range, at),
+        None => Vec::new(),
+    }
+}
+
+/// The values of a property of a composite: those of its type, or else those of the first property that takes its value from it.
+pub(super) fn as_used(
+    scene: &Scene,
+    file: usize,
+    name: &str,
+    range: &Range<usize>,
+    at: usize,
+) -> Vec<Completion> {
+    let Symbol::Parameter { file, name } = scene.parameter(file, name) else { return Vec::new() };
+    let of = &scene.files[file];
+    let declared = of.outline.properties.iter().find(|one| one.text == name);
+    let r#type = declared.and_then(|one| of.tree.value(&of.text, one.element, "type"));
+    if r#type.is_some_and(|at| local(&of.text[at]) == "boolean") {
+        return names::words(&["true", "false"], range);
+    }
+    let mut takers = scene.unit_of(file).iter().flat_map(|&place| {
+        let sources = scene.files[place].outline.sources.iter().filter(|source| source.text == name);
+        sources.filter_map(move |source| taker(scene, place, source.element))
+    });
+    let Some(one) = takers.next() else { return Vec::new() };
+    explained(one, None, &scene.file().text[range.start..at], range)
+}
+
+/// What the class declares of a property of a component of a file.
+fn taker(scene: &Scene, file: usize, property: usize) -> Option<&PropertyDeclaration> {
+    let of = &scene.files[file];
+    let name = &of.text[of.tree.value(&of.text, property, "name")?];
+    let declared = names::declared_in(scene, file, of.tree.elements[property].parent?);
+    declared.into_iter().map(|(one, _)| one).find(|one| one.name == name)
+}
+
+/// What can be proposed from the declaration, behind what is typed.
+fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> Vec<Completion> {
+    let is_default = |text: &str| one.default.as_deref() == Some(text);
+    let mut all: Vec<Completion> = match one.kind {
+        PropertyKind::Boolean => ["true", "false"].map(|word| value(word, range)).into(),
+        PropertyKind::Duration => {
+            let number = typed.trim_end_matches(|c: char| c.is_ascii_alphabetic()).trim();
+            let units = DURATION_UNITS.iter().zip(1..);
+            match number.parse::<f64>() {
+                Ok(_) => units
+                    .map(|((unit, what), rank)| {
+                        value(format!("{number}{unit}"), range).detail(*what).rank(rank)
+                    })
+                    .filter(|item| one.check(&item.label).is_ok())
+                    .collect(),
+                Err(_) => Vec::new(),
+            }
+        }
+        _ => one.allowed.iter().map(|word| value(word, range)).collect(),
+    };
+    // The ends of the range, where they are values.
+    let ends = [(&one.min, "the least"), (&one.max, "the greatest")];
+    for (end, what) in ends {
+        if let Some(end) = end.as_ref().filter(|end| !all.iter().any(|item| item.label == **end)) {
+            all.push(value(end, range).detail(format!("{what}: {}", one.expected())).rank(7));
+        }
+    }
+    if let Some(default) = one.default.as_deref().filter(|default| !default.is_empty())
+        && !all.iter().any(|item| item.label == default)
+    {
+        all.push(value(default, range));
+    }
+    all.into_iter()
+        .map(|item| if is_default(&item.label) { item.detail("default").rank(0) } else { item })
+        .collect()
+}

@@ -1,0 +1,57 @@
+//! What editors ask of a composite: completion, hovering, definitions, references, renaming, outlines.
+//!
+//! Each question is a pure function of a [`Scene`] (a file, the files around it, the classes) and a byte of the file. The answers are ranges
+//! of bytes and plain types; a protocol maps them to its own.
+
+mod allow;
+mod complete;
+mod describe;
+mod folding;
+mod formatting;
+mod hover;
+mod line_index;
+mod links;
+mod navigate;
+mod rename;
+mod scene;
+mod selection;
+mod symbols;
+mod syntax;
+#[cfg(any(test, fuzzing))]
+pub mod testing;
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+pub use allow::{Allowance, allowances};
+pub use complete::{Completion, CompletionKind, Insert, complete};
+pub use describe::code as describe_code;
+pub use folding::{Fold, folds};
+pub use formatting::formatted;
+pub use hover::hover;
+pub use line_index::LineIndex;
+pub use links::links;
+pub use navigate::{Target, definition, references};
+pub use rename::{prepare as prepare_rename, rename};
+pub use scene::file::File;
+pub use scene::symbol::FileRange;
+pub use scene::workspace::{Surroundings, Workspace};
+pub use scene::{Fleet, Scene};
+pub use selection::{linked_tags, selections};
+pub use symbols::{DocumentSymbol, SymbolKind, WorkspaceSymbol, document_symbols, workspace_symbols};
+
+/// New text for a range of bytes of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Edit {
+    /// The bytes that are replaced.
+    pub range: Range<usize>,
+    /// The text in their place.
+    pub text: String,
+}
+
+impl Edit {
+    pub(crate) fn new(range: Range<usize>, text: impl Into<String>) -> Self {
+        Self { range, text: text.into() }
+    }
+}

@@ -1,0 +1,162 @@
+//! What a name in a composite stands for, and every place where the same is meant.
+
+use std::ops::Range;
+
+use super::Scene;
+use super::occurrences::Found;
+use super::outline::Side;
+
+/// A range of bytes of a file of a scene.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FileRange {
+    /// The place of the file among those of the scene.
+    pub file: usize,
+    /// The first byte.
+    pub start: usize,
+    /// The byte behind the last one.
+    pub end: usize,
+}
+
+impl FileRange {
+    pub(crate) fn new(file: usize, at: &Range<usize>) -> Self {
+        Self { file, start: at.start, end: at.end }
+    }
+
+    /// The bytes.
+    pub fn range(&self) -> Range<usize> {
+        self.start..self.end
+    }
+}
+
+/// What a name stands for. The file is the one that defines it; where none does, the one that names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Symbol {
+    /// A component.
+    Component { file: usize, name: String },
+    /// A property of a composite.
+    Parameter { file: usize, name: String },
+    /// A service or a reference of a composite.
+    Promoted { file: usize, side: Side, name: String },
+    /// A service or a reference of a component of a class.
+    Part { file: usize, component: String, side: Side, name: String },
+    /// The composite in a file.
+    Composite { file: usize },
+    /// A loop of a component.
+    Loop { file: usize, component: String, name: String },
+    /// A class of components or of loops.
+    Class { name: String },
+    /// A topic of the fleet.
+    Topic { name: String },
+    /// What the replicas of a component are counted by.
+    Index { file: usize, component: String },
+}
+
+/// A place that names something.
+#[derive(Clone, Debug)]
+pub(crate) struct Occurrence {
+    pub(crate) symbol: Symbol,
+    pub(crate) at: FileRange,
+    pub(crate) is_definition: bool,
+    /// Whether it is a name in an expression.
+    pub(crate) is_in_expression: bool,
+}
+
+/// The symbol whose name a byte of the first file touches, and where the name is.
+pub(crate) fn at(scene: &Scene, at: usize) -> Option<Occurrence> {
+    if scene.file().is_beside {
+        // What its names mean, composites say.
+        let all = scene.owners().into_iter().flat_map(|file| Found::of(scene, file, None));
+        return all.into_iter().find(|one| one.at.file == 0 && one.at.start <= at && at <= one.at.end);
+    }
+    Found::of(scene, 0, Some(at)).into_iter().next()
+}
+
+/// Every place where a symbol is named, those that define it first.
+pub(crate) fn places(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
+    let mut found: Vec<Occurrence> = match symbol {
+        Symbol::Topic { name } => scene.places_of_topic(name),
+        _ => {
+            let all = (0..scene.files.len()).flat_map(|file| Found::of(scene, file, None));
+            all.filter(|one| one.symbol == *symbol).collect()
+        }
+    };
+    found.sort_by_key(|one| (!one.is_definition, one.at.clone()));
+    found.dedup_by(|one, other| one.at == other.at);
+    found
+}
+
+impl Scene {
+    /// The file and the name under which a component is written that a file names: that of its replicas, where it is one of them.
+    pub(crate) fn named(&self, file: usize, name: &str) -> (usize, String) {
+        if let Some((of, _)) = self.component(file, name) {
+            return (of, name.to_owned());
+        }
+        let mut all = self.patterns(file).map(|(of, one)| (of, &one.name.text));
+        let of_replicas = all.find(|(_, pattern)| is_replica(pattern, name));
+        of_replicas.map_or_else(|| (file, name.to_owned()), |(of, pattern)| (of, pattern.clone()))
+    }
+
+    /// The property of a composite that a file is part of.
+    pub(crate) fn parameter(&self, file: usize, name: &str) -> Symbol {
+        let has = |of: &&usize| self.files[**of].outline.properties.iter().any(|one| one.text == name);
+        let file = self.unit_of(file).iter().find(has).copied().unwrap_or(file);
+        Symbol::Parameter { file, name: name.to_owned() }
+    }
+
+    /// What the part of a component of a file stands for: of a composite inside, what that promotes.
+    pub(crate) fn part(&self, file: usize, component: &str, side: Side, name: &str) -> Symbol {
+        let inside = self.component(file, component).map(|(of, known)| self.inside(of, known));
+        let inside = inside.filter(|inside| !inside.is_empty());
+        let Some(inside) = inside else {
+            return Symbol::Part { file, component: component.to_owned(), side, name: name.to_owned() };
+        };
+        let has = |of: &&usize| {
+            let outline = &self.files[**of].outline;
+            let names = if side == Side::Service { &outline.services } else { &outline.references };
+            names.iter().any(|one| one.text == name)
+        };
+        let file = inside.iter().find(has).copied().unwrap_or(inside[0]);
+        Symbol::Promoted { file, side, name: name.to_owned() }
+    }
+}
+
+/// Whether a name is one of those that a name with expressions, as `Robot${index:03}`, stands for; or `Robot*`, all of them; or one with another
+/// expression.
+pub(crate) fn is_replica(pattern: &str, name: &str) -> bool {
+    match pieces(pattern).split_first() {
+        Some((first, rest)) if !rest.is_empty() => {
+            let group = group(pattern);
+            group.as_deref() == Some(name)
+                || (name.contains("${") && self::group(name) == group)
+                || name.strip_prefix(first).is_some_and(|name| has_numbers(name, rest))
+        }
+        _ => false,
+    }
+}
+
+/// What names all replicas of a name with expressions: that with `*` in their places. `None` where it has none.
+pub(crate) fn group(pattern: &str) -> Option<String> {
+    let pieces = pieces(pattern);
+    (pieces.len() > 1).then(|| pieces.join("*"))
+}
+
+/// What is around the expressions of a name.
+fn pieces(pattern: &str) -> Vec<&str> {
+    let (mut all, mut rest) = (Vec::new(), pattern);
+    while let Some((before, (_, after))) =
+        rest.split_once("${").and_then(|(before, inside)| Some((before, inside.split_once('}')?)))
+    {
+        all.push(before);
+        rest = after;
+    }
+    all.push(rest);
+    all
+}
+
+/// Whether a name is a number before each of these pieces, and nothing else.
+fn has_numbers(name: &str, pieces: &[&str]) -> bool {
+    let Some((first, rest)) = pieces.split_first() else { return name.is_empty() };
+    let digits = name.bytes().take_while(u8::is_ascii_digit).count();
+    // A piece may begin with digits, too.
+    (1..=digits).any(|end| name[end..].strip_prefix(first).is_some_and(|name| has_numbers(name, rest)))
+}

@@ -1,0 +1,11 @@
+//! Names and what they stand for, text in and text out.
+
+mod broken;
+mod expressions;
+mod fleets;
+mod folding;
+mod hover;
+mod marked;
+mod names;
+mod sound;
+mod topics;
