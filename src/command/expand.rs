@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use clap::Args;
-use saoms_lang::check::{Options, expand as expanded};
+use saoms_lang::assembly::expanded;
+use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::source::FileId;
 use saoms_lang::xml;
@@ -21,24 +22,19 @@ use crate::output::{counted, eprint, print};
 pub(crate) struct ExpandArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
-
-    /// Take classes that this program does not know as given, and implementations of other kinds: resolve all that can be resolved without them
-    #[arg(long)]
-    pub(crate) assume_classes: bool,
 }
 
 pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
-    let options = Options { assume_classes: arguments.assume_classes, ..Options::default() };
-    let outcome = match checked(expanded, &arguments.fleet, options) {
+    let outcome = match checked(check, &arguments.fleet, Options::default()) {
         Ok(outcome) => outcome,
         Err(exit) => return exit,
     };
     eprint(&outcome.human(Severity::Error));
-    let (Some(expansion), Some(first)) = (&outcome.made, outcome.first()) else {
+    let (Some(assembly), Some(first)) = (&outcome.made, outcome.first()) else {
         eprint(&format!("\n{}: nothing to expand\n", counted(outcome.count(Severity::Error), "error")));
         return Exit::WrongInput;
     };
-    let text = Arc::new(expansion.text(first, outcome.diagnostics()));
+    let text = Arc::new(expanded(assembly, first, outcome.diagnostics()));
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
     match xml::parse(FileId(0), &text).document {
         Some(document) => print(&Formatted { document: &document, width: WIDTH }),

@@ -27,72 +27,48 @@ pub fn expanded<'d>(
     like: &Composite,
     found: impl IntoIterator<Item = &'d Diagnostic>,
 ) -> String {
-    Expansion::of(assembly, like).text(like, found)
+    let paths: Vec<&str> = assembly.components.iter().map(|component| component.path.as_str()).collect();
+    let names = names(&paths);
+    let lacks_target = |component: &ComponentSpec| {
+        let references = component.class.declaration().references.iter().zip(&component.references);
+        references.into_iter().any(|(declared, wire)| !declared.optional && wire.targets.is_empty())
+    };
+    let version = match assembly.components.iter().any(lacks_target) {
+        true => Version::Osoa10,
+        false => like.version,
+    };
+    let components = assembly.components.iter().zip(&names).map(|(one, name)| {
+        let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
+            let uri = |target: &super::Target| format!("{}/{}", names[target.component], target.service);
+            let targets: Vec<String> = wire.targets.iter().map(uri).collect();
+            Node::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "))
+        });
+        component(one, name, references)
+    });
+    let mut root =
+        root(like).children(severities(like, found)).children(components).declare("", version.namespace());
+    root.hoist();
+    let mut text = String::new();
+    root.write(0, &mut text);
+    text
 }
 
-/// What is left of composites when all is resolved: the elements of one composite.
-#[derive(Clone, Debug)]
-pub struct Expansion {
-    version: Version,
-    root: Node,
-    /// Whether something in it is taken as given, as it is written: all that was found in it is found again.
-    is_given: bool,
-}
-
-impl Expansion {
-    /// What is left of an assembly: [`expanded`].
-    pub fn of(assembly: &Assembly, like: &Composite) -> Self {
-        let paths: Vec<&str> = assembly.components.iter().map(|component| component.path.as_str()).collect();
-        let names = names(&paths);
-        let lacks_target = |component: &ComponentSpec| {
-            let references = component.class.declaration().references.iter().zip(&component.references);
-            references.into_iter().any(|(declared, wire)| !declared.optional && wire.targets.is_empty())
-        };
-        let version = match assembly.components.iter().any(lacks_target) {
-            true => Version::Osoa10,
-            false => like.version,
-        };
-        let root = root(like);
-        let components = assembly.components.iter().zip(&names);
-        let components = components.map(|(one, name)| {
-            let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
-                let uri = |target: &super::Target| format!("{}/{}", names[target.component], target.service);
-                let targets: Vec<String> = wire.targets.iter().map(uri).collect();
-                Node::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "))
-            });
-            component(one, name, references)
-        });
-        Self { version, root: root.children(components), is_given: false }
-    }
-
-    /// Elements in which something is taken as given.
-    pub(crate) fn given(version: Version, root: Node) -> Self {
-        Self { version, root, is_given: true }
-    }
-
-    /// As the text of a composite like this one; `found` are the diagnostics of the check that it was made by.
-    pub fn text<'d>(&self, like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> String {
-        let lowered = lowered(found, self.is_given);
-        let is_of_wiring = |rule: &&SeverityRule| rule.within.is_none() && codes::is_of_wiring(&rule.code);
-        let of_wiring = like.severities.iter().filter(is_of_wiring);
-        let severity = |code: &str, level: Level, reason: &str| {
-            let node = Node::new("s:severity").with("code", code).with("level", level.name());
-            node.with("reason", reason).declare("s", SAOMS_NAMESPACE)
-        };
-        let said = lowered.into_iter().map(|(code, set)| {
-            severity(code, set.level, set.reason.as_deref().unwrap_or("set on the command line"))
-        });
-        let said = said.chain(of_wiring.map(|rule| severity(&rule.code, rule.level.value, &rule.reason)));
-        let mut root = self.root.clone().first(said.collect()).declare("", self.version.namespace());
-        root.hoist();
-        let mut text = String::new();
-        root.write(0, &mut text);
-        text
-    }
+/// The severities that the composite sets.
+fn severities<'d>(like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Node> {
+    let is_of_wiring = |rule: &&SeverityRule| rule.within.is_none() && codes::is_of_wiring(&rule.code);
+    let of_wiring = like.severities.iter().filter(is_of_wiring);
+    let severity = |code: &str, level: Level, reason: &str| {
+        let node = Node::new("s:severity").with("code", code).with("level", level.name());
+        node.with("reason", reason).declare("s", SAOMS_NAMESPACE)
+    };
+    let lowered = lowered(found).into_iter().map(|(code, set)| {
+        severity(code, set.level, set.reason.as_deref().unwrap_or("set on the command line"))
+    });
+    lowered.chain(of_wiring.map(|rule| severity(&rule.code, rule.level.value, &rule.reason))).collect()
 }
 
 /// The root with the name and the namespace of a composite.
-pub(crate) fn root(like: &Composite) -> Node {
+fn root(like: &Composite) -> Node {
     let namespace = like.target_namespace.as_ref();
     Node::new("composite")
         .with("name", like.name.as_str())
@@ -101,13 +77,10 @@ pub(crate) fn root(like: &Composite) -> Node {
 
 /// The codes that are lowered although the composite that is left has what they are about; each with what hides least. Codes of which something
 /// is told as it is are told so again.
-fn lowered<'d>(
-    found: impl IntoIterator<Item = &'d Diagnostic>,
-    is_given: bool,
-) -> BTreeMap<&'static str, &'d SetBy> {
+fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'static str, &'d SetBy> {
     let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
     let mut told: HashSet<&'static str> = HashSet::new();
-    for one in found.into_iter().filter(|one| is_given || codes::outlives_expansion(one.code)) {
+    for one in found.into_iter().filter(|one| codes::outlives_expansion(one.code)) {
         let Some(set) = one.set.as_ref().filter(|set| set.level != Level::Set(Severity::Error)) else {
             told.insert(one.code.id);
             continue;
@@ -122,7 +95,7 @@ fn lowered<'d>(
 }
 
 /// A name for each path: the path, with dots for what a name cannot have. No two are the same.
-pub(crate) fn names(paths: &[&str]) -> Vec<String> {
+fn names(paths: &[&str]) -> Vec<String> {
     // Paths that are names stay as they are, whatever others come to.
     let plain = paths.iter().filter(|path| !path.contains('/'));
     let mut taken: HashSet<String> = plain.map(|path| (*path).to_owned()).collect();
@@ -139,32 +112,27 @@ pub(crate) fn names(paths: &[&str]) -> Vec<String> {
     paths.iter().map(name).collect()
 }
 
-/// The start of a component of this name.
-pub(crate) fn start(mut node: Node, path: &str, name: &str) -> Node {
-    node.set("name", name);
-    if path == name {
-        return node;
-    }
-    node.behind("name", ("s:path", path)).declare("s", SAOMS_NAMESPACE)
-}
-
 /// A component of a class, with these references.
 fn component(component: &ComponentSpec, name: &str, references: impl IntoIterator<Item = Node>) -> Node {
-    start(Node::new("component"), &component.path, name)
-        .child(implementation(component))
+    let node = Node::new("component").with("name", name);
+    let node = match component.path == name {
+        true => node,
+        false => node.with("s:path", component.path.as_str()).declare("s", SAOMS_NAMESPACE),
+    };
+    node.child(implementation(component))
         .children(valued(component))
         .children(references)
         .children(looped(component))
 }
 
 /// What names the class of a component.
-pub(crate) fn implementation(component: &ComponentSpec) -> Node {
+fn implementation(component: &ComponentSpec) -> Node {
     let node = Node::new("implementation.rust").with("class", component.class.name());
     node.maybe("library", component.library.as_deref())
 }
 
 /// The properties of a component of a class.
-pub(crate) fn valued(component: &ComponentSpec) -> Vec<Node> {
+fn valued(component: &ComponentSpec) -> Vec<Node> {
     let presets = component.class.presets();
     let values = component.values.iter().filter(|value| !presets.contains(value));
     let settings = component.task.iter().flat_map(task);
@@ -178,7 +146,7 @@ pub(crate) fn valued(component: &ComponentSpec) -> Vec<Node> {
 }
 
 /// What is said about the loops of a component of a class.
-pub(crate) fn looped(component: &ComponentSpec) -> Vec<Node> {
+fn looped(component: &ComponentSpec) -> Vec<Node> {
     loops(component).into_iter().map(looping).collect()
 }
 
@@ -202,7 +170,7 @@ fn property(name: &str, value: &PropertyValue) -> Node {
 }
 
 /// A property with a text. White space at the ends of a text inside an element does not count, and an empty one is none.
-pub(crate) fn text_of(property: Node, text: &str) -> Node {
+fn text_of(property: Node, text: &str) -> Node {
     if text.is_empty() { property.child(Node::new("value")) } else { property.text(text) }
 }
 

@@ -12,8 +12,7 @@ use std::time::Duration;
 use saoms_api::{PropertyField, PropertyValue};
 use smol_str::SmolStr;
 
-pub use expanded::{Expansion, expanded};
-pub(crate) use expanded::{implementation, looped, names, start, text_of, valued};
+pub use expanded::expanded;
 pub use task::{RestartPolicy, TaskProperties};
 pub use traffic::{End, Pace, Topic, Traffic};
 

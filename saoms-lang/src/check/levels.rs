@@ -64,9 +64,6 @@ impl<'a> Levels<'a> {
     pub(super) fn walk(&self, path: &str) -> Result<Raw<'a>, Fault> {
         if self.first.here.is_empty() {
             let first = steps(path).nth(1).map_or("", |(_, step)| step);
-            if first == "text()" {
-                return Err(Fault::unknown(0..path.len(), "this is a text"));
-            }
             let of_values = Test::of(first).map_or("", |test| test.of_values());
             let message = format!("the property has a simple value: there are no parts in it{of_values}");
             return Err(Fault::new(0..path.len(), message));

@@ -22,7 +22,6 @@ mod contracts;
 mod cycles;
 mod described;
 mod endpoint;
-mod expand;
 mod findings;
 mod fleet;
 mod given;
@@ -73,7 +72,6 @@ mod whole;
 mod wire;
 mod wires;
 mod written;
-mod xpath;
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -81,10 +79,10 @@ use std::sync::Arc;
 use saoms_api::PropertyValue;
 use smol_str::SmolStr;
 
-use crate::assembly::{Assembly, ComponentSpec, Expansion, LoopSpec, Target, Wire};
+use crate::assembly::{Assembly, ComponentSpec, Target, Wire};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::model::{Component, Contribution};
-use crate::registry::{Class, Registry};
+use crate::registry::Registry;
 use crate::source::{Location, Sources};
 
 use arena::Arena;
@@ -153,27 +151,6 @@ pub fn count(
     diagnostics: &mut Diagnostics,
 ) -> Option<usize> {
     examine(contribution, registry, options, sources, diagnostics, |sound, _, _| sound.count())
-}
-
-/// As [`check`] for what is left of the composites when all is resolved: of an assembly what [`expanded`](crate::assembly::expanded) writes of it.
-///
-/// Where classes are taken as given ([`Options::assume_classes`]), includes, inner composites, promotions, replicas, conditions, wires and sources
-/// are resolved all the same. What only the classes know stays as it is written.
-pub fn expand(
-    contribution: &Contribution,
-    registry: &Registry,
-    options: &Options,
-    sources: &Sources,
-    diagnostics: &mut Diagnostics,
-) -> Option<Expansion> {
-    examine(contribution, registry, options, sources, diagnostics, |sound, _, report| {
-        let like = contribution.asked_for().first()?;
-        let library = |one: &Component| classes::library(one, contribution, sources);
-        match sound.count() {
-            Some(_) => Some(Expansion::of(&sound.assemble(library)?, like)),
-            None => expand::given(sound, like, options, sources, library, report),
-        }
-    })
 }
 
 /// Looks at everything, and makes something of a fleet without errors.
@@ -403,19 +380,6 @@ struct Sound<'s, 'a> {
     wiring: &'s Wiring,
 }
 
-/// A component of a class, resolved.
-fn spec(
-    path: &str,
-    class: Arc<Class>,
-    library: Option<String>,
-    (values, task): (Vec<(SmolStr, PropertyValue)>, Option<Settled>),
-    references: Vec<Wire>,
-    loops: Arc<[LoopSpec]>,
-) -> ComponentSpec {
-    let task = task.map(Settled::into_settings);
-    ComponentSpec { path: path.to_owned(), class, library, values, task, references, loops }
-}
-
 impl Sound<'_, '_> {
     /// How many components there are; `None` when something is taken as given.
     fn count(&self) -> Option<usize> {
@@ -467,8 +431,15 @@ impl Sound<'_, '_> {
             });
             let member = &fleet.members[place];
             let class = Arc::clone(class.class);
-            let (path, library) = (member.path(), library(member.component));
-            components.push(spec(path, class, library, (values, task), references.collect(), loops.specs));
+            components.push(ComponentSpec {
+                path: member.path().to_owned(),
+                class,
+                library: library(member.component),
+                values,
+                task: task.map(Settled::into_settings),
+                references: references.collect(),
+                loops: loops.specs,
+            });
         }
         Some(Assembly { components })
     }

@@ -4,7 +4,7 @@ mod missing;
 mod settings;
 mod sources;
 
-use std::cell::{Cell, OnceCell};
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
@@ -32,16 +32,7 @@ pub(super) struct Parameters<'a> {
     left: usize,
     /// How many more bytes of text sources can lead to.
     bytes_left: usize,
-    /// What sources that are more than a path came to, by their units, and where the first of each stands.
-    found: HashMap<(usize, String), (Location, Rc<Whole<'a>>)>,
-    /// How many more parts of values these can look at.
-    parts_left: Cell<usize>,
-    /// Whether the values of properties that have an `element` stay as they are written.
-    pub(super) keeps_elements: bool,
 }
-
-/// Parts of values that sources look at that are more than a path: what would take much longer is a mistake.
-pub(super) const MOST_PARTS: usize = 4_000_000;
 
 /// Values that sources with several can lead to: each component that takes all of a list has each of its values.
 const MOST_VALUES: usize = 4_000_000;
@@ -124,15 +115,7 @@ impl<'a> Parameters<'a> {
         let owner = |unit: &Unit<'_>| Some(fleet.members[fleet.scopes[unit.scope].owner?].component);
         let with_owner = |unit| Declared { owner: owner(unit), ..declared(unit, report) };
         let units = fleet.units.iter().map(with_owner).collect();
-        let (found, parts_left) = (HashMap::new(), Cell::new(MOST_PARTS));
-        let mut parameters = Self {
-            units,
-            left: MOST_VALUES,
-            bytes_left: MOST_BYTES,
-            found,
-            parts_left,
-            keeps_elements: false,
-        };
+        let mut parameters = Self { units, left: MOST_VALUES, bytes_left: MOST_BYTES };
         for (place, unit) in fleet.units.iter().enumerate() {
             let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];

@@ -1,9 +1,8 @@
-//! Where the `source` of a property leads: `$name`, and the part of its value that a path of steps leads to.
+//! Paths of a `source`: `$name`, and the part of its value that steps lead to.
 //!
-//! SCA takes an XPath (Assembly 1.1, 4.1.3); this is what most of them are, for which each value is looked through once for all. Understood are steps
-//! down into elements by name or `*`, each with one predicate, steps to any depth (`//`), and at the end an attribute or a text; what steps lead to
-//! several elements, leads on from all of them, as in XPath. Prefixes do not count. The work grows with the value and the length of the path alone: each
-//! step looks at each element once. Everything else is left to [`xpath`](super::xpath).
+//! SCA takes an XPath (Assembly 1.1, 4.1.3). A path is the part of it that fleets use: steps down into elements by name or `*`, each with one
+//! predicate, steps to any depth (`//`), and at the end an attribute or a text. Where a step leads to several elements, the next one starts from
+//! all of them, as in XPath. Prefixes do not count. Everything else of XPath is an error.
 
 use std::ops::Range;
 
@@ -12,11 +11,11 @@ use super::report::list;
 use crate::diagnostic::{nearest, quoted};
 use crate::xml::{Attribute, Element};
 
-/// Of what an XPath can be that is no path.
-const NO_PATH: &str = "this is more than a path";
+/// The fault of a step of another form.
+const NO_STEP: &str = "no step of a path is written like this";
 
-/// What steps are, for those who wrote none.
-const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
+/// The forms of steps, for help.
+pub(super) const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
 
 /// Parts that are looked at for what could have been meant.
 const MOST_LOOKED_AT: usize = 1_000;
@@ -27,7 +26,7 @@ pub(super) struct Fault {
     pub(super) step: Range<usize>,
     /// What is wrong.
     pub(super) message: String,
-    /// Whether it is understood what is asked for.
+    /// False for an XPath that is no path: another program may understand it.
     pub(super) is_understood: bool,
     /// A name in the step, and the one that is probably meant by it.
     pub(super) instead: Option<(String, String)>,
@@ -38,7 +37,7 @@ impl Fault {
         Self { step, message: message.into(), is_understood: true, instead: None }
     }
 
-    /// Of something that another program may understand.
+    /// The fault of what another program may understand.
     pub(super) fn unknown(step: Range<usize>, message: impl Into<String>) -> Self {
         Self { step, message: message.into(), is_understood: false, instead: None }
     }
@@ -62,7 +61,7 @@ pub(super) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
 pub(super) fn one_of(count: usize, path: &str) -> Result<Option<usize>, Fault> {
     let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(None) };
     let Some(Predicate::Place(wanted)) = predicate(step) else {
-        return Err(Fault::unknown(at, NO_PATH));
+        return Err(Fault::unknown(at, NO_STEP));
     };
     match wanted.of(count) {
         Some(place) => Ok(Some(place)),
@@ -96,7 +95,7 @@ pub(super) fn ends<'a>(
 
 /// The fault of a step that is of no form that is understood here.
 pub(super) fn no_step(at: Range<usize>) -> Fault {
-    Fault::unknown(at, NO_PATH)
+    Fault::unknown(at, NO_STEP)
 }
 
 /// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within quotation marks is none.
@@ -234,7 +233,7 @@ impl Test<'_> {
             _ => {
                 let (most, count) = (groups.iter().max().copied().unwrap_or_default(), groups.len());
                 format!(
-                    "there {counted} in {count} elements, at most {most} in each, and a place counts in each: `($name/path)[2]` is the second of all"
+                    "there {counted} in {count} elements, at most {most} in each, and a place counts in each"
                 )
             }
         }

@@ -41,18 +41,6 @@ impl<'a> Raw<'a> {
         self.0.iter().map(length).sum()
     }
 
-    /// With the texts that are at one place at another one: those that a `source` makes itself are where it is.
-    pub(super) fn moved(mut self, from: Location, to: Location) -> Self {
-        for piece in &mut self.0 {
-            if let Piece::Text(text) = piece
-                && text.location == from
-            {
-                text.to_mut().location = to;
-            }
-        }
-        self
-    }
-
     /// What is inside these elements, a value each.
     pub(super) fn of_elements(elements: &[Element<'a>], instance: Option<&'a Instance>) -> Self {
         Self(elements.iter().map(|element| Piece::inside(*element, instance)).collect())

@@ -1,7 +1,6 @@
 //! From composites to the components that they come to: what is included stands where it is included, and a component that a
 //! composite implements has the components of it inside.
 
-use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::arena::{Arena, End};
@@ -11,7 +10,6 @@ use super::instance::{Instance, Replica};
 use super::naming;
 use super::once;
 use super::options::Options;
-use super::parameters::MOST_PARTS;
 use super::presence::{Known, Presence};
 use super::replicas::{MOST_REPLICAS, Plan};
 use super::report::Report;
@@ -59,7 +57,6 @@ pub(super) fn unfold<'a>(
         replicas: replicas.end(),
         replicas_left: MOST_REPLICAS,
         known: Vec::new(),
-        parts_left: Cell::new(MOST_PARTS),
     };
     let again = once::composites(asked_for, report);
     let included = included(contribution);
@@ -121,8 +118,6 @@ pub(super) struct Unfolding<'a> {
     pub(super) replicas_left: u64,
     /// What is known of the properties of units, where there are expressions.
     pub(super) known: Vec<Option<Known<'a>>>,
-    /// How many more parts of values sources can look at that are more than a path, as far as expressions ask for what they lead to.
-    pub(super) parts_left: Cell<usize>,
 }
 
 /// How many components a composite comes to, known before they are made.

@@ -1,7 +1,7 @@
 //! The values of a property as all who take them share them, with what paths led to in them: a fleet can give one long value on through many
 //! composites, and take each of its parts in one of these.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -9,15 +9,12 @@ use super::levels::Levels;
 use super::path::{Fault, one_of, steps};
 use super::raw::{Piece, Raw};
 use crate::model::Property;
-use crate::source::Location;
 
 /// The values of a property.
 pub(super) struct Whole<'a> {
     raw: Raw<'a>,
     /// The same with a value for each element, where it is a property that takes several of one.
     split: Option<Raw<'a>>,
-    /// Whether they are from several replicas.
-    is_mixed: OnceCell<bool>,
     /// What is in all of them, or in the one of a place, once a path led into it.
     levels: RefCell<HashMap<Option<usize>, Rc<Levels<'a>>>>,
 }
@@ -25,13 +22,13 @@ pub(super) struct Whole<'a> {
 impl<'a> Whole<'a> {
     /// Values that no property declares.
     pub(super) fn new(raw: Raw<'a>) -> Rc<Self> {
-        Rc::new(Self { raw, split: None, is_mixed: OnceCell::new(), levels: RefCell::default() })
+        Rc::new(Self { raw, split: None, levels: RefCell::default() })
     }
 
     /// Values of a property of this declaration.
     pub(super) fn of(raw: Raw<'a>, property: &Property) -> Rc<Self> {
         let split = raw.is_split_by(property).then(|| raw.clone().split_into_elements_of(property));
-        Rc::new(Self { raw, split, is_mixed: OnceCell::new(), levels: RefCell::default() })
+        Rc::new(Self { raw, split, levels: RefCell::default() })
     }
 
     /// These values as those of a property of this declaration.
@@ -54,8 +51,8 @@ impl<'a> Whole<'a> {
         &self.raw
     }
 
-    /// The values that a variable of an XPath stands for.
-    pub(super) fn split(&self) -> &Raw<'a> {
+    /// The values as a path counts them.
+    fn split(&self) -> &Raw<'a> {
         self.split.as_ref().unwrap_or(&self.raw)
     }
 
@@ -64,25 +61,15 @@ impl<'a> Whole<'a> {
         Rc::try_unwrap(self).map_or_else(|shared| shared.raw.clone(), |own| own.raw)
     }
 
-    /// With the texts that are at one place at another one: those that a `source` makes itself are where it is.
-    pub(super) fn moved(self: Rc<Self>, from: Location, to: Location) -> Rc<Self> {
-        let is_there = |piece: &Piece<'_>| matches!(piece, Piece::Text(text) if text.location == from);
-        match from != to && self.raw.0.iter().any(is_there) {
-            true => Self::new(self.raw.clone().moved(from, to)),
-            false => self,
-        }
-    }
-
     /// What a path leads to: what follows the name.
     pub(super) fn part(&self, path: &str) -> Result<Raw<'a>, Fault> {
         let values = &self.split().0;
         let place = one_of(values.len(), path)?;
-        if *self.is_mixed.get_or_init(|| is_mixed(values)) {
-            // Each with the numbers of its own replica: that is for an XPath.
-            return Err(Fault::unknown(0..path.len(), "these are values of several replicas"));
-        }
         let one = || place.map_or_else(|| self.split().clone(), |place| Raw(vec![values[place].clone()]));
-        if steps(path).nth(1).is_none() {
+        let mut rest = steps(path).skip(1).map(|(_, step)| step);
+        let (first, second) = (rest.next(), rest.next());
+        let are_texts = || values.iter().all(|piece| matches!(piece, Piece::Text(_)));
+        if first.is_none() || (first, second) == (Some("text()"), None) && are_texts() {
             return Ok(one());
         }
         let known = self.levels.borrow().get(&place).map(Rc::clone);
@@ -93,14 +80,4 @@ impl<'a> Whole<'a> {
         });
         levels.walk(path)
     }
-}
-
-/// Whether values are from several replicas.
-fn is_mixed(values: &[Piece<'_>]) -> bool {
-    let mut replicas = values.iter().filter_map(|piece| match piece {
-        Piece::Elements(_, instance) | Piece::Whole(_, _, instance) => Some(instance.map(std::ptr::from_ref)),
-        Piece::Text(_) => None,
-    });
-    let first = replicas.next();
-    replicas.any(|other| Some(other) != first)
 }

@@ -26,9 +26,6 @@ fn sources_lead_to_composite_properties() {
         2:24-29 error S3007: property `speed`: `quick` is not a number: expected a number from 0.0 to 2.5 [m/s]
           9:32-38 used here as `speed`
           help: `speed`: How fast it drives; the default is `1.0`
-        3:53-54 error S3007: the property `awake` has elements inside: expected `true` or `false`
-          12:32-47 used here as `awake`
-          help: the default is `true`
         3:55-58 error S3008: property `number`: `300` is out of range: expected a whole number from 1 to 99
           10:33-47 used here as `number`
           help: `number`: The number of the robot
@@ -39,6 +36,8 @@ fn sources_lead_to_composite_properties() {
           help: give each its own name
         11:41-47 error S2023: there is no part `plaice`; the parts are `place`
           fix: replace `plaice` with `place` [11:41-47 "place"]
+        12:39-47 error S2023: no step of a path is written like this
+          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         13:33-37 error S2024: the composite has no property `sped`
           fix: replace `sped` with `speed` [13:33-37 "speed"]
         14:32-37 error S2023: `speed` names no property of the composite
@@ -124,6 +123,15 @@ fn sources_are_paths() {
         "$many[2]/text()",
         "$b/bay/x[2]",
         "($b/bay/x)[2]",
+        "count($b/bay)",
+        "concat($s, 'x')",
+        "$b/bay[x &gt; 3]/x",
+        "$b/bay[not(@id)]/x",
+        "$b/bay[1]/following-sibling::bay/x",
+        "${s}",
+        "$sa",
+        "s",
+        "'text'",
         "$s/x",
         "$b/",
         "$b[99999999999999999999999]",
@@ -152,16 +160,25 @@ fn sources_are_paths() {
         $b/bay[1]/text(): S2023: there is no text here
         $b/bay[x=3]/x: Text("3"
         $b//x: S3011: the property `number` takes one value, and here are 3
-        $b/bay/../x: S2023: there is no part `x`; the parts are `bay`
-        $b/bay[1]x: S2023: `x` cannot stand here
+        $b/bay/../x: S2023: no step of a path is written like this
+        $b/bay[1]x: S2023: no step of a path is written like this
         $many[3]: S2023: the property has 2 values
-        $many[a]: S2023: the property has 2 values
+        $many[a]: S2023: no step of a path is written like this
         $many/x: S2023: the property has a simple value: there are no parts in it
         $many/value[2]: S2023: the property has a simple value: there are no parts in it; the values of a property are `$name` itself, the second is `$name[2]`
         $many/text(): S3011: the property `number` takes one value, and here are 2
         $many[2]/text(): Text("2"
-        $b/bay/x[2]: S2023: there are 3 parts `x` in 3 elements, at most 1 in each, and a place counts in each: `($name/path)[2]` is the second of all
-        ($b/bay/x)[2]: Text("5"
+        $b/bay/x[2]: S2023: there are 3 parts `x` in 3 elements, at most 1 in each, and a place counts in each
+        ($b/bay/x)[2]: S2023: `($b/bay/x)[2]` is no path from a property
+        count($b/bay): S2023: `count($b/bay)` is no path from a property
+        concat($s, 'x'): S2023: `concat($s, 'x')` is no path from a property
+        $b/bay[x &gt; 3]/x: S2023: no step of a path is written like this
+        $b/bay[not(@id)]/x: S2023: no step of a path is written like this
+        $b/bay[1]/following-sibling::bay/x: S2023: no step of a path is written like this
+        ${s}: S2023: names of properties stand without braces here
+        $sa: S2024: the composite has no property `sa`
+        s: S2023: `s` names no property of the composite
+        'text': S2023: `'text'` names no property of the composite
         $s/x: S2023: the property has a simple value: there are no parts in it
         $b/: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         $b[99999999999999999999999]: S2023: the property has one value
@@ -472,7 +489,8 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
         $c//v: 3:101-102 error S2023: there is no part `v`; the parts are `a`, `b` and `w`
         $c//: 3:100-101 error S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         $c///w: 3:100-101 error S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
-        $c/a/b[position()&lt;2]/w: Many([Text("10")])
+        $c/a/b[position()&lt;2]/w: 3:102-120 error S2023: no step of a path is written like this
+          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
     "#]].assert_eq(&all);
     // Another program may understand more.
     let all: String = ["count($c/a/b)", "$c/a/b[position()&gt;1]/w", "$c/x"]
@@ -480,9 +498,57 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
         .map(|source| of(source, true))
         .collect();
     expect![[r#"
-        count($c/a/b): Many([Text("2")])
-        $c/a/b[position()&gt;1]/w: Many([Text("20"), Text("21")])
+        count($c/a/b): 3:97-110 warning S2023: `count($c/a/b)` is no path from a property
+          help: another program may understand it: it is taken as given
+        $c/a/b[position()&gt;1]/w: 3:102-120 warning S2023: no step of a path is written like this
+          help: another program may understand it: it is taken as given
         $c/x: 3:100-101 error S2023: there is no part `x`; the parts are `a`
     "#]]
     .assert_eq(&all);
+}
+
+/// Values that are written beside each other are several, as those in `value` are.
+#[test]
+fn one_of_several_elements_is_asked_for_by_its_place() {
+    let place = |x: u8| format!("<p:place xmlns=\"\"><x>{x}</x><y>4</y></p:place>");
+    let beside = place(1) + &place(2);
+    let listed = format!("<value>{}</value><value>{}</value>", place(1), place(2));
+    for values in [beside, listed] {
+        let all = format!(
+            "<property name=\"places\" element=\"p:place\" many=\"true\" xmlns:p=\"urn:x\">{values}</property>{}",
+            robot(
+                "<property name=\"charger\" source=\"$places[2]\"/><property name=\"number\" source=\"$places[1]/x\"/><property name=\"speed\" source=\"$places[2]/x\"/>"
+            )
+        );
+        expect![[r#"
+            R (example.Robot001) ID=Text("R") number=Text("1") speed=Text("2") charger=Complex([("x", Text("2")), ("y", Text("4"))]) gps->
+        "#]]
+        .assert_eq(&outcome(&[&fleet(&all)], &[]));
+    }
+}
+
+/// A composite of another program may have an XPath that is more than a path.
+#[test]
+fn a_source_that_is_no_path_says_what_paths_are() {
+    let text = part(
+        "fleet",
+        "",
+        "<property name=\"s\">1</property><component name=\"R\"><implementation.java class=\"x.Y\"/><property name=\"a\" source=\"concat($s, 'x')\"/></component>",
+    );
+    for assumes in [false, true] {
+        let (_, found, sources) = nested(&[&text], &[], assumes);
+        let all: String = found.iter().map(|one| shown(one, &sources)).collect();
+        match assumes {
+            false => expect![[r#"
+                2:80-83 error S3001: there is no class `x.Y`
+                  help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+                2:113-128 error S2023: `concat($s, 'x')` is no path from a property
+                  help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+            "#]].assert_eq(&all),
+            true => expect![[r#"
+                2:113-128 warning S2023: `concat($s, 'x')` is no path from a property
+                  help: another program may understand it: it is taken as given
+            "#]].assert_eq(&all),
+        }
+    }
 }

@@ -6,13 +6,12 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::check::names::Supplied;
-use crate::check::path::{Fault, expression, steps};
+use crate::check::path::{expression, steps};
 use crate::check::raw::{Piece, Raw, unreported};
 use crate::check::unfold::Unfolding;
 use crate::check::whole::Whole;
-use crate::check::xpath::XPath;
 use crate::model::{Composite, Property};
-use crate::source::{Location, Text};
+use crate::source::Text;
 
 /// What is known of the properties of a unit whose expressions were asked about.
 pub(in crate::check) struct Known<'a> {
@@ -21,8 +20,8 @@ pub(in crate::check) struct Known<'a> {
     properties: HashMap<&'a str, (&'a Composite, &'a Property)>,
     /// Their values.
     wholes: RefCell<HashMap<&'a str, Answer<'a>>>,
-    /// What sources lead to that name no property as a whole, and where the first of each stands.
-    led_to: RefCell<HashMap<String, (Location, Answer<'a>)>>,
+    /// The parts of values that paths lead to.
+    led_to: RefCell<HashMap<String, Answer<'a>>>,
 }
 
 /// Values; `Err` with a fault.
@@ -127,19 +126,19 @@ impl<'a> Unfolding<'a> {
         if let Some((name, None)) = named {
             return self.taken(unit, name);
         }
-        if let Some((first, found)) = known.led_to.borrow().get(source.as_str()) {
-            return found.clone().map(|whole| whole.moved(*first, source.location));
+        if let Some(found) = known.led_to.borrow().get(source.as_str()) {
+            return found.clone();
         }
         let found = match named {
-            Some((name, Some(path))) => self.by_path(unit, source, (name, path)),
-            _ => self.by_xpath(unit, source),
+            Some((name, Some(path))) => self.by_path(unit, name, path),
+            _ => Err(()),
         };
-        known.led_to.borrow_mut().insert(source.to_string(), (source.location, found.clone()));
+        known.led_to.borrow_mut().insert(source.to_string(), found.clone());
         found
     }
 
     /// What a path leads to.
-    fn by_path(&self, unit: usize, source: &Text, (name, path): (&str, &str)) -> Answer<'a> {
+    fn by_path(&self, unit: usize, name: &str, path: &str) -> Answer<'a> {
         let whole = self.whole(unit, name)?;
         if whole.raw().0.is_empty() {
             return Ok(whole);
@@ -148,37 +147,7 @@ impl<'a> Unfolding<'a> {
         match whole.part(path) {
             Ok(raw) if steps(path).nth(1).is_none() => Ok(Whole::new(raw).inside_elements_of(property)),
             Ok(raw) => Ok(Whole::new(raw)),
-            Err(Fault { is_understood: false, .. }) => self.by_xpath(unit, source),
             Err(_) => Err(()),
         }
-    }
-
-    /// What a `source` comes to that is more than a path.
-    fn by_xpath(&self, unit: usize, source: &Text) -> Answer<'a> {
-        if !source.contains(['$', '(']) {
-            return Err(());
-        }
-        let xpath = XPath::parse(source).map_err(drop)?;
-        let mut variables = Vec::new();
-        for (name, _) in xpath.variables() {
-            let whole = self.whole(unit, &name)?;
-            variables.push((name, whole));
-        }
-        let found = match xpath.evaluate(&variables, &self.parts_left, source.location) {
-            Ok(found) => Whole::new(found),
-            Err(_)
-                if !variables.is_empty() && variables.iter().all(|(_, whole)| whole.raw().0.is_empty()) =>
-            {
-                return Ok(Whole::new(Raw(Vec::new())));
-            }
-            Err(_) => return Err(()),
-        };
-        Ok(match &variables[..] {
-            [(only, _)] => {
-                let &(_, property) = self.known(unit)?.properties.get(only.as_str()).ok_or(())?;
-                found.inside_elements_of(property)
-            }
-            _ => found,
-        })
     }
 }
