@@ -1,8 +1,7 @@
 //! The command `saoms`: loads composites, checks them, and runs the fleet that they describe.
 //!
 //! `command` has one file per subcommand; each returns the process's exit code. The machinery is in `saoms-core`; the components that
-//! ship are in `saoms-components`, which is linked here and known nowhere else; of its messages, the picture of the robots' paths knows
-//! those that it draws.
+//! ship are in `saoms-components`, which is linked here and known nowhere else.
 
 mod arguments;
 mod command;
@@ -11,9 +10,7 @@ mod folder;
 mod lsp;
 mod memory;
 mod output;
-mod paths;
 mod plugins;
-mod svg;
 
 use std::process::ExitCode;
 

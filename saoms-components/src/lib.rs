@@ -13,6 +13,8 @@ mod intake;
 pub mod manual;
 pub mod master;
 pub mod messages;
+mod paths;
+mod report;
 pub mod robot;
 mod rules;
 pub mod text;

@@ -40,11 +40,11 @@ pub(crate) struct GraphArguments {
 
     /// The format where no ending says it; SVG by default
     #[arg(long, value_enum)]
-    pub(crate) format: Option<Picture>,
+    pub(crate) format: Option<PictureFormat>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Picture {
+pub(crate) enum PictureFormat {
     /// A picture in the notation of SCA
     Svg,
     /// A flowchart for Mermaid, as Markdown viewers draw it
@@ -57,7 +57,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let picture = match (arguments.format, path) {
         (Some(format), _) => format,
-        (None, None) => Picture::Svg,
+        (None, None) => PictureFormat::Svg,
         (None, Some(path)) => match by_ending(path) {
             Some(format) => format,
             None => {
@@ -114,9 +114,9 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     // A picture of a large composite needs the memory.
     drop((contribution, census, registry, sources, finder));
     let text = match picture {
-        Picture::Svg => svg(&diagram),
-        Picture::Mermaid => mermaid(&diagram),
-        Picture::Dot => dot(&diagram),
+        PictureFormat::Svg => svg(&diagram),
+        PictureFormat::Mermaid => mermaid(&diagram),
+        PictureFormat::Dot => dot(&diagram),
     };
     let written = match path {
         Some(path) => File::create(path).and_then(|file| written(file, text)),
@@ -138,11 +138,11 @@ fn written(to: impl Write, text: impl Display) -> io::Result<()> {
     to.flush()
 }
 
-fn by_ending(path: &Path) -> Option<Picture> {
+fn by_ending(path: &Path) -> Option<PictureFormat> {
     match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-        "svg" => Some(Picture::Svg),
-        "mmd" | "mermaid" => Some(Picture::Mermaid),
-        "dot" | "gv" => Some(Picture::Dot),
+        "svg" => Some(PictureFormat::Svg),
+        "mmd" | "mermaid" => Some(PictureFormat::Mermaid),
+        "dot" | "gv" => Some(PictureFormat::Dot),
         _ => None,
     }
 }

@@ -1,13 +1,17 @@
 //! What a crate of components adds to the program beside classes, loops and rules.
 //!
 //! A crate knows its domain; the program does not. The crate registers with [`submit!`] what only it can tell, and the program shows it:
-//! [`PropertyLanguage`] in editors.
+//!
+//! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
+//! - [`PropertyLanguage`]: the language of a property's text, in editors.
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
 
 mod language;
+mod picture;
 
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
 pub use language::{Completion, CompletionKind, PropertyLanguage, PropertyText};
+pub use picture::{PictureRegistration, RunPicture};

@@ -14,6 +14,7 @@ use std::thread;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use saoms_api::extension::PictureRegistration;
 use saoms_core::observe::{JournalFile, Observer};
 use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
@@ -115,7 +116,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         return Exit::WrongInput;
     }
     let report = arguments.report.as_deref().map(|path| Arc::new(ReportFile::new(path)));
-    let picture = arguments.paths.as_deref().map(|path| Arc::new(PictureFile::new(path, title(arguments))));
+    let paths = PictureRegistration::linked("paths");
+    if arguments.paths.is_some() && paths.is_none() {
+        eprint("error: no component of this program draws paths\n");
+        return Exit::WrongInput;
+    }
+    let picture = arguments.paths.as_deref().zip(paths);
+    let picture = picture.map(|(path, paths)| Arc::new(PictureFile::new(path, title(arguments), paths)));
     // At the end, they write in this order.
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, &assembly))];
     observers.extend(

@@ -1,23 +1,28 @@
 use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use saoms_api::TopicDeclaration;
+use saoms_api::extension::{PictureRegistration, RunPicture};
 use saoms_core::observe::{Interest, Observer, Sent};
 use saoms_core::report::RunReport;
 
 use super::outputs::Output;
 use super::summary::outcome;
-use crate::paths::Paths;
 
-/// The observer that draws the robots' paths (`--paths`).
+/// The observer that writes a picture of the run (`--paths`), drawn by the crate of components that registered it.
 pub(super) struct PictureFile {
     pub(super) output: Output,
     title: String,
-    paths: Paths,
+    picture: Mutex<Box<dyn RunPicture>>,
 }
 
 impl PictureFile {
-    pub(super) fn new(path: &Path, title: String) -> PictureFile {
-        PictureFile { output: Output::new("picture", path), title, paths: Paths::default() }
+    pub(super) fn new(path: &Path, title: String, picture: &PictureRegistration) -> PictureFile {
+        PictureFile { output: Output::new("picture", path), title, picture: Mutex::new((picture.new)()) }
+    }
+
+    fn picture(&self) -> MutexGuard<'_, Box<dyn RunPicture>> {
+        self.picture.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -27,14 +32,14 @@ impl Observer for PictureFile {
     }
 
     fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
-        self.paths.wants_topic(name, declared)
+        self.picture().wants_topic(name, declared)
     }
 
     fn message(&self, sent: &Sent) {
-        self.paths.message(sent);
+        self.picture().message(&sent.topic, &sent.component, &sent.message);
     }
 
     fn end(&self, report: &RunReport) {
-        self.output.write(Ok(self.paths.picture(&self.title, &outcome(report))));
+        self.output.write(Ok(self.picture().draw(&self.title, &outcome(report))));
     }
 }

@@ -8,7 +8,7 @@ use super::marks::Marks;
 use super::palette::look;
 use super::path::{Path, Robot};
 use super::picture::{Moved, Style};
-use crate::output::counted;
+use crate::report::counted;
 
 /// More robots than that are not named each.
 const NAMED: usize = 120;

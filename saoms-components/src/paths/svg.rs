@@ -1,27 +1,25 @@
-//! Writing SVG: a document grows element by element.
+//! A writer of SVG: the document grows element by element.
 
 use std::fmt::{self, Write};
-
-use saoms_lang::xml::escaped;
 
 /// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from outside goes through
 /// [`escaped`].
 #[derive(Default)]
-pub(crate) struct Svg {
+pub(super) struct Svg {
     text: String,
     open: Vec<&'static str>,
 }
 
 impl Svg {
     /// Opens an element; those that follow are inside it until it is closed.
-    pub(crate) fn open(&mut self, name: &'static str, attributes: fmt::Arguments<'_>) {
+    pub(super) fn open(&mut self, name: &'static str, attributes: fmt::Arguments<'_>) {
         self.begin(name, attributes);
         self.text.push_str(">\n");
         self.open.push(name);
     }
 
     /// Closes the element that was opened last.
-    pub(crate) fn close(&mut self) {
+    pub(super) fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.indent();
             let _ = writeln!(self.text, "</{name}>");
@@ -29,19 +27,19 @@ impl Svg {
     }
 
     /// An element without content.
-    pub(crate) fn leaf(&mut self, name: &str, attributes: fmt::Arguments<'_>) {
+    pub(super) fn leaf(&mut self, name: &str, attributes: fmt::Arguments<'_>) {
         self.begin(name, attributes);
         self.text.push_str("/>\n");
     }
 
     /// An element that holds nothing but this text, which is escaped here.
-    pub(crate) fn element(&mut self, name: &str, attributes: fmt::Arguments<'_>, text: &str) {
+    pub(super) fn element(&mut self, name: &str, attributes: fmt::Arguments<'_>, text: &str) {
         self.begin(name, attributes);
         let _ = writeln!(self.text, ">{}</{name}>", escaped(text));
     }
 
     /// The whole document, of this size, with a title for those who do not see it.
-    pub(crate) fn finish(mut self, width: f64, height: f64, title: &str) -> String {
+    pub(super) fn finish(mut self, width: f64, height: f64, title: &str) -> String {
         while !self.open.is_empty() {
             self.close();
         }
@@ -70,14 +68,33 @@ impl Svg {
     }
 }
 
+/// A text as it can stand inside an element, and in an attribute within quotation marks. Tabs and line ends are written by their numbers;
+/// a character that XML cannot write becomes U+FFFD.
+pub(super) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&apos;"),
+            '\t' | '\n' | '\r' => _ = write!(out, "&#{};", u32::from(character)),
+            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
+            _ => out.push(character),
+        }
+    }
+    out
+}
+
 /// A length or a coordinate, to a tenth.
-pub(crate) fn number(value: f64) -> Number {
+pub(super) fn number(value: f64) -> Number {
     Number(value)
 }
 
 /// See [`number`].
 #[derive(Clone, Copy)]
-pub(crate) struct Number(f64);
+pub(super) struct Number(f64);
 
 impl fmt::Display for Number {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::lanes::Lanes;
 use super::palette::{Look, look};
 use super::path::{Leg, Path};
-use crate::svg::{Svg, number};
+use super::svg::{Svg, number};
 
 /// A point on the paper.
 type Point = (f64, f64);
@@ -104,13 +104,7 @@ impl Lines<'_> {
     }
 
     /// Where a leg in this lane meets the block at one of its ends: in the middle, or in the lane of the leg that it turns into.
-    fn end_of(
-        &self,
-        leg: &Leg,
-        offset: f64,
-        block: saoms_components::grid::Block,
-        turn: Option<f64>,
-    ) -> Point {
+    fn end_of(&self, leg: &Leg, offset: f64, block: crate::grid::Block, turn: Option<f64>) -> Point {
         let (x, y) = self.frame.middle(block);
         let (own, other) = (offset * self.spacing, turn.unwrap_or(0.0) * self.spacing);
         if leg.is_level() { (x + other, y + own) } else { (x + own, y + other) }

@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use saoms_components::grid::Block;
+use crate::grid::Block;
 
 use super::frame::Frame;
 use super::glyphs::{self, Incident};
 use super::palette::Look;
 use super::path::Pieces;
 use super::recording::Recording;
-use crate::svg::{Svg, number};
+use super::svg::{Svg, number};
 
 /// Blocks at least that long have room for numbers.
 pub(super) const NUMBERED: f64 = 44.0;

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use saoms_components::grid::Block;
+use crate::grid::Block;
 
 /// A robot as the picture shows it.
 #[derive(Clone, Debug)]

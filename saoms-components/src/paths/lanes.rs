@@ -151,7 +151,7 @@ fn widths(strips: &[Strip]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use saoms_components::grid::Block;
+    use crate::grid::Block;
 
     fn leg(from: (i32, i32), to: (i32, i32)) -> Leg {
         Leg { from: Block::new(from.0, from.1), to: Block::new(to.0, to.1), jump: false }

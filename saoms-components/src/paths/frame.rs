@@ -1,7 +1,7 @@
-use saoms_components::grid::{Block, Map};
+use crate::grid::{Block, Map};
 
 use super::recording::Recording;
-use crate::svg::{Svg, number};
+use super::svg::{Svg, number};
 
 /// The blocks that a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,19 +1,23 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use saoms_api::{SharedMessage, Topic, TopicDeclaration};
-use saoms_components::grid::{Block, Map};
-use saoms_components::messages::{AREA, COLLISION, EVENT_LUGGAGE, FAULT, LuggageStage, POSITION, ROBOT_LIST};
-
 use super::path::{Path, Pieces, Robot};
+use crate::grid::{Block, Map};
+use crate::hardware::Area;
+use crate::messages::{
+    AREA, COLLISION, Collision, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, LuggageStage, POSITION, Position,
+    ROBOT_LIST, RobotList,
+};
+use saoms_api::{SharedMessage, Topic, TopicDeclaration};
 
-/// More legs than anybody could tell apart: from then on only how often each block was entered is kept.
+/// More legs than anybody could tell apart: beyond this number, only how often each block was entered is kept.
 const LEGS: usize = 20_000;
 
-/// What was said in a run, as far as a picture shows it. It grows with the area and the number of robots, not with the length of the run.
+/// The messages of a run, as far as the picture shows them. A recording grows with the area and the number of robots, not with the length
+/// of the run.
 #[derive(Debug, Default)]
 pub(super) struct Recording {
-    topics: HashMap<String, Said>,
+    topics: HashMap<String, Content>,
     pub(super) robots: BTreeMap<u32, Robot>,
     pub(super) map: Option<Map>,
     /// Luggage that was asked for and not delivered: where it was to be collected.
@@ -35,9 +39,9 @@ pub(super) struct Visits {
     pub(super) down: i64,
 }
 
-/// What a topic carries.
+/// The content of a topic.
 #[derive(Clone, Copy, Debug)]
-enum Said {
+enum Content {
     Area,
     Position,
     Robot,
@@ -52,53 +56,53 @@ fn carries<M: saoms_api::Message>(declared: &TopicDeclaration<'_>, topic: &Topic
 }
 
 impl Recording {
-    /// Whether a topic carries something that is drawn, under whatever name.
-    pub(super) fn wants(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
-        let said = match declared {
-            area if carries(area, &AREA) => Said::Area,
-            position if carries(position, &POSITION) => Said::Position,
-            robot if carries(robot, &ROBOT_LIST) => Said::Robot,
-            luggage if carries(luggage, &EVENT_LUGGAGE) => Said::Luggage,
-            collision if carries(collision, &COLLISION) => Said::Collision,
-            fault if carries(fault, &FAULT) => Said::Fault,
+    /// True if a topic carries messages that the picture shows, whatever its name; they are recorded from then on.
+    pub(super) fn record_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        let content = match declared {
+            area if carries(area, &AREA) => Content::Area,
+            position if carries(position, &POSITION) => Content::Position,
+            robot if carries(robot, &ROBOT_LIST) => Content::Robot,
+            luggage if carries(luggage, &EVENT_LUGGAGE) => Content::Luggage,
+            collision if carries(collision, &COLLISION) => Content::Collision,
+            fault if carries(fault, &FAULT) => Content::Fault,
             _ => return false,
         };
-        self.topics.insert(name.to_owned(), said);
+        self.topics.insert(name.to_owned(), content);
         true
     }
 
-    /// Takes in a message that a component sent.
-    pub(super) fn hear(&mut self, topic: &str, component: &Arc<str>, message: &SharedMessage) {
+    /// Records a message that a component sent.
+    pub(super) fn record(&mut self, topic: &str, component: &Arc<str>, message: &SharedMessage) {
         match self.topics.get(topic) {
-            Some(Said::Area) => self.hear_area(message),
-            Some(Said::Position) => self.hear_position(component, message),
-            Some(Said::Robot) => self.hear_robot(component, message),
-            Some(Said::Luggage) => self.hear_luggage(component, message),
-            Some(Said::Collision) => self.hear_collision(message),
-            Some(Said::Fault) => self.hear_fault(message),
+            Some(Content::Area) => self.record_area(message),
+            Some(Content::Position) => self.record_position(component, message),
+            Some(Content::Robot) => self.record_robot(component, message),
+            Some(Content::Luggage) => self.record_luggage(component, message),
+            Some(Content::Collision) => self.record_collision(message),
+            Some(Content::Fault) => self.record_fault(message),
             None => {}
         }
     }
 
-    /// Whether the paths were too long to be kept.
+    /// True if the paths were too long to be kept.
     pub(super) fn is_too_long(&self) -> bool {
         self.legs > LEGS
     }
 
-    fn hear_area(&mut self, message: &SharedMessage) {
-        if let Some(area) = message.get::<saoms_components::hardware::Area>() {
+    fn record_area(&mut self, message: &SharedMessage) {
+        if let Some(area) = message.get::<Area>() {
             self.map = area.clone().into();
         }
     }
 
-    fn hear_position(&mut self, component: &Arc<str>, message: &SharedMessage) {
-        if let Some(position) = message.get::<saoms_components::messages::Position>() {
+    fn record_position(&mut self, component: &Arc<str>, message: &SharedMessage) {
+        if let Some(position) = message.get::<Position>() {
             self.robot_at(position.robot, component, position.block);
         }
     }
 
-    fn hear_robot(&mut self, component: &Arc<str>, message: &SharedMessage) {
-        let Some(said) = message.get::<saoms_components::messages::RobotList>() else { return };
+    fn record_robot(&mut self, component: &Arc<str>, message: &SharedMessage) {
+        let Some(said) = message.get::<RobotList>() else { return };
         let robot = self.robots.entry(said.robot).or_insert_with(|| Robot::new(component));
         robot.charger = Some(said.charger);
         robot.empty = said.is_out_of_battery();
@@ -108,8 +112,8 @@ impl Recording {
         }
     }
 
-    fn hear_luggage(&mut self, component: &Arc<str>, message: &SharedMessage) {
-        let Some(event) = message.get::<saoms_components::messages::EventLuggage>() else { return };
+    fn record_luggage(&mut self, component: &Arc<str>, message: &SharedMessage) {
+        let Some(event) = message.get::<EventLuggage>() else { return };
         match event.stage {
             LuggageStage::Request => {
                 self.open.insert(event.luggage, event.from);
@@ -130,16 +134,16 @@ impl Recording {
         }
     }
 
-    fn hear_collision(&mut self, message: &SharedMessage) {
-        let Some(collision) = message.get::<saoms_components::messages::Collision>() else { return };
+    fn record_collision(&mut self, message: &SharedMessage) {
+        let Some(collision) = message.get::<Collision>() else { return };
         // An exchange of blocks was told of as a meeting before.
         if !collision.swap {
             *self.collisions.entry(collision.block).or_default() += 1;
         }
     }
 
-    fn hear_fault(&mut self, message: &SharedMessage) {
-        let Some(fault) = message.get::<saoms_components::messages::Fault>() else { return };
+    fn record_fault(&mut self, message: &SharedMessage) {
+        let Some(fault) = message.get::<Fault>() else { return };
         if let Some(path) = self.robots.get(&fault.robot).and_then(|robot| robot.path.as_ref()) {
             *self.breakdowns.entry(path.now).or_default() += 1;
         }

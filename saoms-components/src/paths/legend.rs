@@ -3,7 +3,7 @@
 use super::glyphs::{self, Incident};
 use super::lines::dashes;
 use super::palette::Look;
-use crate::svg::{Svg, number};
+use super::svg::{Svg, number};
 
 /// The width of a column.
 pub(super) const COLUMN: f64 = 284.0;

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::palette::SHADES;
 use super::recording::Recording;
-use crate::svg::{Svg, number};
+use super::svg::{Svg, number};
 
 /// Blocks at least that long have room for an arrow.
 pub(super) const ARROWED: f64 = 12.0;

@@ -1,9 +1,7 @@
 //! The signs of a picture, each in a square of a given size around a point.
 
-use saoms_lang::xml::escaped;
-
 use super::palette::Look;
-use crate::svg::{Svg, number};
+use super::svg::{Svg, escaped, number};
 
 /// What happened to a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
