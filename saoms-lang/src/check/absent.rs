@@ -1,6 +1,5 @@
 //! Taking away what conditions keep away, once all that can be known about it is checked.
 
-use super::by_name::ByName;
 use super::fleet::{Fleet, Kind};
 
 /// Removes the components that are not there, and what belongs to them; `of` are lists with an item for each component.
@@ -19,7 +18,8 @@ pub(super) fn remove<T, U>(fleet: &mut Fleet<'_>, one: Vec<T>, other: Vec<U>) ->
         scope.units = scope.units.iter().filter_map(|unit| units[*unit]).collect();
         debug_assert!(place == 0 || scope.owner.is_some() || scope.units.is_empty());
     }
-    let named: Vec<usize> = fleet.by_name.places().filter_map(|member| members[member]).collect();
+    let by_name = std::mem::take(&mut fleet.by_name).into_iter();
+    fleet.by_name = by_name.filter_map(|(name, member)| Some((name, members[member]?))).collect();
     for group in fleet.groups.values_mut() {
         *group = group.iter().filter_map(|member| members[*member]).collect();
     }
@@ -27,8 +27,6 @@ pub(super) fn remove<T, U>(fleet: &mut Fleet<'_>, one: Vec<T>, other: Vec<U>) ->
     fleet.absent_wires =
         absent_wires.filter_map(|(unit, file, element)| Some((units[*unit]?, *file, *element))).collect();
     fleet.members.retain(|member| !member.is_absent);
-    fleet.by_name = ByName::with_capacity(named.len());
-    named.into_iter().for_each(|member| fleet.by_name.insert(member, &fleet.members));
     fleet.units.retain(|unit| !unit.is_absent);
     for member in &mut fleet.members {
         member.unit = units[member.unit].unwrap_or_default();

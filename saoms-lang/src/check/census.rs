@@ -152,7 +152,7 @@ fn topics<'a>(
     let report = &mut Report::new(sources, &mut unheard);
     report.assumes = true;
     let mut classes = classes::resolve(fleet, fleet.contribution, registry, true, report);
-    let (checks, _) = super::properties(fleet, &classes, &mut parameters, report);
+    let checks = super::properties(fleet, &classes, &mut parameters, report);
     loops::resolve(fleet, &mut classes, &checks, registry, &mut parameters, report);
     let mut lists = Lists::default();
     let mut all: HashMap<Way, Used> = HashMap::new();

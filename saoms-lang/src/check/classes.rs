@@ -10,7 +10,6 @@ use super::report::{Report, list, replacing};
 use super::slots::Slots;
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
-use crate::hash::Map;
 use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
     Class, InterfaceDeclaration, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration,
@@ -108,7 +107,7 @@ pub(super) fn resolve<'r>(
     report: &mut Report<'_>,
 ) -> Vec<ClassIndex<'r>> {
     let mut classes = Vec::new();
-    let mut known: Map<&str, usize> = Map::default();
+    let mut known: HashMap<&str, usize> = HashMap::default();
     // The class of the component before, which this one mostly has as well.
     let mut before: Option<(&str, usize)> = None;
     // What is near an unknown name, which a whole fleet may have.

@@ -3,12 +3,10 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
-use super::by_name::ByName;
 use super::classes::ClassIndex;
 use super::instance::Instance;
 use super::names::Names;
 use crate::expression::has_expression;
-use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Reference, Service, Wire};
 use crate::source::{FileId, Location};
 use crate::xml::ElementId;
@@ -23,11 +21,12 @@ pub(super) struct Fleet<'a> {
     pub(super) scopes: Vec<Scope>,
     pub(super) units: Vec<Unit<'a>>,
     pub(super) members: Vec<Member<'a>>,
-    pub(super) by_name: ByName,
+    /// The index of the component of each name of a scope.
+    pub(super) by_name: HashMap<(usize, &'a str), usize>,
     /// The replicas of each replicated component of a scope, by its name with `*` for each expression.
     pub(super) groups: BTreeMap<(usize, String), Vec<usize>>,
     /// Components that a condition keeps away, where no other has their name: with the condition.
-    pub(super) absent: Map<(usize, &'a str), Location>,
+    pub(super) absent: HashMap<(usize, &'a str), Location>,
     /// Wires that a condition keeps away, by the unit that they are in.
     pub(super) absent_wires: HashSet<(usize, FileId, ElementId)>,
     /// The includes and wires with conditions, and whether any of them is there.
@@ -162,7 +161,7 @@ impl<'a> Unit<'a> {
 impl<'a> Fleet<'a> {
     /// The component of this name in a scope.
     pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
-        self.by_name.get(scope, name, &self.members)
+        self.by_name.get(&(scope, name)).copied()
     }
 
     /// Whether this may be the name of a component that a fault, which is reported, kept from being made.

@@ -12,7 +12,6 @@ use super::report::{Report, list, replacing};
 use super::target::{has_several, parts};
 use super::value_type::{self, Match, Typed};
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
-use crate::hash::Set;
 use crate::model::{Component, ComponentType, ImplementationKind, Multiplicity, Part, Property, Reference};
 use crate::source::{Location, Text};
 use crate::xml::escaped;
@@ -160,8 +159,8 @@ pub(super) fn contracts(component: &Component, known: Known<'_>, report: &mut Re
 }
 
 /// The references that composites promote, by their scopes and components; without a name where a component is promoted as a whole.
-pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> Set<(usize, &'a str, Option<&'a str>)> {
-    let mut all = Set::default();
+pub(super) fn promoted<'a>(fleet: &Fleet<'a>) -> HashSet<(usize, &'a str, Option<&'a str>)> {
+    let mut all = HashSet::default();
     if fleet.members.iter().all(|member| member.kind != Kind::Given) {
         return all;
     }
@@ -187,7 +186,7 @@ pub(super) fn is_component(text: &str, scope: usize, fleet: &Fleet<'_>) -> bool 
 pub(super) fn unwired<'f>(
     place: usize,
     fleet: &'f Fleet<'_>,
-    promoted: &Set<(usize, &str, Option<&str>)>,
+    promoted: &HashSet<(usize, &str, Option<&str>)>,
     is_wired: impl Fn(&'f str) -> bool,
     report: &mut Report<'_>,
 ) {

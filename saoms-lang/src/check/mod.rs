@@ -12,7 +12,6 @@ mod autowire;
 mod beyond;
 mod binding;
 mod bindings;
-mod by_name;
 mod census;
 mod checked;
 mod circle;
@@ -171,12 +170,12 @@ fn examine<T>(
     let mut fleet = unfold::unfold(contribution, options, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);
     let mut classes = classes::resolve(&mut fleet, contribution, registry, options.assume_classes, report);
-    let (mut checks, may_share) = properties(&fleet, &classes, &mut parameters, report);
+    let mut checks = properties(&fleet, &classes, &mut parameters, report);
     let loops = loops::resolve(&mut fleet, &mut classes, &checks, registry, &mut parameters, report);
     parameters.finish(&fleet, report);
     let (of, loops) = absent::remove(&mut fleet, std::mem::take(&mut checks.of), loops);
     checks.of = of;
-    let (resolved, halves) = components(&fleet, &classes, (checks, may_share), loops, report);
+    let (resolved, halves) = components(&fleet, &classes, checks, loops, report);
     written::check(&fleet, report);
     let is_misread = |one: &Diagnostic| one.code.id.starts_with("S10") && !severities.mentions(one.code);
     let misread = report.diagnostics().iter().any(is_misread);
@@ -275,15 +274,14 @@ impl Resolved<'_> {
     }
 }
 
-/// Checks the properties of all components; `None` for one without a class. Says whether some may share a value that they must not.
+/// Checks the properties of all components; `None` for one without a class.
 fn properties<'a>(
     fleet: &Fleet<'a>,
     classes: &[ClassIndex<'a>],
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> (Checks, bool) {
+) -> Checks {
     let mut values = Values::default();
-    let mut sieve = unique::Sieve::default();
     let with_class = || fleet.members.iter().filter(|member| matches!(member.kind, Kind::Class(_)));
     let given = with_class().map(|member| member.component.properties.len()).sum();
     let mut all = Checks::with_capacity(fleet.members.len(), with_class().count(), given);
@@ -294,9 +292,6 @@ fn properties<'a>(
             let (slots, described) = (&classes[index].slots, fleet.component_type(place));
             let giver = Giver::component(member, described);
             properties::check(&giver, slots, parameters, &mut values, &mut all, report);
-            if let Some(checked) = all.get(place) {
-                sieve.add(member, &classes[index], checked);
-            }
             continue;
         }
         properties::repeated(member.component, report);
@@ -307,7 +302,7 @@ fn properties<'a>(
         all.add_none();
     }
     report.about_all();
-    (all, sieve.may_share())
+    all
 }
 
 /// Checks everything else about components that needs no look at wires; `None` for one with a fault, of which what is known stands in
@@ -315,7 +310,7 @@ fn properties<'a>(
 fn components<'f, 'a>(
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
-    (mut checks, may_share): (Checks, bool),
+    mut checks: Checks,
     loops: Vec<Option<loops::Resolved<'a>>>,
     report: &mut Report<'_>,
 ) -> (Vec<Option<Box<Resolved<'a>>>>, Vec<Half>) {
@@ -332,9 +327,7 @@ fn components<'f, 'a>(
             continue;
         };
         let class = &classes[index];
-        if may_share {
-            unique.add((place, fleet), class, checked, report);
-        }
+        unique.add((place, fleet), class, checked, report);
         let is_periodic = class.class.declaration().is_periodic();
         let mut task =
             is_periodic.then(|| task::check(member.component, (index, class), checked, &mut before, report));

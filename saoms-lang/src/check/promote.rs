@@ -11,7 +11,6 @@ use super::promotable;
 use super::report::{Report, list};
 use super::target::{Uri, parts, spread};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::hash::Map;
 use crate::model::{Binding, Part, Reference};
 use crate::source::{Location, Text};
 
@@ -24,7 +23,7 @@ pub(super) struct Promoted<'f> {
     /// By composites that run by themselves, with the targets that these give them: nothing else around them can.
     pub(super) outermost: HashMap<Place<'f>, Vec<&'f Text>>,
     /// By composites that implement components: to these references of theirs.
-    pub(super) to: Map<Place<'f>, Vec<Place<'f>>>,
+    pub(super) to: HashMap<Place<'f>, Vec<Place<'f>>>,
     /// Those of which one composite's reference promotes several with different interfaces, which is reported.
     pub(super) differing: HashSet<Place<'f>>,
     /// What composites promote that is not there, which is reported.

@@ -17,7 +17,6 @@ use super::value_type::{self, Match, Typed};
 use super::values::{Path, Use, Values};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_equal, quoted};
 use crate::expression::has_expression;
-use crate::hash::Map;
 use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
@@ -267,7 +266,7 @@ pub(super) fn of_composite(member: &Member<'_>, inner: &Unit<'_>, report: &mut R
     };
     let given = &member.component.properties;
     // The first of each name.
-    let mut by_name: Map<&str, (&Property, &Document)> = Map::default();
+    let mut by_name: HashMap<&str, (&Property, &Document)> = HashMap::default();
     if given.len() > FEW {
         declared().for_each(|(one, document)| _ = by_name.entry(&one.name).or_insert((one, document)));
     }

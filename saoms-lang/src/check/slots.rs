@@ -1,11 +1,12 @@
 //! The properties that components of a class, or loops, can be given.
 
+use std::collections::HashMap;
+
 use saoms_api::PropertyValue;
 use saoms_api::declaration::{PlainBounds, PropertyKind};
 use smol_str::SmolStr;
 
 use crate::assembly::TaskProperties;
-use crate::hash::Map;
 use crate::registry::{Class, LoopClass, PropertyDeclaration};
 
 /// The task property that people know a task by.
@@ -27,7 +28,7 @@ pub(super) struct Slots<'r> {
     pub(super) queue: Option<usize>,
     /// The places of those that have to be given.
     pub(super) required: Vec<usize>,
-    by_name: Map<&'r str, usize>,
+    by_name: HashMap<&'r str, usize>,
     /// Values that count where the composite gives none.
     pub(super) presets: &'r [(SmolStr, PropertyValue)],
     /// Whether it is never executed, so that it has no task properties.

@@ -4,7 +4,6 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::arena::{Arena, End};
-use super::by_name::{AT_ONCE, ByName};
 use super::fleet::{Fleet, Kind, Member, Scope, Unit};
 use super::instance::{Instance, Replica};
 use super::naming;
@@ -14,7 +13,6 @@ use super::presence::{Known, Presence};
 use super::replicas::{MOST_REPLICAS, Plan};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::hash::Map;
 use crate::model::{Component, Composite, Contribution, Include, Link, Naming};
 use crate::source::Location;
 use crate::xml::Element;
@@ -40,9 +38,9 @@ pub(super) fn unfold<'a>(
         scopes: vec![Scope { members: Vec::with_capacity(count), ..Scope::default() }],
         units: Vec::with_capacity(asked_for.len()),
         members: Vec::with_capacity(count),
-        by_name: ByName::with_capacity(count),
+        by_name: HashMap::with_capacity(count),
         groups: BTreeMap::new(),
-        absent: Map::default(),
+        absent: HashMap::default(),
         absent_wires: HashSet::new(),
         conditional: HashMap::new(),
         names: Vec::new(),
@@ -254,21 +252,8 @@ impl<'a> Unfolding<'a> {
             match self.open[last].next() {
                 None => _ = self.open.pop(),
                 Some(Next::Include(include)) => self.include(include, report),
-                Some(Next::Component(component)) => {
-                    self.warm(last);
-                    self.component(component, report);
-                }
+                Some(Next::Component(component)) => self.component(component, report),
             }
-        }
-    }
-
-    /// Has the memory for the names of the next components ready, before each of them is looked up.
-    fn warm(&self, open: usize) {
-        let Open { composite, next_component, unit, .. } = self.open[open];
-        if next_component % AT_ONCE == 1 {
-            let scope = self.fleet.units[unit].scope;
-            let next = composite.components[next_component - 1..].iter();
-            self.fleet.by_name.warm(next.map(|one| (scope, one.name.as_str())), &self.fleet.members);
         }
     }
 
@@ -349,18 +334,13 @@ impl<'a> Unfolding<'a> {
             // Fleets are limited to fewer.
             self.fleet.scopes[scope].members.push(index as u32);
         }
-        let Fleet { by_name, members, .. } = &mut self.fleet;
-        let first = match is_seen {
-            _ if name.is_empty() => None,
-            true => by_name.admit(index, members),
-            false => by_name.get(scope, name, members),
-        };
+        let first = if name.is_empty() { None } else { self.fleet.find(scope, name) };
         match first {
             _ if name.is_empty() => {}
-            None if is_seen => {}
+            None if is_seen => _ = self.fleet.by_name.insert((scope, name), index),
             Some(_) if is_seen && is_partial => {}
             Some(first) if is_seen && self.fleet.members[first].is_partial => {
-                self.fleet.by_name.insert(index, &self.fleet.members);
+                self.fleet.by_name.insert((scope, name), index);
             }
             Some(first) if is_seen => {
                 self.fleet.members[index].is_repeated = true;

@@ -1,8 +1,8 @@
 //! Values that must not occur twice in a fleet.
 
+use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fmt;
-use std::hash::{BuildHasher, Hash, Hasher};
 
 use saoms_api::PropertyValue;
 use saoms_api::declaration::{PropertyKind, Scalar, parse_scalar};
@@ -15,64 +15,10 @@ use super::replicas::with_index;
 use super::report::{Report, replacing};
 use super::slots::Slot;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::hash::{Map, Seeded, fold};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
 use crate::xml::escaped;
-
-/// Finds out whether any values are shared that must not be, before anything is kept of them: in a sound fleet none are, and in a large one there
-/// are many. Some bits of numbers take a twentieth of the time that a table of the values takes, and of its memory.
-#[derive(Default)]
-pub(super) struct Sieve {
-    hashes: Vec<u64>,
-    hasher: Seeded,
-}
-
-impl Sieve {
-    /// Adds what a component gives, or what its class presets.
-    pub(super) fn add(&mut self, member: &Member<'_>, class: &ClassIndex<'_>, checked: Checked<'_>) {
-        for (value, _, slot, declaration) in uses(member, class, checked) {
-            let hash = self.hasher.hash_one(&value);
-            let word = declaration.unique.as_deref().map(|word| fold(hash, self.hasher.hash_one(word)));
-            self.hashes.extend(word);
-            self.hashes.extend(slot.is_task_id.then_some(hash));
-        }
-    }
-
-    /// Whether there may be values that are shared.
-    ///
-    /// Two that are the same have the same bit in a table of bits (Bloom, Space/time trade-offs in hash coding with allowable errors, 1970). So
-    /// do one in sixteen of the others; those are held to a second table, and what is left is sorted.
-    pub(super) fn may_share(self) -> bool {
-        let count = (16 * self.hashes.len()).next_power_of_two().max(64);
-        let mut bits = vec![0_u64; count / 64];
-        let place = |hash: u64| ((hash as usize & (count - 1)) / 64, 1_u64 << (hash % 64));
-        let mut again = Vec::new();
-        for &hash in &self.hashes {
-            let (word, bit) = place(hash);
-            if bits[word] & bit != 0 {
-                again.push(hash);
-            }
-            bits[word] |= bit;
-        }
-        if again.is_empty() {
-            return false;
-        }
-        bits.fill(0);
-        for hash in again {
-            let (word, bit) = place(hash >> 32);
-            bits[word] |= bit;
-        }
-        let is_left = |hash: &&u64| {
-            let (word, bit) = place(**hash >> 32);
-            bits[word] & bit != 0
-        };
-        let mut left: Vec<u64> = self.hashes.iter().filter(is_left).copied().collect();
-        left.sort_unstable();
-        left.windows(2).any(|pair| pair[0] == pair[1])
-    }
-}
 
 /// The values of a component that others must not have, where each is, and which property has it.
 fn uses<'u, 'r>(
@@ -98,7 +44,7 @@ pub(super) struct Unique<'a> {
     /// The words that properties share.
     words: Vec<&'a str>,
     /// The first user of each value.
-    seen: Map<Canonical, User>,
+    seen: HashMap<Canonical, User>,
     /// Further users of values, which share neither the word nor that they are IDs of tasks with those before them.
     more: Vec<User>,
 }
@@ -268,19 +214,10 @@ fn task(value: &Canonical, first: User, user: User, fleet: &Fleet<'_>, report: &
 }
 
 /// What is equal for equal values: `07` and `7` are one number.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq, Hash)]
 enum Canonical {
     Integer(i64),
     Text(SmolStr),
-}
-
-impl Hash for Canonical {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        match self {
-            Self::Integer(number) => number.hash(state),
-            Self::Text(text) => state.write(text.as_bytes()),
-        }
-    }
 }
 
 impl Canonical {
@@ -319,24 +256,6 @@ impl fmt::Display for Canonical {
         match self {
             Self::Integer(number) => number.fmt(out),
             Self::Text(text) => text.fmt(out),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #[test]
-        fn a_sieve_finds_each_number_that_is_there_twice(
-            mut hashes in prop::collection::vec(prop_oneof![any::<u64>(), 0..2000_u64, (0..2000_u64).prop_map(|one| one << 32)], 0..300),
-        ) {
-            let sieve = Sieve { hashes: hashes.clone(), hasher: Seeded::default() };
-            hashes.sort_unstable();
-            prop_assert_eq!(sieve.may_share(), hashes.windows(2).any(|pair| pair[0] == pair[1]));
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The `<wire>` elements, and the references that they start from.
 
+use std::collections::HashMap;
+
 use super::astray::Astray;
 use super::classes::ClassIndex;
 use super::fleet::{Fleet, Kind};
@@ -8,7 +10,6 @@ use super::report::{Report, list};
 use super::room::Room;
 use super::target::{Uri, parts, spread, target};
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
-use crate::hash::Map;
 use crate::source::Text;
 use crate::xml::escaped;
 
@@ -28,8 +29,8 @@ pub(super) fn wires<'f>(
     classes: &'f [ClassIndex<'_>],
     room: &Room,
     report: &mut Report<'_>,
-) -> (Map<usize, Vec<Wire<'f>>>, Astray<'f>) {
-    let mut all: Map<usize, Vec<Wire<'f>>> = Map::default();
+) -> (HashMap<usize, Vec<Wire<'f>>>, Astray<'f>) {
+    let mut all: HashMap<usize, Vec<Wire<'f>>> = HashMap::default();
     let mut astray = Astray::default();
     for (place, unit) in fleet.units.iter().enumerate() {
         let scope = unit.scope;

@@ -7,13 +7,12 @@ mod too_many;
 mod unwired;
 
 use std::cell::RefCell;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use smol_str::SmolStr;
 
 use super::astray::Astray;
 use super::autowire::Autowire;
-use super::by_name::warm_targets;
 use super::circle::Circles;
 use super::classes::ClassIndex;
 use super::contracts::of_class;
@@ -26,7 +25,6 @@ use super::room::Room;
 use super::target::{Provider, Target, parts, spread, target, uri};
 use super::wire::{Wire, wires};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::hash::Map;
 use crate::model::{Multiplicity, Reference};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
@@ -87,7 +85,6 @@ pub(super) fn check(
     let mut circles = Circles::default();
     let mut wiring = Wiring { members: Vec::with_capacity(fleet.members.len()), ..Wiring::default() };
     for member in 0..fleet.members.len() {
-        warm_targets(member, fleet);
         report.about(&fleet.members[member]);
         let Some(class) = fleet.class_of(member, classes) else {
             all.given(member, report);
@@ -118,7 +115,7 @@ struct Wires<'f, 'a> {
     fleet: &'f Fleet<'a>,
     classes: &'f [ClassIndex<'a>],
     promoted: &'f Promoted<'f>,
-    wires: Map<usize, Vec<Wire<'f>>>,
+    wires: HashMap<usize, Vec<Wire<'f>>>,
     astray: Astray<'f>,
     autowire: Autowire<'f>,
     room: Room,

@@ -54,11 +54,14 @@ impl Loader<'_> {
             (Family::Sca, "component") => {
                 composite.components.push(self.component(child));
             }
+            // One without attributes is reported, and says nothing.
             (Family::Sca, "include") => {
-                composite.includes.push(self.include(child));
+                let include = self.include(child);
+                composite.includes.extend(Some(include).filter(|_| has_attributes(child)));
             }
             (Family::Sca, "wire") => {
-                composite.wires.push(self.wire(child));
+                let wire = self.wire(child);
+                composite.wires.extend(Some(wire).filter(|_| has_attributes(child)));
             }
             (Family::Sca, "property") => {
                 composite.properties.push(self.property(child, &COMPOSITE_PROPERTY));
@@ -124,4 +127,8 @@ impl Loader<'_> {
         let details = boxed(WireDetails { replace, condition: self.own(element, "if") });
         Wire { origin: Origin::of(element), source, target, details }
     }
+}
+
+fn has_attributes(element: Element<'_>) -> bool {
+    element.attributes().next().is_some()
 }

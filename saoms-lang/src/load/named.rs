@@ -8,7 +8,6 @@ use super::finder::Finder;
 use super::read::STANDARD_INPUT;
 use super::{component_type, load_component_type, load_file, read, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
-use crate::hash::Set;
 use crate::model::{Component, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
 
@@ -211,7 +210,7 @@ struct Described {
 /// The implementations of a composite that files beside them may describe; all that are written alike together.
 fn described(composite: &Composite) -> Vec<Described> {
     let mut all: Vec<Described> = Vec::new();
-    let mut seen: Set<&str> = Set::default();
+    let mut seen: HashSet<&str> = HashSet::default();
     let mut before = "";
     for component in &composite.components {
         let Some((origin, written)) = implementation(component, composite) else { continue };

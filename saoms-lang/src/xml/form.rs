@@ -3,6 +3,8 @@
 //! Most components of a large file are written as one before them, which differs in names and numbers. So such an element is not read tag by
 //! tag: its bytes are compared with those of the last of its form, and the elements in it are told from the first of it (`arena.rs`).
 
+use std::collections::HashMap;
+use std::hash::RandomState;
 use std::hash::{BuildHasher, Hash, Hasher};
 
 use super::arena::{Alike, Arena, Node};
@@ -11,7 +13,6 @@ use super::fault::Input;
 use super::parse::Open;
 use super::shape::Shapes;
 use super::tree::{ElementId, NONE};
-use crate::hash::{Map, Seeded};
 use crate::source::Span;
 
 /// How many elements one of a form has at most.
@@ -73,8 +74,8 @@ pub(super) struct Forms {
     /// By some bytes at its start, the form of the last element that has them there.
     at_hand: Box<[u32; AT_HAND]>,
     /// By a hash of all that makes a form.
-    numbers: Map<u64, u32>,
-    hasher: Seeded,
+    numbers: HashMap<u64, u32>,
+    hasher: RandomState,
     /// The holes of the element at hand.
     found: Vec<Span>,
 }
@@ -86,8 +87,8 @@ impl Forms {
             holes: Vec::new(),
             last: NONE,
             at_hand: Box::new([NONE; AT_HAND]),
-            numbers: Map::default(),
-            hasher: Seeded::default(),
+            numbers: HashMap::default(),
+            hasher: RandomState::default(),
             found: Vec::new(),
         }
     }

@@ -3,13 +3,14 @@
 //! Even a large file has few of them. So a tag is not read name by name where one is expected that was read before: its bytes are compared with
 //! those of the first of its shape, from value to value, and all that was found of that one, names and namespaces included, holds for it too.
 
+use std::collections::HashMap;
+use std::hash::RandomState;
 use std::hash::{BuildHasher, Hasher};
 
 use super::eight::{first_of, same};
 use super::fault::Input;
 use super::tag::{RawAttribute, StartTag};
 use super::tree::{NONE, XMLNS};
-use crate::hash::{Map, Seeded};
 use crate::source::Span;
 
 /// A start tag without its values.
@@ -85,8 +86,8 @@ pub(super) struct Known {
     /// By the first bytes of tags, the last shapes that began so, the latest first.
     at_hand: Box<[[u32; GROUP]; GROUPS]>,
     /// By a hash of all that makes a shape.
-    numbers: Map<u64, u32>,
-    hasher: Seeded,
+    numbers: HashMap<u64, u32>,
+    hasher: RandomState,
     /// The attributes of the tag that is read.
     parts: Vec<Part>,
 }
@@ -97,8 +98,8 @@ impl Known {
             shapes: Shapes::default(),
             last: NONE,
             at_hand: Box::new([[NONE; GROUP]; GROUPS]),
-            numbers: Map::default(),
-            hasher: Seeded::default(),
+            numbers: HashMap::default(),
+            hasher: RandomState::default(),
             parts: Vec::new(),
         }
     }

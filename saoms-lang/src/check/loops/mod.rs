@@ -20,7 +20,6 @@ use super::slots::Slots;
 use super::values::Values;
 use crate::assembly::LoopSpec;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::hash::Map;
 use crate::model::{Loop, Property};
 use crate::registry::{LoopClass, Registry};
 
@@ -86,7 +85,7 @@ pub(super) fn resolve<'a>(
     // The class of each place together with these loops.
     let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
     // The same with the loops that components of a class have by this choice where the composite says nothing about them.
-    let mut usual: Map<Choice, Usual> = Map::default();
+    let mut usual: HashMap<Choice, Usual> = HashMap::default();
     // Those of the component before, which this one mostly has as well.
     let mut before: Option<Usual> = None;
     let mut all = Vec::with_capacity(fleet.members.len());
