@@ -2,7 +2,7 @@
 
 #![no_main]
 
-#[path = "../../saoms-lang/tests/load/oracle.rs"]
+#[path = "../../saoms-lang/tests/suite/load/oracle.rs"]
 mod oracle;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| oracle::judge(&String::from_utf8_lossy(bytes)));

@@ -6,7 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a benchmark ends with what it did not expect")]
 
 #[allow(dead_code, reason = "the tests use the rest")]
-#[path = "../tests/components/host.rs"]
+#[path = "../tests/suite/components/host.rs"]
 mod host;
 
 use std::hint::black_box;

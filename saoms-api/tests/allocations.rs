@@ -1,7 +1,7 @@
 //! An execution across the boundary to plugins allocates nothing.
 
 #[allow(dead_code, reason = "other tests use the rest")]
-#[path = "components/host.rs"]
+#[path = "suite/components/host.rs"]
 mod host;
 
 use std::alloc::{GlobalAlloc, Layout, System};

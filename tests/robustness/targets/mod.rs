@@ -3,7 +3,7 @@
 mod grammar;
 mod input;
 mod laws;
-mod memory;
+pub(crate) mod memory;
 
 use std::sync::Arc;
 

@@ -1,0 +1,7 @@
+//! Components under a host: what reaches them, and what leaves them.
+mod adaptation;
+mod boundary;
+mod calls;
+mod extends;
+mod host;
+mod messages;

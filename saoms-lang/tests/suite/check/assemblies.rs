@@ -1,0 +1,143 @@
+//! What a composite without faults comes to.
+
+use std::fmt::Write as _;
+
+use expect_test::expect;
+
+use crate::check::support::{fleet, fleet_1_0, run, shown};
+
+/// The assembly as text, after the warnings.
+fn assembly(texts: &[&str], settings: &[&str]) -> String {
+    let (assembly, diagnostics, sources) = run(texts, settings);
+    let mut out: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+    let Some(assembly) = assembly else { return out };
+    for (place, component) in assembly.components.iter().enumerate() {
+        let _ = writeln!(out, "{place} {} is a {}", component.path, component.class.name());
+        for (name, value) in &component.values {
+            let _ = writeln!(out, "  {name} = {value:?}");
+        }
+        for wire in &component.references {
+            let targets =
+                wire.targets.iter().map(|target| format!("{} {}", target.component, target.service));
+            let targets: Vec<String> = targets.collect();
+            let target = if targets.is_empty() { "nothing".to_owned() } else { targets.join(", ") };
+            let _ = writeln!(out, "  {} ({}) -> {target}", wire.reference, wire.interface);
+        }
+        if let Some(task) = &component.task {
+            let _ = writeln!(out, "  {task:?}");
+        }
+    }
+    out
+}
+
+#[test]
+fn values_presets_wires_and_tasks() {
+    let text = fleet(
+        r#"<property name="pace">250us</property>
+<component name="N"><implementation.rust class="example.Navigator"/><reference name="wheels" target="R"/></component>
+<component name="R"><implementation.java class="example.Robot001"/>
+<property name="ID">Robot</property>
+<property name="period" source="$pace"/>
+<property name="charger"><y xmlns="">4</y><x xmlns="">3</x></property>
+<property name="stops"><value>1</value></property>
+<property name="topicRename">POSTOPIC::pos</property>
+<property name="restart">onFailure</property>
+<reference name="gps" target="G/position"/></component>
+<component name="G"><implementation.java class="example.Gps"/></component>
+<wire source="N/task" target="R/TaskInterface"/>"#,
+    );
+    expect![[r#"
+        0 N is a example.Navigator
+          wheels (example.Wheels) -> 1 move
+          task (unibg.robotics.tca.TaskInterface) -> 1 TaskInterface
+        1 R is a example.Robot001
+          ID = Text("Robot")
+          charger = Complex([("x", Text("3")), ("y", Text("4"))])
+          stops = Many([Text("1")])
+          number = Text("1")
+          gps (example.Positions) -> 2 position
+          TaskSettings { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, topic_rename: [("POSTOPIC", "pos")], overrun: Skip, restart: OnFailure { backoff: 100ms, limit: 5 }, deadline: None, queue: 1024, loss: Fail }
+        2 G is a example.Gps
+          other (example.Positions) -> nothing
+    "#]].assert_eq(&assembly(&[&text], &["pace=2 s"]));
+}
+
+#[test]
+fn the_files_of_the_manual() {
+    let broker = r#"<?xml version="1.0" encoding="UTF-8"?>
+<composite xmlns="http://www.osoa.org/xmlns/sca/1.0"
+    targetNamespace="http://launch" name="launchbroker">
+
+    <component name="MessageBrokerComponent">
+        <implementation.java
+            class="unibg.robotics.tca.MessageBrokerImpl" />
+        <property name="IP">localhost</property>
+        <property name="port">61616</property>
+    </component>
+</composite>"#;
+    let tasks = fleet_1_0(
+        r#"<component name="Robot001">
+        <implementation.java class="robot.Robot001" />
+        <property name="ID">Robot001</property>
+        <property name="period">1000</property>
+        <property name="delay">0</property>
+        <property name="runOnStartup">true</property>
+        <property name="mayInterruptIfRunning">true</property>
+        <property name="useJMS">true</property>
+        <property name="url">localhost:61616</property>
+        <property name="topicRename">POS001, pos001::POS002, pos002</property>
+        <service name="TaskInterface">
+            <interface.java interface="unibg.robotics.tca.TaskInterface" />
+        </service>
+    </component>"#,
+    );
+    expect![[r#"
+        more.composite:11:38-44 warning S4003: class `robot.Robot001` uses no topic `POS001`: nothing is renamed
+          help: topics that keep their names are `ORDERS` and `POSTOPIC`
+        more.composite:11:54-60 warning S4003: class `robot.Robot001` uses no topic `POS002`: nothing is renamed
+          help: topics that keep their names are `ORDERS` and `POSTOPIC`
+        0 MessageBrokerComponent is a unibg.robotics.tca.MessageBrokerImpl
+          IP = Text("localhost")
+          port = Text("61616")
+        1 Robot001 is a robot.Robot001
+          ID = Text("Robot001")
+          number = Text("1")
+          gps (example.Positions) -> nothing
+          TaskSettings { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, topic_rename: [("POS001", "pos001"), ("POS002", "pos002")], overrun: Skip, restart: Never, deadline: None, queue: 1024, loss: Fail }
+    "#]].assert_eq(&assembly(&[broker, &tasks], &[]));
+}
+
+#[test]
+fn values_have_the_order_of_the_class_however_they_are_written() {
+    let lines = [
+        r#"<property name="ID">R1</property>"#,
+        r#"<property name="period">1s</property>"#,
+        r#"<property name="number">7</property>"#,
+        r#"<property name="queue">9</property>"#,
+        r#"<property name="awake">false</property>"#,
+        r#"<property name="stops"><value>1</value><value>2</value></property>"#,
+    ];
+    // All components of one fleet, since what one gives is held against what the one before gave.
+    let mut orders: Vec<Vec<&str>> =
+        (0..lines.len()).map(|first| [&lines[first..], &lines[..first]].concat()).collect();
+    orders.extend(orders.clone().into_iter().map(|order| order.into_iter().rev().collect()));
+    let components = orders.iter().enumerate().map(|(place, order)| {
+        let properties = order.concat().replace("R1", &format!("R{place}")).replace(">7<", &format!(">{}<", place + 1));
+        format!("<component name=\"R{place}\"><implementation.java class=\"example.Robot\"/>{properties}</component>\n")
+    });
+    let (assembly, diagnostics, _) = run(&[&fleet(&components.collect::<String>())], &[]);
+    assert_eq!(diagnostics.iter().map(|one| &one.message).collect::<Vec<_>>(), Vec::<&String>::new());
+    let assembly = assembly.unwrap();
+    assert_eq!(assembly.components.len(), 2 * lines.len());
+    for (place, component) in assembly.components.iter().enumerate() {
+        let values: Vec<String> =
+            component.values.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
+        let expected = format!(
+            r#"ID=Text("R{place}") number=Text("{}") awake=Text("false") stops=Many([Text("1"), Text("2")])"#,
+            place + 1
+        );
+        assert_eq!(values.join(" "), expected);
+        let task = component.task.as_ref().unwrap();
+        assert_eq!((task.id.as_str(), task.period.as_secs(), task.queue), (&*format!("R{place}"), 1, 9));
+    }
+}

@@ -1,0 +1,355 @@
+//! What files beside implementations say of components.
+
+use std::fs;
+
+use expect_test::expect;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::{MAX_SIZE, load_file, load_named, read, read_values};
+use saoms_lang::model::Contribution;
+use saoms_lang::source::Sources;
+
+use crate::check::classes::registry;
+use crate::check::support::{fleet, shown};
+use crate::check::values::properties::robot;
+
+const DESCRIPTION: &str = "<property name='speed' type='xsd:int'>5</property>
+<property name='names' many='true'/>
+<property name='must' type='xsd:string' mustSupply='true'/>
+<service name='tick'/>
+<reference name='clock'/>
+<reference name='lamps' multiplicity='0..n'/>";
+
+/// What is wrong with a composite that has files beside it, where classes are taken as given or not.
+pub(crate) fn found(inside: &str, types: &[(&str, &str)], assume_classes: bool) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, inside) in types {
+        let text = format!(
+            "<componentType xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' xmlns:xsd='http://www.w3.org/2001/XMLSchema'>\n{inside}</componentType>"
+        );
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let path = folder.path().join("fleet.composite");
+    let text =
+        fleet(inside).replacen('>', " xmlns:t='urn:t' xmlns:xsd='http://www.w3.org/2001/XMLSchema'>", 1);
+    fs::write(&path, text).unwrap();
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
+    let mut composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    read_values(&mut composite, MAX_SIZE, &mut sources, &mut diagnostics);
+    let mut all = Contribution::of(vec![composite]);
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let options = Options { assume_classes, ..Options::default() };
+    check(&all, &registry(), &options, &sources, &mut diagnostics);
+    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+    found.replace(&format!("{}/", folder.path().display()), "")
+}
+
+/// A component of a script that is described as above.
+fn script(inside: &str) -> String {
+    let inside =
+        format!("<component name='S'><t:implementation.script script='run.py'/>\n{inside}</component>");
+    found(&inside, &[("run.componentType", DESCRIPTION)], true)
+}
+
+/// The same of a class that nobody here knows.
+fn class(inside: &str) -> String {
+    let inside = format!("<component name='S'><implementation.java class='a.Run'/>\n{inside}</component>");
+    found(&inside, &[("Run.componentType", DESCRIPTION)], true)
+}
+
+const RIGHT: &str = "<property name='must' value='it'/><reference name='clock' target='S/tick'/>";
+
+#[test]
+fn a_right_use_has_no_faults() {
+    let right = format!(
+        "{RIGHT}<property name='names'><value>a</value><value>b</value></property><property name='speed' type='xsd:long'>7</property><service name='tick'/><reference name='lamps' target='S/tick S'/>"
+    );
+    assert_eq!(script(&right), "");
+    assert_eq!(class(&right), "");
+}
+
+#[test]
+fn a_script_has_what_its_file_says_and_nothing_else() {
+    let wrong = format!(
+        "{RIGHT}\n<property name='sped'>1</property>\n<service name='tock'/>\n<reference name='lamp' target='S/tik'/></component>
+<component name='T'><implementation.java class='a.T'/><reference name='r' target='S/tik S/tock S/other'/></component>
+<wire source='S/clok' target='S/tik'/>
+<service name='p' promote='S/tik'/>
+<reference name='q' promote='S/lamsp'/>
+<component name='U'><implementation.java class='a.U'/>"
+    );
+    expect![[r#"
+        4:17-21 error S3004: component `S` has no property `sped`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `sped` with `speed` [4:17-21 "speed"]
+        5:16-20 error S2005: component `S` has no service `tock`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tock` with `tick` [5:16-20 "tick"]
+        6:18-22 error S2006: component `S` has no reference `lamp`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `lamp` with `lamps` [6:18-22 "lamps"]
+        6:34-37 error S2012: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [6:34-37 "tick"]
+        7:85-88 error S2012: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [7:85-88 "tick"]
+        7:98-103 error S2012: component `S` has no service `other`
+          run.componentType:1:2-15 what it has is described here
+          help: its services are `tick`
+        8:17-21 error S2016: component `S` has no reference `clok`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `clok` with `clock` [8:17-21 "clock"]
+        8:33-36 error S2012: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [8:33-36 "tick"]
+        9:30-33 error S2021: component `S` has no service `tik`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `tik` with `tick` [9:30-33 "tick"]
+        10:32-37 error S2021: component `S` has no reference `lamsp`
+          run.componentType:1:2-15 what it has is described here
+          fix: replace `lamsp` with `lamps` [10:32-37 "lamps"]
+    "#]]
+    .assert_eq(&script(&wrong));
+}
+
+#[test]
+fn what_a_file_cannot_say_is_told() {
+    let described = "<servise name='tick'/><property name='speed' defualt='5'/>\n<component name='x'/>text<service xmlns='' name='a'/>
+<o:service xmlns:o='http://www.osoa.org/xmlns/sca/1.0' name='b'/><x:more xmlns:x='urn:x'/><implementation.java class='a.B'/>";
+    let inside = "<component name='S'><t:implementation.script script='run.py'/></component>";
+    expect![[r#"
+        run.componentType:2:2-9 error S1004: SCA 1.1 has no element `servise`
+          fix: replace `servise` with `service` [run.componentType:2:2-9 "service"]
+        run.componentType:2:46-53 error S1007: `property` has no attribute `defualt`
+          help: `property` has the attributes `name`, `value`, `type`, `element`, `many`, `mustSupply`
+        run.componentType:3:2-11 error S1005: `component` cannot stand in `componentType`
+          help: `componentType` can hold `implementation.*`, `service`, `reference`, `property`, `requires`, `policySetAttachment`, `documentation`, `extensions`
+        run.componentType:3:22-26 error S1012: text in `componentType`, which holds no text
+          help: remove it; comments stand between `<!--` and `-->`
+        run.componentType:3:27-34 error S1004: `service` is in no namespace
+          help: elements of SCA are in the namespace of the composite, extensions in one of their own
+        run.componentType:4:2-11 error S1003: `o:service` is of SCA 1.0, and the componentType is of SCA 1.1
+          run.componentType:1:2-15 the componentType
+          help: a composite and all of SCA inside it are of one namespace
+    "#]].assert_eq(&found(inside, &[("run.componentType", described)], true));
+}
+
+/// Its file is added to what it says itself, which nobody here can see.
+#[test]
+fn a_class_may_have_more_than_its_file_says() {
+    let wrong = format!("{RIGHT}\n<property name='sped'>1</property>\n<service name='another'/>");
+    expect![[r#"
+        4:17-21 warning S3004: component `S` has no property `sped`
+          run.componentType:1:2-15 what it has is described here
+          help: if its class has it, add the property to the description
+          fix: replace `sped` with `speed` [4:17-21 "speed"]
+        5:16-23 warning S2005: component `S` has no service `another`
+          run.componentType:1:2-15 what it has is described here
+          help: its services are `tick`
+          help: if its class has it, add the service to the description
+    "#]]
+    .assert_eq(&class(&wrong).replace("Run.", "run."));
+    let one = |inside| {
+        let component =
+            format!("<component name='S'><implementation.java class='a.Run'/>{inside}</component>");
+        found(&component, &[("Run.componentType", "<service name='tick'/>")], true)
+    };
+    assert_eq!(one("<property name='sped'>1</property><reference name='r' target='S/tick'/>"), "");
+}
+
+#[test]
+fn values_are_what_the_file_asks_for() {
+    let wrong = format!(
+        "{RIGHT}\n<property name='speed'>fast</property></component>
+<property name='many' type='xsd:string'>7</property>
+<component name='T'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed' source='$many'/></component>
+<component name='U'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed'><value>1</value><value>2</value></property></component>
+<component name='V'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed' many='true' value='1'/></component>
+<component name='W'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed' type='xsd:string' value='1'/></component>
+<component name='X'><t:implementation.script script='run.py'/>{RIGHT}<property name='speed'><a xmlns=''>1</a></property></component>
+<component name='Y'><t:implementation.script script='run.py'/>"
+    );
+    expect![[r#"
+        4:24-28 error S3007: the property `speed` is of the type `xsd:int`: found `fast`, expected a whole number of 32 bits
+          run.componentType:2:30-37 the type
+          help: change the value, or the type
+        6:169-174 error S3007: the property `speed` is of the type `xsd:int`, and of `xsd:string` where its value comes from
+          run.componentType:2:30-37 its type
+          5:29-39 where its value comes from
+          help: give both one type
+        7:184-185 error S3011: the property `speed` takes one value, and here are 2
+          7:168-169 the first
+          run.componentType:2:17-22 declared here, without `many="true"`
+        8:167-171 error S3011: the property `speed` takes one value, and is said here to take several
+          run.componentType:2:17-22 declared here, without `many="true"`
+        9:167-177 error S3007: the property `speed` is of the type `xsd:string`, and of `xsd:int` where it is declared
+          run.componentType:2:30-37 where it is declared
+          help: leave `type` out: that of the declaration holds
+        10:162-163 error S3007: the property `speed` is of the type `xsd:int`, and has elements inside: `a`
+          run.componentType:2:30-37 the type
+        11:18-19 error S3006: component `Y` lacks the property `must`
+          run.componentType:4:17-21 declared here, without a value
+          help: add `<property name="must">...</property>`
+        11:18-19 warning S2018: reference `clock` of component `Y` leads to no service
+          run.componentType:6:18-23 it needs a target by this description
+          help: add `<reference name="clock" target="..."/>`
+    "#]]
+    .assert_eq(&script(&wrong));
+}
+
+#[test]
+fn what_a_class_has_is_narrowed_by_its_file() {
+    let types = [(
+        "Robot001.componentType",
+        "<property name='number' type='xsd:int' mustSupply='true'/>\n<property name='speed' type='xsd:int'/>\n<property name='spede'/>\n<property name='grace'>soon</property>",
+    )];
+    expect![[r#"
+        2:18-19 error S3006: component `R` lacks the property `number`
+          Robot001.componentType:2:17-23 declared here, without a value
+          help: add `<property name="number">...</property>`
+        3:24-27 error S3007: the property `speed` is of the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
+          Robot001.componentType:3:30-37 the type
+          help: change the value, or the type
+        Robot001.componentType:4:17-22 error S3004: class `example.Robot001` has no property `spede`
+          fix: replace `spede` with `speed` [Robot001.componentType:4:17-22 "speed"]
+        Robot001.componentType:5:24-28 error S3007: property `grace`: `soon` is not a duration: expected a duration (in ms, or with a unit: ns, us, ms, s, min, h)
+          2:18-19 used here as `grace`
+          help: the default is `10ms`
+    "#]].assert_eq(&found(&robot("<property name='speed'>1.5</property>"), &types, false));
+}
+
+#[test]
+fn a_script_of_python_has_a_description_beside_it() {
+    let types = [("run.componentType", "<property name='speed' type='xsd:int'/>")];
+    let inside = "<component name='P'><t:implementation.python script='run.py'/><property name='speed'>fast</property></component>";
+    expect![[r#"
+        2:86-90 error S3007: the property `speed` is of the type `xsd:int`: found `fast`, expected a whole number of 32 bits
+          run.componentType:2:30-37 the type
+          help: change the value, or the type
+    "#]].assert_eq(&found(inside, &types, true));
+}
+
+#[test]
+fn references_that_the_file_says_need_a_target_are_told() {
+    expect![[r#"
+        2:18-19 warning S2018: reference `clock` of component `S` leads to no service
+          run.componentType:6:18-23 it needs a target by this description
+          help: add `<reference name="clock" target="..."/>`
+    "#]]
+    .assert_eq(&script("<property name='must' value='it'/>"));
+    let wired = |more: &str, attributes: &str| {
+        let inside = format!(
+            "<component name='S' {attributes}><t:implementation.script script='run.py'/><property name='must' value='it'/></component>{more}"
+        );
+        found(&inside, &[("run.componentType", DESCRIPTION)], true)
+    };
+    assert_eq!(wired("<wire source='S/clock' target='S/tick'/>", ""), "");
+    assert_eq!(wired("<reference name='r' promote='S/clock'/>", ""), "");
+    assert_eq!(wired("", "autowire='true'"), "");
+}
+
+#[test]
+fn elements_are_those_of_the_file() {
+    let types = "<property name='a' element='t:bar'/><property name='b' element='t:bar'/><property name='c' element='t:bar'/><property name='d' type='xsd:int'/>";
+    let wrong = "<component name='S'><implementation.java class='a.Run'/>
+<property name='a'><t:foo/></property>
+<property name='b' element='t:foo'><t:foo/></property>
+<property name='c'><t:bar/></property>
+<property name='d' element='t:foo'><t:foo/></property></component>";
+    let types = types.replacen("<property", "<property xmlns:t='urn:t'", 1);
+    let types = types.replace("<property name", "<property xmlns:t='urn:t' name");
+    expect![[r#"
+        3:21-26 error S3007: the property `a` holds elements `t:bar` in the namespace `urn:t`: found `foo`
+          Run.componentType:2:45-50 the element
+          help: put what is inside into `<t:bar>...</t:bar>`, or give the property a `type`
+        4:29-34 error S3007: the property `b` is of the element `t:foo`, and of `t:bar` where it is declared
+          Run.componentType:2:97-102 where it is declared
+          help: leave `element` out: that of the declaration holds
+        6:37-42 error S3007: the property `d` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+          Run.componentType:2:198-205 the type
+          help: change the value, or the type
+    "#]]
+    .assert_eq(&found(wrong, &[("Run.componentType", &types)], true));
+}
+
+#[test]
+fn what_has_to_be_supplied_has_a_value() {
+    let types = "<property name='a' type='xsd:int' mustSupply='true'/>\n<property name='b' mustSupply='true'>1</property>";
+    let wrong = "<property name='q' type='xsd:int'/>
+<component name='S'><implementation.java class='a.Run'/><property name='a'/></component>
+<component name='T'><implementation.java class='a.Run'/><property name='a' source='$q'/></component>
+<component name='U'><implementation.java class='a.Run'/><property name='a' mustSupply='false'>1</property><property name='b'/></component>";
+    expect![[r#"
+        3:73-74 error S3006: the property `a` has no value
+          Run.componentType:2:17-18 it has to be supplied by this description
+          help: give it a value
+        4:84-86 error S3006: the property `a` has no value: its source has none
+          Run.componentType:2:17-18 it has to be supplied by this description
+          help: give it a value
+        5:76-86 error S1007: `property` has no attribute `mustSupply`
+          help: it is one of SCA 1.0 alone: remove it
+    "#]]
+    .assert_eq(&found(wrong, &[("Run.componentType", types)], true));
+}
+
+#[test]
+fn a_slip_in_a_name_that_a_component_of_an_unknown_class_declares_is_told() {
+    let inside = |service: &str, reference: &str, target: &str, source: &str| {
+        format!(
+            r#"<service name="s" promote="A/{service}"/>
+<reference name="r" promote="A/{reference}"/>
+<component name="A"><implementation.java class="x.Unknown"/><service name="ItemCollection"/>
+  <reference name="stockQuotes" multiplicity="0..1"/><reference name="next" multiplicity="0..1"/></component>
+<component name="B"><implementation.java class="x.Unknown"/><reference name="out" target="A/{target}"/></component>
+<wire source="A/{source}" target="B"/>"#
+        )
+    };
+    let near = inside("ItemColection", "stokQuotes", "ItemsCollection", "nxt");
+    let more = "help: if its class has both, declare this one in the component as well";
+    expect![[r#"
+        2:30-43 warning S2021: component `A` declares no service `ItemColection`
+          4:76-90 what it declares
+          fix: replace `ItemColection` with `ItemCollection` [2:30-43 "ItemCollection"]
+        3:32-42 warning S2021: component `A` declares no reference `stokQuotes`
+          5:20-31 what it declares
+          fix: replace `stokQuotes` with `stockQuotes` [3:32-42 "stockQuotes"]
+        6:93-108 warning S2012: component `A` declares no service `ItemsCollection`
+          4:76-90 what it declares
+          fix: replace `ItemsCollection` with `ItemCollection` [6:93-108 "ItemCollection"]
+        7:17-20 warning S2016: component `A` declares no reference `nxt`
+          5:71-75 what it declares
+          fix: replace `nxt` with `next` [7:17-20 "next"]
+    "#]]
+    .assert_eq(&found(&near, &[], true).replace(&format!("  {more}\n"), ""));
+    let apart = inside("ItemCollection2", "other", "LocalItemCollection", "stockQuotes");
+    expect![""].assert_eq(&found(&apart, &[], true));
+}
+
+#[test]
+fn a_value_in_a_component_type_is_one_and_written_once() {
+    let inside = "<property name='a' type='xsd:int'><value>1</value><value>2</value></property><property name='b' type='xsd:int' value='1'><value>2</value></property>
+<property name='c' type='xsd:int' value='1'>2</property><property name='d' type='xsd:int' many='true'><value>1</value><value>2</value></property>
+<property name='e' type='xsd:int' value='1'/><property name='f' type='xsd:int'>2</property>
+<requires/><requires intents=''/><policySetAttachment/><documentation/><extensions><service name='x'/></extensions>";
+    let component = "<component name='S'><implementation.java class='a.Run'/></component>";
+    expect![[r#"
+        Run.componentType:2:52-57 error S3011: the property `a` takes one value, and here are 2
+          Run.componentType:2:36-41 the first
+          help: keep one of them, or write `many="true"` where the property is declared
+        Run.componentType:2:123-128 error S3012: the property `b` is given a value in two ways
+          Run.componentType:2:119-120 the other one
+          help: keep one of them
+        Run.componentType:3:45-46 error S3012: the property `c` is given a value in two ways
+          Run.componentType:3:42-43 the other one
+          help: keep one of them
+        Run.componentType:5:2-10 error S1008: `requires` needs the attribute `intents`
+          help: add `intents="..."` to it
+        Run.componentType:5:35-54 error S1008: `policySetAttachment` needs the attribute `name`
+          help: add `name="..."` to it
+        Run.componentType:5:85-92 error S1005: `service` cannot stand in `extensions`
+          help: `extensions` holds no elements of SCA
+    "#]]
+    .assert_eq(&found(component, &[("Run.componentType", inside)], true));
+}

@@ -1,0 +1,328 @@
+//! What the checker says of real files when classes are taken as given.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity};
+use saoms_lang::load::{MAX_SIZE, load, load_named};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::{Location, Sources, Span};
+use saoms_lang::xml;
+
+use crate::check::support::shown;
+
+/// The folder of the collection: `shared/corpus` beside the workspace, or beside one of the folders around it.
+pub(crate) fn collection() -> Option<PathBuf> {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
+    workspace.ancestors().map(|folder| folder.join("shared/corpus")).find(|folder| folder.is_dir())
+}
+
+fn checked(path: &Path) -> (Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let composite = load(path, &mut sources, &mut diagnostics);
+    let mut all = Contribution::of(composite.into_iter().collect());
+    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let options = Options { assume_classes: true, ..Options::default() };
+    check(&all, &Registry::new(), &options, &sources, &mut diagnostics);
+    (diagnostics.into_sorted(), sources)
+}
+
+/// A row of `verdicts.tsv`.
+struct Row {
+    path: String,
+    is_valid_by_schema: bool,
+    verdict: String,
+    evidence: String,
+    message: String,
+    needs: String,
+}
+
+fn rows(folder: &Path) -> Vec<Row> {
+    let table = fs::read_to_string(folder.join("verdicts.tsv")).unwrap();
+    let row = |line: &str| {
+        let columns: Vec<&str> = line.split('\t').collect();
+        let column = |place: usize| columns.get(place).copied().unwrap_or_default().to_owned();
+        Row {
+            path: column(0),
+            is_valid_by_schema: columns[3] == "valid",
+            verdict: column(4),
+            evidence: column(5),
+            message: column(7),
+            needs: column(9),
+        }
+    };
+    table.lines().skip(1).map(row).collect()
+}
+
+/// Files that nobody calls invalid, and that are taken elsewhere, with the error that they have all the same, and where. Each of them breaks a rule.
+const EXCEPTIONS: &[(&str, &str, &str)] = &[
+    // These two include each other, so that neither has an end (ASM60031: what is left after inclusion has to be valid). They are there to show
+    // that a runtime does not hang; what it makes of them nobody asserts.
+    ("itest/recursive/src/main/resources/Demo1Composite.composite", "S2032", "sample:Demo1Composite"),
+    ("itest/recursive/src/main/resources/Demo2Composite.composite", "S2032", "sample:Demo2Composite"),
+    // An attribute is misspelt, so that the intent that it names holds nowhere. The schema forbids it (ASM13001); the test that reads the file is
+    // about other parts of it.
+    ("org/apache/tuscany/sca/policy/xml/Calculator.composite", "S1007", "requiers"),
+    // A component gives one property two values in two elements, of which nothing says which counts (ASM50031): what this file is there to show.
+    // The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
+    (
+        "vtest/assembly/component/src/main/resources/component_duplicate_property.composite",
+        "S3005",
+        "strProperty",
+    ),
+    // A component has one reference twice (ASM50007): what this file is there to show.
+    ("vtest/assembly/component/src/main/resources/referencename_2.composite", "S2004", "b"),
+];
+
+/// How many files there are of a kind, and how many of them have errors.
+#[derive(Default)]
+struct Tally {
+    files: usize,
+    faulty: usize,
+}
+
+impl Tally {
+    fn add(&mut self, is_faulty: bool) {
+        self.files += 1;
+        self.faulty += usize::from(is_faulty);
+    }
+
+    /// Whether at most this many of a hundred have errors.
+    fn holds(&self, most: usize) -> bool {
+        self.faulty * 100 <= self.files * most
+    }
+}
+
+/// All that a test asserts to be valid, and 99 of 100 of those that a test loads and of those that the schema lets pass.
+#[test]
+fn files_that_nobody_calls_invalid_have_no_errors() {
+    let Some(folder) = collection() else { return };
+    let [mut asserted, mut loaded, mut passed] = [Tally::default(), Tally::default(), Tally::default()];
+    let mut open: Vec<&str> = EXCEPTIONS.iter().map(|(path, ..)| *path).collect();
+    for row in rows(&folder) {
+        let is_called_valid = row.verdict == "valid";
+        let is_passed = row.is_valid_by_schema && row.verdict != "invalid";
+        if !(is_called_valid || is_passed) {
+            continue;
+        }
+        let (diagnostics, sources) = checked(&folder.join("files").join(&row.path));
+        let error = diagnostics.iter().find(|one| one.severity == Severity::Error);
+        if is_called_valid {
+            let is_weak = row.evidence.contains("heuristic");
+            if is_weak { &mut loaded } else { &mut asserted }.add(error.is_some());
+        }
+        if is_passed {
+            passed.add(error.is_some());
+        }
+        let Some(error) = error else { continue };
+        let exception = EXCEPTIONS.iter().find(|(path, ..)| row.path.ends_with(path));
+        let Some((path, code, at)) = exception else { panic!("{}: {}", row.path, shown(error, &sources)) };
+        assert_eq!((error.code.id, sources.snippet(error.location)), (*code, *at), "{}", row.path);
+        open.retain(|known| known != path);
+    }
+    assert!(asserted.holds(0), "{} of {}", asserted.faulty, asserted.files);
+    assert!(loaded.holds(1), "{} of {}", loaded.faulty, loaded.files);
+    assert!(passed.holds(1), "{} of {}", passed.faulty, passed.files);
+    assert!(asserted.files >= 15 && loaded.files > 200 && passed.files > 500, "{}", passed.files);
+    assert!(open.is_empty(), "no exceptions any more: {open:?}");
+}
+
+/// What the messages of Tuscany come to here: code, and the text that it points at. `docs/rules.md` has the same by code.
+pub(crate) const MESSAGES: &[(&str, &str, &str)] = &[
+    ("AttributeCompositeMissing", "S1008", "deployable"),
+    ("AttributeNameSpaceMissing", "S1004", "export"),
+    ("AttributePackageMissing", "S1004", "export.java"),
+    ("AttributeUnrecognizedNamespace", "S1011", "hna:HelloWorld"),
+    ("AttributeWithoutNamespace", "S1011", "{HelloWorld"),
+    ("ComponentReferenceTargetNotFound", "S2011", "AddServiceComponent_one"),
+    ("ContributionReadException", "S0102", "components"),
+    ("DoesntProcessDestinationType", "S1011", "type=\"queue\""),
+    ("DoesntProcessResponseDestinationType", "S1011", "type=\"queue\""),
+    ("DuplicateComponentName", "S2002", "AddServiceComponent"),
+    ("DuplicateComponentPropertyName", "S3005", "serviceName"),
+    ("DuplicateImplementationPropertyName", "S2003", "serviceName"),
+    ("DuplicateImplementationReferenceName", "S2003", "addService"),
+    ("EJBLinkAttributeMissing", "S1008", "implementation.ejb"),
+    ("InvalidCorrelationScheme", "S1011", "correlationScheme"),
+    ("InvalidJMSDeliveryMode", "S1011", "NON_PERSISTENTS"),
+    ("InvalidJMSPriority", "S1011", "20"),
+    ("InvalidResponseDestinationType", "S1011", "no"),
+    ("InvalidWSDLInterfaceAttr", "S1011", "http://sample/calculator"),
+    ("InvalidWsdlElementAttr", "S1011", "http://sample/calculator"),
+    ("LocationAttributeMissing", "S1008", ""),
+    ("MissingActivationSpecName", "S1011", "name=\"\""),
+    ("MissingComponentTypeFile", "S2044", "tuscany:implementation.osgi"),
+    ("MissingConnectionFactoryName", "S1011", "name=\"\""),
+    ("MissingResponseActivationSpec", "S1011", "name=\"\""),
+    ("MissingResponseConnectionFactory", "S1011", "name=\"\""),
+    ("MultipleBindingsForService", "S2040", "addBinding"),
+    ("MustStartWithSchema", "S1011", "tuscany://localhost:17171"),
+    ("NoComponentImplementation", "S1010", "component"),
+    ("NoCompositeNamespace", "S1009", "composite"),
+    ("PromotedReferenceNotFound", "S2011", "AddService"),
+    ("PromotedServiceNotFound", "S2011", "AddServiceComponent_one"),
+    ("PropertyShouldSpecifySR", "S1008", "tuscany:properties"),
+    ("UnexpectedBindingElement", "S1005", "binding.ws"),
+    ("UnexpectedElement", "S1004", "UnexpectedElement"),
+    ("UnexpectedImplementationElement", "S1005", "implementation.java"),
+    ("UnexpectedInterfaceElement", "S1005", "interface.java"),
+    ("UnknownEJBSessionType", "S1011", "state"),
+    ("UnknownEJBVersion", "S1011", "EJB4"),
+    ("UnknownTokenInURI", "S1011", "jms://queue.sample?transport.jms=QueueConnectionFactory"),
+    ("UnresolvedComponentImplementation", "S2031", "sca:dummyImplementation.composite"),
+];
+
+/// Messages of which the collection has no file, and the code that says the same.
+pub(crate) const MORE_MESSAGES: &[(&str, &str)] = &[
+    ("AttributeURIMissing", "S1008"),
+    ("BindingNotFound", "S2013"),
+    ("BothTypeAndElementAttributeFound", "S2039"),
+    ("ComponentIncompatibleInterface", "S2015"),
+    ("CompositeNotFound", "S2030"),
+    ("CompositeReferenceIncompatibleMultiplicity", "S2036"),
+    ("CompositeReferencePromotesNonOverridableReference", "S2037"),
+    ("DuplicateComponentReferenceName", "S2004"),
+    ("DuplicateComponentServiceName", "S2004"),
+    ("DuplicateCompositeName", "S2001"),
+    ("DuplicateImplementationServiceName", "S2003"),
+    ("IllegalCompositeIncusion", "S2034"),
+    ("InvalidCreate", "S1011"),
+    ("InvalidDeliveryMode", "S1011"),
+    ("InvalidDestinationType", "S1011"),
+    ("InvalidPriority", "S1011"),
+    ("LocalAttibuteMissmatch", "S2034"),
+    ("MissingJMSOperationPropertyName", "S1008"),
+    ("MultipleBindingsForReference", "S2040"),
+    ("NoComponentReferenceTarget", "S2018"),
+    ("NoMatchingBinding", "S2053"),
+    ("PropertXSDElementsDontMatch", "S3007"),
+    ("PropertXSDTypesDontMatch", "S3007"),
+    ("PropertyFileValueInvalid", "S0001"),
+    ("PropertyHasManyValues", "S3011"),
+    ("PropertyMustSupplyIncompatible", "S2055"),
+    ("PropertyMustSupplyNull", "S3006"),
+    ("PropertyNotFound", "S3004"),
+    ("PropertyOverrideManyAttribute", "S3011"),
+    ("PropertySourceNotFound", "S2024"),
+    ("PropertySourceValueInvalid", "S2023"),
+    ("PropertySourceXPathInvalid", "S2023"),
+    ("PropertyTypeNotFound", "S2050"),
+    ("PropertyValueDoesNotMatchComplexType", "S3007"),
+    ("PropertyValueDoesNotMatchElement", "S3007"),
+    ("PropertyValueDoesNotMatchSimpleType", "S3007"),
+    ("PropertyXpathExpressionReturnedNull", "S2023"),
+    ("ReferenceEndPointMixWithTarget", "S2054"),
+    ("ReferenceIncompatibleComponentInterface", "S2007"),
+    ("ReferenceIncompatibleInterface", "S2015"),
+    ("ReferenceIncompatibleMultiplicity", "S2008"),
+    ("ReferenceInterfaceNotSubSet", "S2007"),
+    ("ReferenceNotFound", "S2006"),
+    ("ReferenceNotFoundForComponentReference", "S2006"),
+    ("ReferencePromotionIncompatibleInterface", "S2015"),
+    ("ReferenceWithoutTargets", "S2018"),
+    ("ServiceIncompatibleComponentInterface", "S2007"),
+    ("ServiceInterfaceNotSubSet", "S2007"),
+    ("ServiceNotFoundForComponentService", "S2005"),
+    ("TooManyReferenceTargets", "S2017"),
+    ("TooManyTargetServices", "S2014"),
+    ("URIFoundOnServiceSCABinding", "S2041"),
+    ("ValueAttributeForPropertyElement", "S3012"),
+    ("WireIncompatibleInterface", "S2015"),
+    ("WireSourceNotFound", "S2016"),
+    ("WireTargetNotFound", "S2011"),
+];
+
+/// Messages for what cannot be seen. `AttributeURIMissing` is about an `export.resource` of the contribution's description, which is not in the
+/// collection; the composite beside it has that element in a comment, and no fault.
+const UNSEEN: &[&str] = &["AttributeURIMissing"];
+
+#[test]
+fn files_that_are_invalid_by_what_is_written_have_a_diagnostic_there() {
+    let Some(folder) = collection() else { return };
+    let mut found = 0;
+    for row in rows(&folder) {
+        let is_written = row.needs == "composite-only" || row.needs == "composite+sibling-xml";
+        if row.verdict != "invalid" || !is_written {
+            continue;
+        }
+        if UNSEEN.contains(&&*row.message) {
+            let (diagnostics, sources) = checked(&folder.join("files").join(&row.path));
+            let all: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+            assert!(diagnostics.is_empty(), "{}: {all}", row.path);
+            continue;
+        }
+        let known = MESSAGES.iter().find(|(message, ..)| *message == row.message);
+        let (_, code, at) = known.unwrap_or_else(|| panic!("{} of {}", row.message, row.path));
+        let (diagnostics, sources) = checked(&folder.join("files").join(&row.path));
+        let is_meant = |one: &Diagnostic| {
+            let snippet = sources.snippet(one.location);
+            one.code.id == *code && one.severity >= Severity::Warning && snippet.contains(at)
+        };
+        let all: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+        assert!(diagnostics.iter().any(is_meant), "{} of {}:\n{all}", row.message, row.path);
+        found += 1;
+    }
+    assert!(found >= 32, "{found} rows were looked at");
+}
+
+/// Every diagnostic about every file of the collection, and about what is beside it, is at the name of an element, at an attribute, its name or
+/// its value, at a text, or at a part of one that stands by itself; and the diagnostic speaks of that, or of what it is a part of.
+#[test]
+fn diagnostics_are_at_what_they_name() {
+    let Some(folder) = collection() else { return };
+    let (mut count, mut beside) = (0, 0);
+    for row in rows(&folder) {
+        let (diagnostics, sources) = checked(&folder.join("files").join(&row.path));
+        for one in &diagnostics {
+            let labels = one.labels.iter().map(|label| label.location);
+            for place in labels.chain([one.location]) {
+                let things = things_at(place, &sources);
+                assert!(things.is_some(), "{}: {}", row.path, shown(one, &sources));
+                count += 1;
+                beside += usize::from(!sources.get(place.file).path().ends_with(&row.path));
+            }
+            let said = [std::slice::from_ref(&one.message), &one.help[..]].concat().join("\n");
+            let things = things_at(one.location, &sources).unwrap_or_default();
+            let is_named = things.is_empty() || things.iter().any(|thing| said.contains(thing.as_str()));
+            assert!(is_named, "{}: none of {things:?} is in {}", row.path, shown(one, &sources));
+        }
+    }
+    assert!(count > 200 && beside > 0, "{count} places were looked at, {beside} of them beside the files");
+}
+
+/// The text at a place, the name of the attribute and the element that it is in; `None` where it is at no such thing. None at all where the file is
+/// no well-formed XML, in which a place is at what is not understood.
+fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
+    let text = sources.get(place.file).text();
+    let xml::Parsed { document: Some(document), fault: None, .. } = xml::parse(place.file, text) else {
+        return Some(Vec::new());
+    };
+    let element = document.element_at(place.span.start);
+    let snippet = sources.snippet(place);
+    let mut things = vec![snippet.to_owned(), element.local_name().to_owned()];
+    things.extend(snippet.split([':', '/']).filter(|part| !part.is_empty()).map(str::to_owned));
+    if [Some(element.name_span()), element.end_name_span()].contains(&Some(place.span)) {
+        return Some(things);
+    }
+    let mut attributes = element.attributes().chain(element.namespace_declarations());
+    if let Some(attribute) = attributes.find(|one| one.span().contains(place.span)) {
+        things.push(attribute.name().to_owned());
+        let is_whole = place.span == attribute.span() || place.span == attribute.name_span();
+        return (is_whole || is_part(place, attribute.value_span(), text)).then_some(things);
+    }
+    is_part(place, element.text_span()?, text).then_some(things)
+}
+
+/// Whether a place is a part of a value, or all of it, that begins and ends where a word does.
+fn is_part(place: Location, value: Span, text: &str) -> bool {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let (start, end) = (place.span.start as usize, place.span.end as usize);
+    let is_cut = |before: Option<char>, behind: Option<char>| {
+        before.is_some_and(is_word) && behind.is_some_and(is_word)
+    };
+    let starts = !is_cut(text[..start].chars().next_back(), text[start..].chars().next());
+    let ends = !is_cut(text[..end].chars().next_back(), text[end..].chars().next());
+    value.contains(place.span) && !place.span.is_empty() && starts && ends
+}

@@ -1,0 +1,285 @@
+//! What is meant by values and names that lead nowhere: each is told once, also of replicas, with what to write.
+
+use expect_test::expect;
+
+use crate::check::mistakes::slips::{GPS, of, robot};
+use crate::check::support::{faults_of, outcome, part};
+
+/// What is wrong with three halls of two robots: with what the component that a hall implements says, and the property of the hall.
+fn halls(given: &str, property: &str) -> String {
+    let namespaces = "xmlns:saoms=\"urn:saoms:1\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    let robots = "<component name=\"Robot${index}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"period\">1</property>\n<property name=\"ID\">R${hall * 10 + index}</property>\n<property name=\"number\">${hall * 10 + index}</property></component>";
+    let reference = "<reference name=\"gps\" promote=\"Robot*/gps\"/>";
+    let hall = part("hall", namespaces, &format!("{property}\n{reference}\n{robots}"));
+    let component = format!(
+        "<component name=\"Hall${{index}}\" saoms:count=\"3\"><implementation.composite name=\"t:hall\"/>\n{given}</component>"
+    );
+    let fleet = part("fleet", namespaces, &format!("{GPS}\n{component}"));
+    outcome(&[&fleet, &hall], &[])
+}
+
+#[test]
+fn one_mistake_in_replicas_of_composites_is_told_once() {
+    let must = "<property name=\"hall\" type=\"xsd:int\" mustSupply=\"true\"/>";
+    let wired = "<reference name=\"gps\" target=\"G\"/>";
+    let right = "<property name=\"hall\">${index}</property>";
+    expect![[r#"
+        4:17-20 error S3004: composite `hall` has no property `hal` (in `Hall1`, index 1, and in 2 more)
+          fix: replace `hal` with `hall` [4:17-20 "hall"]
+    "#]]
+    .assert_eq(&halls(&format!("{}{wired}", right.replace("hall", "hal")), must));
+    expect![[r#"
+        3:18-30 error S2025: component `Hall1` has to give the property `hall` of its composite a value (index 1, and in 2 more)
+          hall:2:17-21 declared here, without a value
+          help: add `<property name="hall">...</property>`
+    "#]].assert_eq(&halls(wired, must));
+    expect![[r#"
+        4:72-74 error S2011: there is no component `Gg` (in `Hall1`, index 1, and in 2 more)
+          fix: replace `Gg` with `G` [4:72-74 "G"]
+    "#]]
+    .assert_eq(&halls(&format!("{right}<reference name=\"gps\" target=\"Gg\"/>"), must));
+    // A property without a value is told where an expression first uses it.
+    expect![[r#"
+        hall:5:24-28 error S2045: the property `hall` has no value (in `Robot1`, index 1)
+          help: write it in the file, or give it with `--set`, or in the component that the composite implements
+    "#]]
+    .assert_eq(&halls(wired, "<property name=\"hall\" type=\"xsd:int\"/>"));
+}
+
+#[test]
+fn the_index_is_meant_by_what_looks_like_it() {
+    let replicas = |number: &str| {
+        of(&format!(
+            "<component name=\"R${{index}}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R${{index}}</property><property name=\"period\">1</property>\n<property name=\"number\">{number}</property></component>"
+        ))
+    };
+    let said = ["$index", "index", "{index}", "i", "${idx}"].map(replicas).concat();
+    expect![[r#"
+        3:25-31 error S3007: property `number`: `$index` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `$index` with `${index}` [3:25-31 "${index}"]
+        3:25-30 error S3007: property `number`: `index` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `index` with `${index}` [3:25-30 "${index}"]
+        3:25-32 error S3007: property `number`: `{index}` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `{index}` with `${index}` [3:25-32 "${index}"]
+        3:25-26 error S3007: property `number`: `i` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
+          help: `number`: The number of the robot
+          fix: replace `i` with `${index}` [3:25-26 "${index}"]
+        3:27-30 error S2045: the composite has no property `idx` (in `R1`, index 1)
+          fix: replace `idx` with `index` [3:27-30 "index"]
+    "#]].assert_eq(&said);
+    // Not where nothing is counted.
+    expect![[r#"
+        3:25-31 error S3007: property `number`: `$index` is not a whole number: expected a whole number from 1 to 99
+          help: `${index}` is for replicas: give the component a `saoms:count`
+          help: `number`: The number of the robot
+    "#]].assert_eq(&of(&robot("R", "<property name=\"number\">$index</property>")));
+    let promoted = "<service name=\"s\" promote=\"R${index}/gps\"/>";
+    expect![[r#"
+        3:28-37 error S2011: there is no component `R${index}`
+          help: the components are `G`
+    "#]]
+    .assert_eq(&of(&format!("{GPS}\n{promoted}")));
+}
+
+#[test]
+fn no_component_is_told_to_name_itself() {
+    let reference = "<reference name=\"gps\" target=\"Robot\"/>";
+    expect![[r#"
+        3:18-24 error S3006: component `Robots` lacks the property `number`
+          help: add `<property name="number">...</property>`: a whole number from 1 to 99
+        4:31-36 error S2011: there is no component `Robot`
+          help: the components are `G`
+    "#]]
+    .assert_eq(&of(&format!("{GPS}\n{}", robot("Robots", reference))));
+}
+
+#[test]
+fn a_source_that_leads_to_nothing_says_what_gives_it_a_value() {
+    let with = |property: &str, source: &str| {
+        let number = format!("<property name=\"number\" source=\"{source}\"/>");
+        of(&format!("{property}\n{}", robot("R", &number)))
+    };
+    expect![[r#"
+        4:33-35 error S3006: the property `number` has no value: its source has none
+          2:17-18 declared here, without a value
+          help: write it in the file, give `--set n=...`, or set `N` in the environment
+    "#]]
+    .assert_eq(&with("<property name=\"n\" saoms:env=\"N\"/>", "$n"));
+    let complex = "<property name=\"n\"><max at=\"1\">3</max></property>";
+    expect![[r#"
+        4:36-38 error S2023: there is no part `mx`; the parts are `max`
+          fix: replace `mx` with `max` [4:36-38 "max"]
+    "#]]
+    .assert_eq(&with(complex, "$n/mx"));
+    expect![[r#"
+        4:40-42 error S2023: there is no attribute `a`; the attributes are `at`
+          fix: replace `a` with `at` [4:41-42 "at"]
+    "#]]
+    .assert_eq(&with(complex, "$n/max/@a"));
+}
+
+#[test]
+fn a_type_whose_prefix_means_nothing_is_told() {
+    let with = |kind: &str| {
+        let property = format!("<property name=\"n\" type=\"{kind}\">3</property>");
+        of(&format!("{property}\n{}", robot("R", "<property name=\"number\" source=\"$n\"/>")))
+    };
+    expect![[r#"
+        2:26-33 warning S2050: the prefix `xsd` of this type is bound to no namespace
+          fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
+        R (example.Robot) ID=Text("R") number=Text("3") gps->
+    "#]].assert_eq(&with("xsd:int"));
+    expect![[r#"
+        2:26-35 warning S2050: the prefix `my` of this type is bound to no namespace
+          help: declare it: `xmlns:my="..."`
+        R (example.Robot) ID=Text("R") number=Text("3") gps->
+    "#]]
+    .assert_eq(&with("my:number"));
+}
+
+#[test]
+fn a_type_of_xml_schema_without_its_prefix_is_told() {
+    let with = |kinds: &[&str], attributes: &str| {
+        let property =
+            |(at, kind): (usize, &&str)| format!("<property name=\"n{at}\" type=\"{kind}\">3</property>\n");
+        let properties: String = kinds.iter().enumerate().map(property).collect();
+        let taken = (0..kinds.len()).map(|at| format!("${{n{at}}}"));
+        let taken: String = taken.collect();
+        let robot = robot(
+            "R${index}",
+            &format!("<property name=\"number\">1</property><property name=\"password\">{taken}</property>"),
+        );
+        let robot = robot.replacen("<component", "<component saoms:count=\"1\"", 1);
+        outcome(
+            &[&part("fleet", &format!("xmlns:saoms=\"urn:saoms:1\" {attributes}"), &(properties + &robot))],
+            &[],
+        )
+    };
+    let schema = "xmlns:xs=\"http://www.w3.org/2001/XMLSchema\"";
+    expect![[r#"
+        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xs:int` [2:27-30 "xs:int"]
+        3:27-31 warning S2050: the type `bool` without a prefix is none of XML Schema
+          fix: replace `bool` with `xs:boolean` [3:27-31 "xs:boolean"]
+        4:27-33 warning S2050: the type `intger` without a prefix is none of XML Schema
+          fix: replace `intger` with `xs:integer` [4:27-33 "xs:integer"]
+        7:80-82 error S2045: here is the text `3`, and a whole number is expected (in `R1`, index 1)
+          5:37-38 `n3` is this
+          help: `docs/fleets.md` says what expressions are
+    "#]]
+    .assert_eq(&with(&["int", "bool", "intger", "Customer"], schema));
+    expect![[r#"
+        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xsd:int`, and declare `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` in the root element [2:27-30 "xsd:int"] [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
+        3:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xsd:int` [3:27-30 "xsd:int"]
+        5:63-73 warning S4006: `password` is given without `user` (in `R1`, index 1)
+          help: give both, or neither
+        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+    "#]].assert_eq(&with(&["int", "int"], ""));
+    expect![[r#"
+        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+          fix: replace `int` with `xs:int`, and declare `xmlns:xs="http://www.w3.org/2001/XMLSchema"` in the root element [2:27-30 "xs:int"] [1:11-11 " xmlns:xs=\"http://www.w3.org/2001/XMLSchema\""]
+        4:63-68 warning S4006: `password` is given without `user` (in `R1`, index 1)
+          help: give both, or neither
+        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+    "#]].assert_eq(&with(&["int"], "xmlns:xsd=\"urn:own\""));
+}
+
+#[test]
+fn a_slip_in_the_name_of_a_type_is_no_other_type() {
+    let outer = "<component name=\"In\"><implementation.composite name=\"t:inner\"/><property name=\"n\" type=\"xsd:interger\">3</property></component>";
+    let inner = "<property name=\"n\" type=\"xsd:int\">1</property>";
+    let inner = format!("{inner}\n{}", robot("R", "<property name=\"number\" source=\"$n\"/>"));
+    let schema = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    expect![[r#"
+        2:89-101 error S2050: XML Schema has no type `interger`
+          fix: replace `xsd:interger` with `xsd:integer` [2:89-101 "xsd:integer"]
+    "#]]
+    .assert_eq(&outcome(&[&part("fleet", schema, outer), &part("inner", schema, &inner)], &[]));
+}
+
+#[test]
+fn one_value_that_is_wrong_for_two_properties_is_told_once() {
+    let outer = "<property name=\"n\" type=\"xsd:int\">many</property>\n<component name=\"In\"><implementation.composite name=\"t:inner\"/><property name=\"k\" source=\"$n\"/></component>";
+    let inner = "<property name=\"k\" type=\"xsd:int\">1</property>";
+    let inner = format!(
+        "{inner}\n{}",
+        robot("R", "<property name=\"number\">1</property><property name=\"password\" source=\"$k\"/>")
+    );
+    let schema = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    expect![[r#"
+        2:35-39 error S2042: the property `k` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
+          inner:2:26-33 the type
+          help: change the value, or the type
+        2:35-39 warning S4006: `password` is given without `user`
+          help: give both, or neither
+    "#]].assert_eq(&outcome(&[&part("fleet", schema, outer), &part("inner", schema, &inner)], &[]));
+}
+
+#[test]
+fn what_comes_from_outside_is_told_where_it_was_given() {
+    let inside =
+        "<property name=\"n\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">4</property>";
+    let fleet = crate::check::support::fleet(&format!("{inside}\n{GPS}"));
+    expect![[r#"
+        2:17-18 warning S2026: the property `n` of the composite is used by no component
+          help: a component takes its value with `source="$n"`
+        --set:1:3-3 error S2042: the property `n` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+          2:26-33 the type
+          help: change the value, or the type
+    "#]].assert_eq(&faults_of(&[&fleet], &["n="]));
+    // What cannot be read may declare it.
+    expect![[r#"
+        1:2-11 error S0103: the start tag of `composite` is never closed
+          1:11-11 the file ends here
+    "#]]
+    .assert_eq(&faults_of(&["<composite"], &["n=1"]));
+}
+
+#[test]
+fn of_no_replicas_nothing_is_told_that_some_would_change() {
+    let inside = format!(
+        "<property name=\"site\">north</property>\n<component name=\"R${{index}}\" saoms:count=\"0\" saoms:if=\"site == 'north'\"><implementation.java class=\"example.Gps\"/></component>\n{GPS}"
+    );
+    expect![[r#"
+        G (example.Gps) other->
+    "#]]
+    .assert_eq(&of(&inside));
+}
+
+#[test]
+fn a_property_that_a_component_does_not_give_says_which() {
+    let unit = part(
+        "unit",
+        "",
+        &format!("<property name=\"who\"/>\n{}", robot("R", "<property name=\"number\" source=\"$who\"/>")),
+    );
+    let with = |given: &str| {
+        let component =
+            format!("<component name=\"U\"><implementation.composite name=\"t:unit\"/>{given}</component>");
+        outcome(&[&part("fleet", "", &component), &unit], &[])
+    };
+    expect![[r#"
+        unit:4:33-37 error S3006: the property `number` has no value: its source has none
+          unit:2:17-20 declared here, without a value
+          2:18-19 gives it none
+          help: add `<property name="who">...</property>` to the component `U`, which the composite implements
+    "#]]
+    .assert_eq(&with(""));
+    expect![[r#"
+        2:78-82 error S3004: composite `unit` has no property `whoo`
+          fix: replace `whoo` with `who` [2:78-82 "who"]
+    "#]]
+    .assert_eq(&with("<property name=\"whoo\">1</property>"));
+    expect![[r#"
+        2:78-82 error S3004: composite `unit` has no property `whom`
+          fix: replace `whom` with `who` [2:78-82 "who"]
+        2:111-116 error S3004: composite `unit` has no property `other`
+          help: its properties are `who`
+    "#]]
+    .assert_eq(&with("<property name=\"whom\" value=\"1\"/><property name=\"other\" value=\"1\"/>"));
+}

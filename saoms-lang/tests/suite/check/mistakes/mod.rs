@@ -1,0 +1,5 @@
+//! Mistakes that people make: each is told once, at its place, with what to write.
+
+mod meant;
+pub(crate) mod slips;
+mod together;

@@ -1,0 +1,421 @@
+//! Slips of the pen: each is told once, at its place, with what was probably meant.
+
+use expect_test::expect;
+
+use crate::check::support::{faults_of, fleet, fleet_1_0, nested, outcome, part, shown};
+use crate::check::values::files::checked;
+
+/// What is wrong with a fleet with the prefix of SAOMS.
+pub(crate) fn of(inside: &str) -> String {
+    outcome(&[&part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside)], &[])
+}
+
+/// A robot of this name, with this besides what it needs.
+pub(crate) fn robot(name: &str, inside: &str) -> String {
+    format!(
+        "<component name=\"{name}\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">{name}</property><property name=\"period\">1</property>\n{inside}</component>"
+    )
+}
+
+pub(crate) const GPS: &str = "<component name=\"G\"><implementation.java class=\"example.Gps\"/></component>";
+
+#[test]
+fn the_nearest_class_comes_first() {
+    let component =
+        |class: &str| format!("<component name=\"C\"><implementation.java class=\"{class}\"/></component>");
+    let fix = |class: &str| {
+        let found = of(&component(class));
+        found
+            .lines()
+            .filter_map(|line| line.strip_prefix("  fix: ")?.split(" [").next())
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    expect!["replace `Robot` with `example.Robot`"].assert_eq(&fix("Robot"));
+    expect!["replace `EXAMPLE.ROBOT` with `example.Robot`"].assert_eq(&fix("EXAMPLE.ROBOT"));
+    expect![[r#"
+        replace `saoms.Robot1` with `example.Robot`
+        replace `saoms.Robot1` with `robot.Robot001`
+        replace `saoms.Robot1` with `example.Robot001`"#]]
+    .assert_eq(&fix("saoms.Robot1"));
+    expect!["replace `MessageBroker` with `unibg.robotics.tca.MessageBrokerImpl`"]
+        .assert_eq(&fix("MessageBroker"));
+    expect![[r#"
+        2:49-66 error S3001: there is no class `example.BatteryMS`
+          help: it is a loop: give it to a component that has loops, by `<saoms:loop name="..." class="example.BatteryMS"/>` in it
+    "#]].assert_eq(&of(&component("example.BatteryMS")));
+    let looping = "<component name=\"C\"><implementation.java class=\"example.Cart\"/><property name=\"ID\">C</property><property name=\"period\">1</property>\n<saoms:loop name=\"X\" class=\"example.Gps\"/></component>";
+    expect![[r#"
+        3:29-40 error S3001: there is no loop class `example.Gps`
+          help: it is a class of components: those are implemented by it, with `<implementation.rust class="example.Gps"/>`
+    "#]].assert_eq(&of(looping));
+}
+
+#[test]
+fn a_name_of_the_wrong_form_is_told_once() {
+    let inside = format!(
+        "<property name=\"awa ke\">true</property>\n{}",
+        robot("R 1", "<property name=\"num ber\">1</property><reference name=\"g ps\"/>")
+    );
+    expect![[r#"
+        2:17-23 error S1011: `awa ke` cannot be a name: it holds ` `
+          help: names are used in targets as `component/service`, and in lists between blanks
+        3:18-21 error S1011: `R 1` cannot be a name: it holds ` `
+          help: names are used in targets as `component/service`, and in lists between blanks
+        4:17-24 error S3004: class `example.Robot` has no property `num ber`
+          fix: replace `num ber` with `number` [4:17-24 "number"]
+        4:55-59 error S2006: class `example.Robot` has no reference `g ps`
+          fix: replace `g ps` with `gps` [4:55-59 "gps"]
+    "#]]
+    .assert_eq(&of(&inside));
+}
+
+#[test]
+fn replicas_that_lack_their_index_get_it() {
+    let replicas = |name: &str, id: &str, number: &str| {
+        of(&format!(
+            "<component name=\"{name}\" saoms:count=\"3\"><implementation.java class=\"example.Robot\"/>\n<property name=\"ID\">{id}</property><property name=\"period\">1</property><property name=\"number\">{number}</property></component>"
+        ))
+    };
+    expect![[r#"
+        3:21-32 error S3013: components `R1` and `R2` have the same `ID` `R{index:02}` (index 2, and in 1 more)
+          help: every robot needs its own
+          fix: replace `R{index:02}` with `R${index:02}` [3:21-32 "R${index:02}"]
+    "#]].assert_eq(&replicas("R${index}", "R{index:02}", "${index}"));
+    expect![[r#"
+        2:18-26 error S2046: all replicas would be called `R{index}`
+          fix: replace `R{index}` with `R${index}` [2:18-26 "R${index}"] [3:21-29 "R${index}"]
+    "#]]
+    .assert_eq(&replicas("R{index}", "R{index}", "${index}"));
+    expect![[r#"
+        2:18-27 error S2046: all replicas would be called `R$(index)`
+          fix: replace `R$(index)` with `R${index}` [2:18-27 "R${index}"]
+    "#]]
+    .assert_eq(&replicas("R$(index)", "R${index}", "7"));
+    expect![[r#"
+        2:18-19 error S2046: all replicas would be called `R`
+          fix: replace `R` with `R${index}` [2:18-19 "R${index}"]
+    "#]]
+    .assert_eq(&replicas("R", "S", "${index}"));
+    expect![[r#"
+        2:18-27 error S2046: `R${index}` is a name of replicas, and nothing says how many there are
+          help: add `saoms:count="..."`
+    "#]].assert_eq(&of("<component name=\"R${index}\"><implementation.java class=\"example.Robot\"/>\n<property name=\"ID\">R${index}</property><property name=\"period\">1</property><property name=\"number\">${index}</property></component>"));
+    expect![[r#"
+        2:31-36 error S2045: the composite has no property `index`
+          help: `index` is what replicas are counted by: give the component a `saoms:count`
+    "#]].assert_eq(&of("<component name=\"G\" saoms:if=\"index &lt; 3\"><implementation.java class=\"example.Gps\"/></component>"));
+}
+
+/// Without their number no replicas can be made, so that something has to say so as an error.
+#[test]
+fn a_count_that_is_none_is_an_error() {
+    let robots = |around: &str, count: &str, more: &str| {
+        let robot = format!(
+            "<component name=\"G${{index}}\" {count}><implementation.java class=\"example.Gps\"/></component>{more}"
+        );
+        outcome(&[&part("c", around, &robot)], &[])
+    };
+    expect![[r#"
+        1:127-138 error S1013: what is in the namespace `urn:saoms:0` is passed over: it is nearly `urn:saoms:1`
+          help: `s:count` in it says how many replicas there are, and they cannot be made without
+          fix: replace it with `urn:saoms:1` [1:127-138 "urn:saoms:1"]
+    "#]].assert_eq(&robots("xmlns:s='urn:saoms:0'", "s:count='3'", ""));
+    expect![[r#"
+        2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
+          help: add `saoms:count="..."`
+    "#]]
+    .assert_eq(&robots("xmlns:s='urn:other'", "s:count='3'", ""));
+    expect![[r#"
+        2:29-34 error S1007: `component` has no attribute `count`
+          help: it is an attribute of SAOMS, of the namespace `urn:saoms:1`
+          fix: replace `count` with `saoms:count` [1:11-11 " xmlns:saoms=\"urn:saoms:1\""] [2:29-34 "saoms:count"]
+    "#]].assert_eq(&robots("", "count='3'", ""));
+    let allowed =
+        "<s:severity xmlns:s='urn:saoms:1' code='S1007' level='allow' reason='tools put their own there'/>";
+    expect![[r#"
+        2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
+          help: add `saoms:count="..."`
+    "#]]
+    .assert_eq(&robots("", "count='3'", allowed));
+}
+
+#[test]
+fn a_component_that_is_pasted_again_is_told_once() {
+    let one = robot("R", "<property name=\"number\">1</property>");
+    expect![[r#"
+        4:18-19 error S2002: there are two components `R`
+          2:18-19 the first
+          fix: remove the second: both are the same, word for word [4:1-5:49 ""]
+    "#]]
+    .assert_eq(&of(&format!("{one}\n{one}")));
+    expect![[r#"
+        4:18-19 error S2002: there are two components `R`
+          2:18-19 the first
+          help: give each its own name
+    "#]]
+    .assert_eq(&of(&format!("{one}\n{}", one.replace("\">1<", "\">2<"))));
+}
+
+#[test]
+fn a_misspelt_root_is_read_on() {
+    let text = fleet(&format!("{GPS}\n{GPS}"));
+    let end = "</composite>";
+    expect![[r#"
+        1:2-10 error S1001: the root element is `compsite` and has to be `composite`
+          fix: replace `compsite` with `composite` [1:2-10 "composite"]
+    "#]]
+    .assert_eq(&faults_of(&[&text.replace("<composite", "<compsite")], &[]));
+    expect![[r#"
+        1:2-10 error S1001: the root element is `compsite` and has to be `composite`
+          fix: replace `compsite` with `composite` [1:2-10 "composite"] [4:3-11 "composite"]
+        3:18-19 error S2002: there are two components `G`
+          2:18-19 the first
+          fix: remove the second: both are the same, word for word [3:1-75 ""]
+    "#]]
+    .assert_eq(&faults_of(&[&text.replace("<composite", "<compsite").replace(end, "</compsite>")], &[]));
+    expect![[r#"
+        4:1-12 error S0102: `</compsite>` found where `</composite>` is expected
+          1:2-11 `composite` is open
+          fix: replace it with `</composite>` [4:1-12 "</composite>"]
+    "#]]
+    .assert_eq(&faults_of(&[&text.replace(end, "</compsite>")], &[]));
+}
+
+#[test]
+fn a_value_beside_a_source_counts_for_nothing() {
+    let inside = |declared: &str| {
+        format!(
+            "<property name=\"p\">{declared}</property>\n{}",
+            robot(
+                "R",
+                "<property name=\"number\" source=\"$p\" value=\"1\"/>\n<property name=\"delay\" source=\"$p\">1</property>\n<property name=\"awake\">true</property>"
+            )
+        )
+    };
+    expect![[r#"
+        4:44-45 warning S3012: the property `number` is given a value beside its `source`
+          4:33-35 this counts
+          help: this value counts for nothing: keep one of them
+        5:36-37 warning S3012: the property `delay` is given a value beside its `source`
+          5:32-34 this counts
+          help: this value counts for nothing: keep one of them
+        R (example.Robot) ID=Text("R") number=Text("5") awake=Text("true") gps->
+    "#]]
+    .assert_eq(&of(&inside("5")));
+    // What counts until somebody gives one from outside.
+    expect![[r#"
+        R (example.Robot) ID=Text("R") number=Text("1") awake=Text("true") gps->
+    "#]]
+    .assert_eq(&of(&inside("")));
+}
+
+#[test]
+fn a_table_between_other_separators_is_told_once() {
+    let inside = "<component xmlns:s=\"urn:saoms:1\" name=\"R${index}\" s:count=\"2\" s:overrides=\"r.csv\"><implementation.java class=\"example.Robot\"/>
+<property name=\"ID\">R${index}</property><property name=\"period\">1</property><property name=\"number\">${index}</property></component>";
+    let with = |table: &str| checked(inside, &[("r.csv", table.as_bytes())], 1 << 20).1;
+    expect![[r#"
+        r.csv:1:6-7 error S2047: the values of this table stand between `;`, and have to stand between commas
+          help: save it as comma-separated values; a value that holds a comma stands between two `"`
+    "#]]
+    .assert_eq(&with("index;delay;awake\n1;60;\n2;;true\n"));
+    expect![[r#"
+        r.csv:1:7-8 error S2047: the values of this table stand between tabs, and have to stand between commas
+          help: save it as comma-separated values; a value that holds a comma stands between two `"`
+    "#]]
+    .assert_eq(&with("\u{feff}\"name\"\tdelay\nR1\t60\n"));
+    assert_eq!(with("index\n1\n"), "");
+}
+
+#[test]
+fn quotes_of_word_processors_are_told() {
+    let with = |component: &str| {
+        faults_of(
+            &[&fleet(&format!("{component}<implementation.java class=\"example.Gps\"/></component>"))],
+            &[],
+        )
+    };
+    expect![[r#"
+        2:17-20 error S0105: `“` is no quote of XML: values stand between two `"`
+          fix: replace it with `"G"` [2:17-20 "\"G\""]
+    "#]]
+    .assert_eq(&with("<component name=“G”>"));
+    expect![[r#"
+        2:17-20 error S0105: `„` is no quote of XML: values stand between two `"`
+          fix: replace it with `"G"` [2:17-20 "\"G\""]
+    "#]]
+    .assert_eq(&with("<component name=„G“>"));
+    expect![[r#"
+        2:19-20 error S0105: `”` does not close a value that starts with `"`
+          2:17-18 the value starts here
+          fix: replace `”` with `"` [2:19-20 "\""]
+    "#]]
+    .assert_eq(&with("<component name=\"G”>"));
+    expect![[r#"
+        2:17-20 error S0105: `“` is no quote of XML: values stand between two `"`
+          fix: replace it with `"G"` [2:17-20 "\"G\""]
+    "#]]
+    .assert_eq(&with("<component name=“G\" autowire=\"true\">"));
+    expect![[r#"
+        2:19-20 error S0105: `”` does not close a value that starts with `"`
+          2:17-18 the value starts here
+          fix: replace `”` with `"` [2:19-20 "\""]
+    "#]]
+    .assert_eq(&with("<component name=\"G” autowire=\"true\">"));
+    // They may stand in a value.
+    assert_eq!(with("<component name=\"“G”\">"), "");
+}
+
+#[test]
+fn truth_is_written_small() {
+    let with = |condition: &str| {
+        of(&format!(
+            "<property name=\"a\">1</property>\n<component name=\"G\" saoms:if=\"{condition}\"><implementation.java class=\"example.Gps\"/></component>"
+        ))
+    };
+    expect![[r#"
+        3:31-35 error S2045: the composite has no property `True`
+          fix: replace `True` with `true` [3:31-35 "true"]
+    "#]]
+    .assert_eq(&with("True"));
+    expect![[r#"
+        3:46-51 error S2045: the composite has no property `FALSE`
+          fix: replace `FALSE` with `false` [3:46-51 "false"]
+    "#]]
+    .assert_eq(&with("a == 1 and not FALSE"));
+    expect![[r#"
+        3:31-34 error S2045: the composite has no property `yes`
+          fix: replace `yes` with `true` [3:31-34 "true"]
+    "#]]
+    .assert_eq(&with("yes"));
+}
+
+#[test]
+fn loops_are_taken_as_given_with_the_classes() {
+    let cart = "<property name=\"f\">1</property><component name=\"C\"><implementation.java class=\"example.Cart\"/><property name=\"ID\">C</property><property name=\"period\">1</property>
+<saoms:loop name=\"X\" class=\"other.Saver\" after=\"BatteryMS\"><property name=\"floor\" source=\"$f\"/></saoms:loop><saoms:loop name=\"PathMs\" remove=\"true\"/></component>";
+    let text = part("fleet", "xmlns:saoms=\"urn:saoms:1\"", cart);
+    let found = |assume_classes: bool| {
+        let (_, found, sources) = nested(&[&text], &[], assume_classes);
+        found.iter().map(|one| shown(one, &sources)).collect::<String>()
+    };
+    expect![[r#"
+        3:29-40 error S3001: there is no loop class `other.Saver`
+          help: looked among the 12 loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          fix: replace `other.Saver` with `example.BatterySaver` [3:29-40 "example.BatterySaver"]
+        3:127-133 error S4501: component `C` has no loop `PathMs`
+          fix: replace `PathMs` with `PathMS` [3:127-133 "PathMS"]
+    "#]].assert_eq(&found(false));
+    expect![[r#"
+        3:127-133 error S4501: component `C` has no loop `PathMs`
+          fix: replace `PathMs` with `PathMS` [3:127-133 "PathMS"]
+    "#]]
+    .assert_eq(&found(true));
+}
+
+#[test]
+fn words_of_other_languages_are_told_once() {
+    let with = |from: &str, to: &str| {
+        let robot =
+            robot("R", "<property name=\"number\">1</property><reference name=\"gps\" target=\"G\"/>");
+        assert!(robot.contains(from), "{from}");
+        let found = of(&format!("{GPS}\n{}", robot.replace(from, to)));
+        found
+            .lines()
+            .filter(|line| !line.contains(" (example."))
+            .fold(String::new(), |all, line| all + line + "\n")
+    };
+    let class = "<implementation.java class=\"example.Robot\"/>";
+    expect![[r#"
+        3:22-36 error S1004: SCA 1.1 has no element `implementation`
+          fix: replace `implementation` with `implementation.java` [3:22-36 "implementation.java"]
+    "#]]
+    .assert_eq(&with(class, "<implementation class=\"example.Robot\"/>"));
+    expect![[r#"
+        3:42-55 error S1012: text in `implementation.java`, which holds no text
+          help: the class is named by the attribute `class`
+    "#]]
+    .assert_eq(&with(class, "<implementation.java>example.Robot</implementation.java>"));
+    expect![[r#"
+        3:42-46 error S1007: `implementation.java` has no attribute `name`
+          fix: replace `name` with `class` [3:42-46 "class"]
+    "#]]
+    .assert_eq(&with(class, "<implementation.java name=\"example.Robot\"/>"));
+    expect![[r#"
+        3:98-103 error S1004: SCA 1.1 has no element `param`
+          fix: replace `param` with `property` [3:98-103 "property"] [3:121-126 "property"]
+    "#]]
+    .assert_eq(&with("<property name=\"period\">1</property>", "<param name=\"period\">1</param>"));
+    expect![[r#"
+        4:52-55 error S2005: `gps` of class `example.Robot` is a reference, and no service
+          fix: replace `service` with `reference` [4:38-45 "reference"]
+    "#]]
+    .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<service name=\"gps\" target=\"G\"/>"));
+    expect![[r#"
+        4:59-60 error S1012: text in `reference`, which holds no text
+          help: the component that it calls is named by the attribute `target`
+    "#]]
+    .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<reference name=\"gps\">G</reference>"));
+    expect![[r#"
+        4:69-80 error S2012: component `G` has no service `whereabouts`
+          help: its services are `position`
+          fix: replace `whereabouts` with `position` [4:69-80 "position"]
+    "#]]
+    .assert_eq(&with("target=\"G\"", "target=\"G/whereabouts\""));
+    expect![[r#"
+        4:92-96 error S1007: `include` has no attribute `file`
+          help: a composite is named by its `name`, with the prefix of its `targetNamespace`, and not by its file
+    "#]]
+    .assert_eq(&with("</component>", "</component><include file=\"part.composite\"/>"));
+    expect![[r#"
+        3:121-125 error S3007: property `period`: `0,5s` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `period`: From one due execution to the next; a number without a unit is in ms
+          fix: replace `0,5s` with `0.5s` [3:121-125 "0.5s"]
+    "#]].assert_eq(&with("\">1</property>\n", "\">0,5s</property>\n"));
+    expect![[r#"
+        4:25-28 error S3007: property `number`: `3 m` is not a whole number: expected a whole number from 1 to 99
+          help: `number`: The number of the robot
+          fix: replace `3 m` with `3` [4:25-28 "3"]
+    "#]].assert_eq(&with("\">1</property><ref", "\">3 m</property><ref"));
+}
+
+#[test]
+fn folders_stand_before_slashes() {
+    let inside = robot("R", "<property name=\"number\" file=\"sub\\n.txt\"/>");
+    let found = checked(&inside, &[("sub/n.txt", b"1")], 1 << 20).1;
+    expect![[r#"
+        3:31-40 error S0001: there is no such file
+          help: folders stand before `/`: write `sub/n.txt`
+    "#]]
+    .assert_eq(&found);
+}
+
+#[test]
+fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
+    let own = "<property period=\"100\"/><property  speed='1' many=\"true\">2</property><property nam=\"x\"/><property/>";
+    let text =
+        format!("<component name=\"R\"><implementation.java class=\"example.Robot\"/>\n{own}</component>");
+    expect![[r#"
+        3:11-17 error S1007: `property` has no attribute `period`
+          fix: replace it with `name="period" value="100"` [3:11-23 "name=\"period\" value=\"100\""]
+        3:36-41 error S1007: `property` has no attribute `speed`
+          fix: replace it with `name="speed" value="1"` [3:36-45 "name=\"speed\" value=\"1\""]
+        3:80-83 error S1007: `property` has no attribute `nam`
+          fix: replace `nam` with `name` [3:80-83 "name"]
+        3:90-98 error S1008: `property` needs the attribute `name`
+          help: add `name="..."` to it
+    "#]]
+    .assert_eq(&of(&text));
+    expect![[r#"
+        3:11-17 error S1007: `property` has no attribute `period`
+          help: write `<property name="period">100</property>`
+        3:36-41 error S1007: `property` has no attribute `speed`
+          help: write `<property name="speed">1</property>`
+        3:80-83 error S1007: `property` has no attribute `nam`
+          fix: replace `nam` with `name` [3:80-83 "name"]
+        3:90-98 error S1008: `property` needs the attribute `name`
+          help: add `name="..."` to it
+    "#]]
+    .assert_eq(&faults_of(&[&fleet_1_0(&text)], &[]));
+}

@@ -1,0 +1,20 @@
+//! What the checker finds in composites, and what it makes of those without faults.
+
+mod assemblies;
+mod classes;
+mod component_types;
+mod corpus;
+mod escapes;
+mod loop_classes;
+mod loops;
+mod mistakes;
+mod mutations;
+mod names;
+mod policies;
+mod report;
+mod support;
+mod tasks;
+mod unfolding;
+mod values;
+mod wiring;
+mod written;

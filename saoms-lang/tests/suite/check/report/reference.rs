@@ -1,0 +1,246 @@
+//! `docs/diagnostics.md`: every diagnostic with an example, generated from the table of codes and the files in
+//! `../examples/`, each of which has that one fault.
+//!
+//! `UPDATE_EXPECT=1 cargo test -p saoms-lang --test suite reference` writes the page anew.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use expect_test::expect_file;
+use saoms_core::plugin::{Search, open_named};
+use saoms_lang::check::{Options, Setting, check};
+use saoms_lang::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
+use saoms_lang::load::{MAX_SIZE, load, load_file, load_folder, load_named, read};
+use saoms_lang::model::Contribution;
+use saoms_lang::source::Sources;
+
+use crate::check::classes::registry;
+
+const HEAD: &str = "\
+# Diagnostics
+
+What `saoms check` and `saoms run` say about composites. Each code keeps its meaning for good. An error stops everything
+before anything starts; a warning stops nothing. Where a rule of the SCA Assembly specification says the same, it stands
+behind the code. `--format json` gives the same as data, with each suggestion as edits.
+
+| codes | about |
+| --- | --- |
+| `S00` | files |
+| `S01` | XML |
+| `S10` | the vocabulary of SCA |
+| `S20` | names, composite properties, services, references and wires |
+| `S30` | classes and properties |
+| `S40` | tasks and topics |
+| `S45` | the loops of components |
+| `S50` | the fleet as a whole, by rules of crates of components |
+
+The table of codes is `saoms-lang/src/diagnostic/codes.rs`. The examples are the files in `saoms-lang/tests/suite/check/examples`;
+the classes that they name are those of the tests beside them. The rules of `S50` are in `saoms-components/src/rules`, their examples in
+`tests/rules`. This page is generated from all of these.
+";
+
+#[test]
+fn every_diagnostic_is_documented_with_an_example() {
+    let mut page = HEAD.to_owned();
+    let mut faults = String::new();
+    for code in codes::ALL {
+        let severity = code.severity.name();
+        let rule = code.rule.map_or_else(String::new, |rule| format!(", {rule}"));
+        let _ = write!(page, "\n## {} {}\n\n*{severity}{rule}.* {}\n\n", code.id, code.name, code.meaning);
+        match example(code) {
+            Ok(example) => _ = write!(page, "```text\n{example}```\n"),
+            Err(fault) => faults += &fault,
+        }
+    }
+    assert!(faults.is_empty(), "{faults}");
+    // What follows is of crates of components, which the core does not know: `tests/suite/check/rules.rs` writes it.
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/diagnostics.md");
+    let present = fs::read_to_string(path).unwrap_or_default();
+    if let Some(rules) = present.find("\n## S5") {
+        page += &present[rules..];
+    }
+    expect_file!["../../../../../docs/diagnostics.md"].assert_eq(&page);
+}
+
+#[test]
+fn codes_and_names_are_unique_and_meanings_are_sentences() {
+    let mut ids: Vec<_> = codes::ALL.iter().map(|code| code.id).collect();
+    assert!(ids.is_sorted(), "the table is in the order of the codes");
+    ids.dedup();
+    assert_eq!(ids.len(), codes::ALL.len());
+    let mut names: Vec<_> = codes::ALL.iter().map(|code| code.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), codes::ALL.len());
+    for code in codes::ALL {
+        assert!(code.meaning.ends_with('.'), "{}", code.id);
+        assert!(code.id.len() == 5 && code.id.starts_with('S'), "{}", code.id);
+    }
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/check/examples")
+}
+
+/// What the example of a code gives, as people see it; an error when it has not that fault alone.
+fn example(code: &Code) -> Result<String, String> {
+    let (diagnostics, sources) = match code.id {
+        "S0001" | "S0002" | "S0003" | "S0004" | "S0005" | "S0006" | "S0007" => unreadable(code.id),
+        "S0008" => {
+            let components =
+                "<component name=\"Gps\"><implementation.java class=\"example.Gsp\"/></component>\n";
+            let text = crate::check::support::fleet(&components.repeat(1500));
+            checked(&[("fleet.composite".to_owned(), text)], 1, &[])
+        }
+        "S2035" => {
+            let level = |level: u32| {
+                let inner = format!("<implementation.composite name=\"t:hall{}\"/>", level - 1);
+                let one = |name| format!("    <component name=\"{name}\">{inner}</component>\n");
+                (
+                    format!("hall{level}.composite"),
+                    crate::check::support::part(&format!("hall{level}"), "", &(one("a") + &one("b"))),
+                )
+            };
+            let gps = "    <component name=\"Gps\"><implementation.java class=\"example.Gps\"/></component>";
+            let mut files: Vec<_> = (1..=20).rev().map(level).collect();
+            files.push(("hall0.composite".to_owned(), crate::check::support::part("hall0", "", gps)));
+            checked(&files, 1, &[])
+        }
+        id @ ("S2043" | "S2044" | "S2047" | "S2052" | "S2053" | "S2054" | "S2055" | "S2056" | "S2060") => {
+            from_folder(id)
+        }
+        id @ ("S2051" | "S2057" | "S2058" | "S2059") => contribution(id),
+        id => from_files(id),
+    };
+    let found: Vec<Diagnostic> = diagnostics.iter().filter(|one| one.code == code).cloned().collect();
+    let others = if code.id == "S0008" { 0 } else { diagnostics.len() - found.len() };
+    if found.is_empty() || others > 0 {
+        let all: String = diagnostics.iter().map(|one| crate::check::support::shown(one, &sources)).collect();
+        return Err(format!("the example of {} has to have this fault alone, and has\n{all}", code.id));
+    }
+    let says_what_to_do = !found[0].help.is_empty() || !found[0].suggestions.is_empty();
+    assert!(says_what_to_do || code.id < "S2", "{} does not say what to do", code.id);
+    Ok(human(&found[..1], &sources, false))
+}
+
+/// Checks `ID.composite`, and `ID.more.composite` with it, with the lines of `ID.set` as settings, where there are any. They can
+/// name what is in `ID.inner.composite`.
+fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
+    let read = |name: String| fs::read_to_string(folder().join(&name)).ok().map(|text| (name, text));
+    let names = [format!("{id}.composite"), format!("{id}.more.composite")];
+    let mut files: Vec<_> = names.into_iter().filter_map(read).collect();
+    let asked_for = files.len();
+    files.extend(read(format!("{id}.inner.composite")));
+    assert!(!files.is_empty(), "there is no example of {id}");
+    let settings = fs::read_to_string(folder().join(format!("{id}.set"))).unwrap_or_default();
+    let wiring = WIRING.contains(&id);
+    checked_with(&files, asked_for, &settings.lines().collect::<Vec<_>>(), wiring)
+}
+
+/// Checks `ID.composite` in its folder, where there are component types, with unknown classes taken as given.
+fn from_folder(id: &str) -> (Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let composite = load(&folder().join(format!("{id}.composite")), &mut sources, &mut diagnostics);
+    let mut fleet = Contribution::of(composite.into_iter().collect());
+    load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
+    let options = Options { assume_classes: true, ..Options::default() };
+    check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+    (diagnostics.into_sorted(), by_file_name(&sources))
+}
+
+/// Looks at the folder of a contribution.
+fn contribution(id: &str) -> (Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    load_folder(&folder().join(id), MAX_SIZE, &mut sources, &mut diagnostics);
+    (diagnostics.into_sorted(), by_file_name(&sources))
+}
+
+fn by_file_name(sources: &Sources) -> Sources {
+    let mut renamed = Sources::new();
+    for (_, file) in sources.iter() {
+        renamed.add(Path::new(file.path()).file_name().unwrap().to_string_lossy(), file.text().as_str());
+    }
+    renamed
+}
+
+/// The codes that the wiring report adds.
+const WIRING: &[&str] = &["S4010", "S4011", "S4012", "S4013", "S4014"];
+
+fn checked(files: &[(String, String)], asked_for: usize, settings: &[&str]) -> (Vec<Diagnostic>, Sources) {
+    checked_with(files, asked_for, settings, false)
+}
+
+fn checked_with(
+    files: &[(String, String)],
+    asked_for: usize,
+    settings: &[&str],
+    wiring: bool,
+) -> (Vec<Diagnostic>, Sources) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let files: Vec<_> = files.iter().map(|(name, text)| sources.add(name.as_str(), text.as_str())).collect();
+    let settings: Vec<_> = settings
+        .iter()
+        .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
+        .collect();
+    let load = |file| load_file(file, &sources, &mut diagnostics);
+    let mut composites: Vec<_> = files.into_iter().filter_map(load).collect();
+    let others = composites.split_off(asked_for.min(composites.len()));
+    let mut fleet = Contribution::with(composites, others);
+    let mut registry = registry();
+    open_named(&mut fleet, &Search::default(), &sources, &mut registry);
+    let options = Options { wiring, ..Options::with_settings(settings) };
+    check(&fleet, &registry, &options, &sources, &mut diagnostics);
+    (diagnostics.into_sorted(), sources)
+}
+
+/// Reads a file that cannot be read.
+fn unreadable(id: &str) -> (Vec<Diagnostic>, Sources) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fleet.composite");
+    let mut limit = MAX_SIZE;
+    let path = match id {
+        "S0001" => {
+            fs::write(path, " ").unwrap();
+            folder.path().join("flet.composite")
+        }
+        "S0002" => {
+            fs::write(path, " ").unwrap();
+            folder.path().to_owned()
+        }
+        // There is no memory at address 0.
+        "S0003" => PathBuf::from("/proc/self/mem"),
+        "S0004" => {
+            limit = 100;
+            fs::write(&path, "x".repeat(101)).unwrap();
+            path
+        }
+        "S0005" => {
+            fs::write(&path, "\n").unwrap();
+            path
+        }
+        "S0006" => {
+            fs::write(&path, b"\x7fELF\x02\x01\x01\0\0\0\0\0").unwrap();
+            path
+        }
+        _ => {
+            fs::write(&path, b"<composite name=\"Caf\xe9\"/>").unwrap();
+            path
+        }
+    };
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    assert!(read(&path, limit, &mut sources, &mut diagnostics).is_none());
+    // The page must not depend on where the folder for temporary files is.
+    let here = folder.path().display().to_string();
+    let shown = |text: &str| text.replace(&format!("{here}/"), "").replace(&here, "fleets");
+    let mut renamed = Sources::new();
+    for (_, file) in sources.iter() {
+        renamed.add(shown(file.path()), file.text().as_str());
+    }
+    let mut diagnostics = diagnostics.into_sorted();
+    for one in &mut diagnostics {
+        one.message = shown(&one.message);
+        one.help = one.help.iter().map(|help| shown(help)).collect();
+    }
+    (diagnostics, renamed)
+}

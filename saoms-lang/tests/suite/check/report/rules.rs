@@ -1,0 +1,128 @@
+//! `docs/rules.md`: what is held to which rule, generated from the table of codes and from the rules of SCA Assembly 1.1.
+//!
+//! `UPDATE_EXPECT=1 cargo test -p saoms-lang --test suite rules` writes the page anew.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use expect_test::expect_file;
+use saoms_lang::diagnostic::codes;
+
+use crate::check::corpus::{MESSAGES, MORE_MESSAGES};
+
+/// A rule of SCA Assembly 1.1, in our own words, and what holds it here.
+struct Rule {
+    id: &'static str,
+    meaning: &'static str,
+    codes: Vec<&'static str>,
+    note: &'static str,
+}
+
+const HEAD: &str = "\
+# Rules
+
+What composites are held to. Each code is described, with an example, in [diagnostics.md](diagnostics.md). The test of a code is its
+example, which has to have that one fault, and loses it when the rule is gone: the file of its name in `saoms-lang/tests/suite/check/examples`, or
+in `tests/rules` for `S50`. Those of `S0001` to `S0008` and `S2035` are no files that could be kept: `saoms-lang/tests/suite/check/report/reference.rs`
+makes them.
+
+## Codes
+
+| code | name | meaning | rules of SCA Assembly 1.1 | messages of Apache Tuscany |
+| --- | --- | --- | --- | --- |
+";
+
+const SECOND: &str = "
+## Rules of SCA Assembly 1.1
+
+Where no code stands, the last column says why. SCA 1.0 has no numbers; where it allows what 1.1 forbids, the diagnostic is a warning there. So
+is what is wrong with the services and references of a composite of SCA 1.0 that runs by itself: nothing in the program takes them.
+
+The XML schemas of both versions (ASM13001) are followed, but for what other programs live with as well:
+
+- the order of elements: an implementation may stand behind services and references, an interface behind bindings, an include behind components;
+- elements of other namespaces stand anywhere;
+- a composite's reference of 1.1 without `multiplicity`, which the schema requires, takes one target (`1..1`), as in 1.0;
+- what cannot be a name of XML is told as a warning (S1011) where it starts wrong, or has a colon or a blank in it; other characters are let pass in names of parts, and names of classes and interfaces
+  are those of their languages;
+- of bindings and implementations that are not described by the core, such as those for JMS, EJB or BPEL, attributes that are required or have a fixed set of values are checked, and nothing else.
+
+`--assume-classes` is for composites of other programs, which may come with more than can be seen. It makes warnings of composites (S2030, S2031),
+files of values (S0001) and values of composite properties (S2025) that are not there.
+
+| rule | meaning | codes | remark |
+| --- | --- | --- | --- |
+";
+
+#[test]
+fn every_rule_has_its_code_or_says_why_not() {
+    let rules = rules();
+    let mut page = HEAD.to_owned();
+    for code in codes::ALL {
+        let mut rules: BTreeSet<&str> =
+            rules.iter().filter(|rule| rule.codes.contains(&code.id)).map(|rule| rule.id).collect();
+        rules.extend(code.rule);
+        let messages = MESSAGES
+            .iter()
+            .map(|(message, id, _)| (message, id))
+            .chain(MORE_MESSAGES.iter().map(|(message, id)| (message, id)));
+        let messages: BTreeSet<&str> =
+            messages.filter(|(_, id)| **id == code.id).map(|(message, _)| *message).collect();
+        let join = |all: BTreeSet<&str>| all.into_iter().collect::<Vec<_>>().join(", ");
+        let _ = writeln!(
+            page,
+            "| {} | {} | {} | {} | {} |",
+            code.id,
+            code.name,
+            code.meaning,
+            join(rules),
+            join(messages)
+        );
+    }
+    // Those of rules over whole fleets are of crates of components, which the core does not know: `tests/suite/check/rules.rs` writes them.
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/rules.md");
+    let present = fs::read_to_string(path).unwrap_or_default();
+    for row in present.lines().filter(|line| line.starts_with("| S5")) {
+        let _ = writeln!(page, "{row}");
+    }
+    page += SECOND;
+    for rule in &rules {
+        for code in &rule.codes {
+            assert!(codes::ALL.iter().any(|known| known.id == *code), "{code} of {}", rule.id);
+        }
+        assert!(!rule.codes.is_empty() || !rule.note.is_empty(), "{} has neither code nor reason", rule.id);
+        let _ = writeln!(
+            page,
+            "| {} | {} | {} | {} |",
+            rule.id,
+            rule.meaning.replace('|', "\\|"),
+            rule.codes.join(", "),
+            rule.note
+        );
+    }
+    expect_file!["../../../../../docs/rules.md"].assert_eq(&page);
+}
+
+#[test]
+fn rules_are_those_of_the_table_once_each() {
+    assert!(rules().iter().map(|rule| rule.id).is_sorted_by(|one, next| one < next));
+    for code in codes::ALL {
+        assert!(
+            code.rule.is_none_or(|id| rules().iter().any(|rule| rule.id == id)),
+            "{} names an unknown rule",
+            code.id
+        );
+    }
+}
+
+/// The rules in `rules.tsv`: number, meaning in our own words, codes, remark.
+fn rules() -> Vec<Rule> {
+    let rule = |line: &'static str| {
+        let columns: Vec<&str> = line.split('\t').collect();
+        let codes = columns[2].split(", ").filter(|code| !code.is_empty()).collect();
+        Rule { id: columns[0], meaning: columns[1], codes, note: columns[3] }
+    };
+    include_str!("rules.tsv").lines().skip(1).map(rule).collect()
+}

@@ -1,0 +1,219 @@
+//! Task properties.
+
+use expect_test::expect;
+
+use crate::check::support::faults;
+
+fn robot(inside: &str) -> String {
+    faults(&format!(
+        r#"<component name="R"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">100</property>
+{inside}</component>"#
+    ))
+}
+
+#[test]
+fn topic_renames() {
+    let rename = |text: &str| robot(&format!(r#"<property name="topicRename">{text}</property>"#));
+    for right in ["POSTOPIC,pos", " POSTOPIC , pos :: ORDERS , o ", "POSTOPIC::pos", " "] {
+        assert_eq!(rename(right), "", "{right}");
+    }
+    let all: String = [
+        "POSTOPIC",
+        "POSTOPIC,",
+        "POSTOPIC,a,b",
+        "POSTOPIC,a::ORDERS",
+        "POSTOPIC,a::",
+        "A::B::C",
+        ",",
+        "POSTOPIC,a::POSTOPIC,b",
+        "POSTOPIC,ORDERS::ORDERS,c",
+        "POSTOPIC,POSTOPIC",
+        "POSTOPIC,a:ORDERS,b",
+        "POSTOPC, pos001::POS002, pos002",
+        "&#80;OSTOPIC,a::POSTOPIC,b",
+    ]
+    .map(|text| format!("{text}\n{}", rename(text)))
+    .concat();
+    expect![[r#"
+        POSTOPIC
+        3:30-38 error S4002: bad `topicRename`: a pair with one name, `POSTOPIC`
+          help: write `OLD,new` for each topic, and `::` between two of them
+        POSTOPIC,
+        3:30-39 error S4002: bad `topicRename`: a pair with one name, `POSTOPIC,`
+          help: write `OLD,new` for each topic, and `::` between two of them
+        POSTOPIC,a,b
+        3:30-42 error S4002: bad `topicRename`: 3 names where a pair has two
+          help: write `OLD,new` for each topic, and `::` between two of them
+        POSTOPIC,a::ORDERS
+        3:42-48 error S4002: bad `topicRename`: a pair with one name, `ORDERS`
+          help: write `OLD,new` for each topic, and `::` between two of them
+        POSTOPIC,a::
+        3:42-42 error S4002: bad `topicRename`: a pair without names
+          help: write `OLD,new` for each topic, and `::` between two of them
+        A::B::C
+        3:30-37 error S4002: bad `topicRename`: 3 names where a pair has two
+          help: write `OLD,new` for each topic, and `::` between two of them
+        ,
+        3:30-31 error S4002: bad `topicRename`: a pair without names
+          help: write `OLD,new` for each topic, and `::` between two of them
+        POSTOPIC,a::POSTOPIC,b
+        3:42-50 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
+          3:30-38 first here
+        POSTOPIC,ORDERS::ORDERS,c
+        3:39-45 error S4002: bad `topicRename`: a chain: `POSTOPIC` is renamed to `ORDERS`, and `ORDERS` to `c`
+          3:47-53 renamed again here
+        POSTOPIC,POSTOPIC
+        3:39-47 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed to its own name
+          help: write `OLD,new` for each topic, and `::` between two of them
+        POSTOPIC,a:ORDERS,b
+        3:30-49 error S4002: bad `topicRename`: 3 names where a pair has two
+          help: write `OLD,new` for each topic, and `::` between two of them
+          fix: replace `POSTOPIC,a:ORDERS,b` with `POSTOPIC,a::ORDERS,b` [3:30-49 "POSTOPIC,a::ORDERS,b"]
+        POSTOPC, pos001::POS002, pos002
+        3:30-37 warning S4003: class `example.Robot001` uses no topic `POSTOPC`: nothing is renamed
+          fix: replace `POSTOPC` with `POSTOPIC` [3:30-37 "POSTOPIC"]
+        3:47-53 warning S4003: class `example.Robot001` uses no topic `POS002`: nothing is renamed
+          help: topics that keep their names are `ORDERS` and `POSTOPIC`
+        &#80;OSTOPIC,a::POSTOPIC,b
+        3:46-54 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
+          3:30-42 first here
+    "#]].assert_eq(&all);
+}
+
+#[test]
+fn addresses_of_message_brokers() {
+    let url = |text: &str| robot(&format!(r#"<property name="url">{text}</property>"#));
+    for right in ["localhost:61616", "127.0.0.1:1", "[::1]:65535"] {
+        assert_eq!(url(right), "", "{right}");
+    }
+    for elsewhere in ["10.0.0.1:1", "[fe80::1]:65535", "broker-1.example.org:80", "localhost.example.org:1"] {
+        let found = url(elsewhere);
+        assert!(found.starts_with("3:22") && found.contains("warning S3003"), "{elsewhere}: {found}");
+        assert!(!found.contains("error"), "{elsewhere}: {found}");
+    }
+    let all: String = [
+        "localhost",
+        "localhost:",
+        ":61616",
+        "localhost:0",
+        "localhost:65536",
+        "localhost:6161x",
+        "tcp://localhost:61616",
+        "::1:61616",
+        "local host:1",
+        "[::g]:1",
+        "localhost:+1",
+    ]
+    .map(|text| format!("{text}\n{}", url(text)))
+    .concat();
+    expect![[r#"
+        localhost
+        3:22-31 error S4005: `localhost` is no address of a message broker: there is no port
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        localhost:
+        3:31-32 error S4005: `localhost:` is no address of a message broker: there is no port
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        :61616
+        3:22-28 error S4005: `:61616` is no address of a message broker: there is no host
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        localhost:0
+        3:32-33 error S4005: `localhost:0` is no address of a message broker: port 0 is outside 1 to 65535
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        localhost:65536
+        3:32-37 error S4005: `localhost:65536` is no address of a message broker: port 65536 is outside 1 to 65535
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        localhost:6161x
+        3:32-37 error S4005: `localhost:6161x` is no address of a message broker: `6161x` is no port
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        tcp://localhost:61616
+        3:22-28 error S4005: `tcp://localhost:61616` is no address of a message broker: `tcp://` is more than host and port
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          fix: remove it [3:22-28 ""]
+        ::1:61616
+        3:22-25 error S4005: `::1:61616` is no address of a message broker: `::1` is no host: an IPv6 address stands in brackets
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          fix: replace it with `[::1]` [3:22-25 "[::1]"]
+        local host:1
+        3:27-28 error S4005: `local host:1` is no address of a message broker: ` ` cannot be in the name of a host
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        [::g]:1
+        3:22-27 error S4005: `[::g]:1` is no address of a message broker: `[::g]` is no IPv6 address
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        localhost:+1
+        3:32-34 error S4005: `localhost:+1` is no address of a message broker: `+1` is no port
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+    "#]].assert_eq(&all);
+}
+
+#[test]
+fn faults_of_other_properties_hide_none_of_these() {
+    expect![[r#"
+        3:24-28 error S3007: property `delay`: `soon` is not a duration: expected a duration from 0ms to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `delay`: From the start to the first due execution; the default is `0ms`
+        4:22-31 error S4005: `localhost` is no address of a message broker: there is no port
+          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+        4:66-71 error S4004: `useJMS` is false, and component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
+          help: set `useJMS` to true: without it a component cannot publish or subscribe
+        5:30-42 error S4002: bad `topicRename`: 3 names where a pair has two
+          help: write `OLD,new` for each topic, and `::` between two of them
+    "#]]
+    .assert_eq(&robot(
+        r#"<property name="delay">soon</property>
+<property name="url">localhost</property><property name="useJMS">false</property>
+<property name="topicRename">POSTOPIC,a,b</property>"#,
+    ));
+    // Nor does a topic have its old name then.
+    let shouter = r#"<component name="S"><implementation.java class="example.Shouter"/><property name="ID">S</property><property name="period">1</property></component>"#;
+    expect![[r#"
+        3:76-80 error S3007: property `delay`: `soon` is not a duration: expected a duration from 0ms to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `delay`: From the start to the first due execution; the default is `0ms`
+    "#]]
+    .assert_eq(&robot(&format!(
+        r#"<property name="topicRename">POSTOPIC,pos</property><property name="delay">soon</property></component>{}"#,
+        shouter.trim_end_matches("</component>")
+    )));
+}
+
+#[test]
+fn settings_that_do_not_go_together() {
+    expect![[r#"
+        3:25-30 error S4004: `useJMS` is false, and component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
+          help: set `useJMS` to true: without it a component cannot publish or subscribe
+    "#]].assert_eq(&robot(r#"<property name="useJMS">false</property>"#));
+    expect![[r#"
+        3:27-32 warning S4007: the deadline of 150ms is behind the period of 100ms: the next execution is due before it
+          2:124-127 the period
+          help: a deadline is at most the period
+    "#]].assert_eq(&robot(r#"<property name="deadline">150ms</property>"#));
+    expect![[r#"
+        3:31-32 warning S4008: `restartLimit` has no effect: the component is never restarted
+          help: set `restart` to `onFailure`
+        4:33-35 warning S4008: `restartBackoff` has no effect: the component is never restarted
+          help: set `restart` to `onFailure`
+    "#]]
+    .assert_eq(&robot(
+        r#"<property name="restartLimit">3</property>
+<property name="restartBackoff">1s</property>"#,
+    ));
+    expect![[r#"
+        3:23-25 warning S4006: `user` is given without `password`
+          help: give both, or neither
+    "#]]
+    .assert_eq(&robot(r#"<property name="user">me</property>"#));
+    expect![[r#"
+        3:27-33 warning S4006: `password` is given without `user`
+          help: give both, or neither
+    "#]]
+    .assert_eq(&robot(
+        r#"<property name="password">secret</property><property name="url">localhost:1</property>"#,
+    ));
+    expect![[r#"
+        3:23-25 warning S4006: `user` and `password` have no effect: there is no `url` of a message broker
+          help: give the `url` of the broker, or leave them out
+    "#]]
+    .assert_eq(&robot(r#"<property name="user">me</property><property name="password">secret</property>"#));
+    assert_eq!(
+        robot(r#"<property name="restart">onFailure</property><property name="restartLimit">3</property>"#),
+        ""
+    );
+}

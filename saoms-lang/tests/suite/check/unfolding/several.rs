@@ -1,0 +1,177 @@
+//! Composites that are there several times, or are given what they need from outside.
+
+use std::fs;
+
+use expect_test::expect;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::{MAX_SIZE, load_file, load_named, read};
+use saoms_lang::model::Contribution;
+use saoms_lang::source::Sources;
+
+use crate::check::classes::registry;
+use crate::check::support::{outcome, part, shown};
+use crate::check::unfolding::fleets::fleet;
+
+/// Writes files into a folder, checks the first of them, and gives what is wrong without that folder's name.
+fn found(files: &[(&str, &str)]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = read(&folder.path().join(files[0].0), MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
+    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    let mut fleet = Contribution::of(vec![composite]);
+    load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
+    let assembly = check(&fleet, &registry(), &Options::default(), &sources, &mut diagnostics);
+    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+    let numbers = assembly.into_iter().flat_map(|assembly| assembly.components).map(|one| {
+        let number = one.values.iter().find(|(name, _)| name == "number").map(|(_, value)| value.clone());
+        format!("{} {number:?}\n", one.path)
+    });
+    found.replace(&format!("{}/", folder.path().display()), "") + &numbers.collect::<String>()
+}
+
+/// What a component gives the composite that it implements counts for expressions as it does for sources, however it is given.
+#[test]
+fn expressions_inside_of_composites_take_what_sources_lead_to() {
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="count">7</property><property name="open">false</property>
+<component name="G${index}" saoms:count="count" saoms:if="open"><implementation.java class="example.Gps"/></component>"#,
+    );
+    let outer = |given: &str| {
+        fleet(&format!(
+            r#"<property name="halls"><hall id="a" xmlns=""><count>1</count><open>true</open></hall><hall id="b" xmlns=""><count>2</count><open>true</open></hall></property>
+<component name="Hall"><implementation.composite name="t:hall"/>{given}</component>"#
+        ))
+    };
+    let both = |count: &str, open: &str| {
+        let given =
+            format!(r#"<property name="count" source="{count}"/><property name="open" source="{open}"/>"#);
+        outcome(&[&outer(&given), &hall], &[])
+    };
+    expect![[r#"
+        Hall/G1 (example.Gps) other->
+        Hall/G2 (example.Gps) other->
+    "#]]
+    .assert_eq(&both("$halls/hall[@id='b']/count", "$halls/hall[1]/open"));
+    expect![[r#"
+        3:96-114 error S2023: `count($halls/hall)` is no path from a property
+          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+    "#]]
+    .assert_eq(&both("count($halls/hall)", "$halls/hall[count=2]/open"));
+    expect![[r#"
+        3:103-116 error S2023: no part here has `c` as its `id`: its values are `a` and `b`
+        3:156-160 error S2024: the composite has no property `hals`
+          fix: replace `hals` with `halls` [3:156-160 "halls"]
+    "#]]
+    .assert_eq(&both("$halls/hall[@id='c']/count", "$hals"));
+    expect![[r#"
+        hall:3:42-47 error S2045: the property `count` has no simple value
+          help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
+        hall:3:59-63 error S2045: the property `open` has no simple value (in `G1`, index 1)
+          help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
+    "#]]
+    .assert_eq(&both("$halls", "$halls/hall/open"));
+    expect![[r#"
+        2:17-22 warning S2026: the property `halls` of the composite is used by no component
+          help: a component takes its value with `source="$halls"`
+        hall:3:42-47 error S2045: the property `count` has no simple value
+          help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
+    "#]]
+    .assert_eq(&outcome(
+        &[
+            &outer(
+                r#"<property name="count"><a xmlns="">1</a></property><property name="open">true</property>"#,
+            ),
+            &hall,
+        ],
+        &[],
+    ));
+    // Through a composite in between, and with the numbers of replicas.
+    let wing = part(
+        "wing",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="halls"/>
+<component name="Hall${index}" saoms:count="2"><implementation.composite name="t:hall"/><property name="count" source="$halls/hall[${index}]/count"/><property name="open">true</property></component>"#,
+    );
+    let through = outer("").replace("t:hall\"/>", "t:wing\"/><property name=\"halls\" source=\"$halls\"/>");
+    expect![[r#"
+        Hall/Hall1/G1 (example.Gps) other->
+        Hall/Hall2/G1 (example.Gps) other->
+        Hall/Hall2/G2 (example.Gps) other->
+    "#]]
+    .assert_eq(&outcome(&[&through, &wing, &hall], &[]));
+}
+
+/// A composite that is there several times has one table: each of its lines may be about a replica in one of them.
+#[test]
+fn lines_of_tables_are_about_a_replica_in_any_of_the_places_of_a_composite() {
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="first">1</property>
+<component name="R${index}" saoms:count="2" saoms:from="first" saoms:overrides="table.csv"><implementation.java class="example.Robot"/>
+<property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property></component>"#,
+    );
+    let halls = fleet(
+        r#"<component name="A"><implementation.composite name="t:hall"/></component>
+<component name="B"><implementation.composite name="t:hall"/><property name="first">11</property></component>"#,
+    );
+    let with =
+        |table: &str| found(&[("a.composite", &halls), ("hall.composite", &hall), ("table.csv", table)]);
+    expect![[r#"
+        table.csv:4:1-2 warning S2047: there is no replica `7`
+          help: the indices go from 1 to 2
+        table.csv:5:1-2 error S2047: there is no replica `x`
+          help: the indices go from 1 to 2
+    "#]]
+    .assert_eq(&with("index,number\n1,5\n12,6\n7,7\nx,8\n"));
+    expect![[r#"
+        A/R1 Some(Text("5"))
+        A/R2 Some(Text("2"))
+        B/R11 Some(Text("11"))
+        B/R12 Some(Text("6"))
+    "#]]
+    .assert_eq(&with("name,number\nR1,5\nR12,6\n"));
+}
+
+/// What is wrong outside of a composite is told there, and not again of each replica inside that has it from there.
+#[test]
+fn what_replicas_have_from_outside_is_told_once() {
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<reference name="gps" promote="R*/gps" multiplicity="0..1"/>
+<component name="R${index}" saoms:count="3"><implementation.java class="example.Robot"/>
+<property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property></component>"#,
+    );
+    let halls = fleet(
+        r#"<component name="A"><implementation.composite name="t:hall"/><reference name="gps" target="Gsp"/></component>
+<component name="Gps"><implementation.java class="example.Gps"/></component>"#,
+    );
+    expect![[r#"
+        2:92-95 error S2011: there is no component `Gsp`
+          fix: replace `Gsp` with `Gps` [2:92-95 "Gps"]
+    "#]]
+    .assert_eq(&outcome(&[&halls, &hall], &[]));
+}
+
+/// Settings are for the outermost composite: those of others have their values from the components that they implement.
+#[test]
+fn a_setting_of_a_property_inside_is_told_with_who_gives_it() {
+    let hall = part(
+        "hall",
+        "",
+        r#"<property name="count">7</property>
+<component name="R"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1</property><property name="number" source="$count"/></component>"#,
+    );
+    let outer = fleet(r#"<component name="Hall"><implementation.composite name="t:hall"/></component>"#);
+    expect![[r#"
+        --set:1:1-6 error S2029: the outermost composite has no property `count`
+          help: the composite `hall` inside has one, and has its value from component `Hall`: let that take it from a property of the outermost composite, `<property name="count" source="$..."/>`, and set this one
+    "#]].assert_eq(&outcome(&[&outer, &hall], &["count=3"]));
+}

@@ -1,0 +1,61 @@
+//! Values from the environment.
+
+use expect_test::expect;
+use saoms_lang::check::{Options, Setting, Variable, check};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::load_file;
+use saoms_lang::model::Contribution;
+use saoms_lang::source::Sources;
+
+use crate::check::classes::registry;
+use crate::check::support::{part, shown};
+
+#[test]
+fn values_come_from_the_environment_unless_somebody_gives_one() {
+    let text = part(
+        "fleet",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="robots" saoms:env="ROBOTS">1</property><property name="speed" saoms:env="SPEED">1</property>
+<component name="R${index}" saoms:count="robots"><implementation.java class="example.Robot"/><property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property>
+<property name="speed" source="$speed"/></component>"#,
+    );
+    let found = |environment: &[(&str, &str)], settings: &[&str]| {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let file = sources.add("fleet", text.as_str());
+        let settings = settings
+            .iter()
+            .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
+            .collect();
+        let fleet = Contribution::of(load_file(file, &sources, &mut diagnostics).into_iter().collect());
+        let get =
+            |name: &str| environment.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into());
+        let variables = Variable::read(&fleet, get, &mut sources, &mut diagnostics);
+        let options = Options { settings, variables, ..Options::default() };
+        let assembly = check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+        let count = assembly.map(|assembly| assembly.components.len());
+        let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+        format!("{count:?}\n{found}")
+    };
+    expect![[r#"
+        Some(1)
+    "#]]
+    .assert_eq(&found(&[], &[]));
+    expect![[r#"
+        Some(3)
+    "#]]
+    .assert_eq(&found(&[("ROBOTS", " 3 ")], &[]));
+    expect![[r#"
+        Some(2)
+    "#]]
+    .assert_eq(&found(&[("ROBOTS", "3")], &["robots=2"]));
+    expect![[r#"
+        None
+        3:42-48 error S2045: here is the text `many`, and a whole number is expected
+          environment:1:8-12 `robots` is this
+          help: `docs/fleets.md` says what expressions are
+        environment:1:7-8 error S3008: property `speed`: `9` is out of range: expected a number from 0.0 to 2.5 [m/s] (in `R1`, index 1)
+          4:32-38 used here as `speed`
+          help: `speed`: How fast it drives; the default is `1.0`
+    "#]]
+    .assert_eq(&found(&[("SPEED", "9"), ("ROBOTS", "many")], &[]));
+}

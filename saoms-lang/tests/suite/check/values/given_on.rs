@@ -1,0 +1,216 @@
+//! What composites give on to those inside of them, as expressions and components there take it.
+
+use expect_test::expect;
+use saoms_lang::check::{Options, Variable, check};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::load_file;
+use saoms_lang::model::Contribution;
+use saoms_lang::source::Sources;
+
+use crate::check::classes::registry;
+use crate::check::support::{outcome, part, shown};
+use crate::check::unfolding::fleets::fleet;
+
+/// A composite whose expression and whose robot take the same property.
+fn hall(property: &str) -> String {
+    part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\" xmlns:x=\"urn:x\"",
+        &format!(
+            r#"{property}
+<component name="G${{index}}" saoms:count="n"><implementation.java class="example.Gps"/></component>
+<component name="R"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1</property><property name="number" source="$n"/></component>"#
+        ),
+    )
+}
+
+/// What that comes to, inside of a composite with these properties, where the component says this.
+fn taken(property: &str, outside: &str, given: &str) -> String {
+    let outer = part(
+        "outer",
+        "xmlns:x=\"urn:x\"",
+        &format!(
+            "{outside}<component name=\"H\"><implementation.composite name=\"t:hall\"/>{given}</component>"
+        ),
+    );
+    outcome(&[&outer, &hall(property)], &[])
+}
+
+#[test]
+fn expressions_take_what_is_in_an_element() {
+    let one = r#"<property name="e" element="x:e"><x:e>2</x:e></property>"#;
+    let two = r#"<property name="e" element="x:e" many="true"><x:e>1</x:e><x:e>2</x:e></property>"#;
+    let ways = [
+        ("", r#"<property name="n" element="x:n"><x:n>2</x:n></property>"#),
+        (one, r#"<property name="n" source="$e"/>"#),
+        (two, r#"<property name="n" source="$e[2]"/>"#),
+    ];
+    for (outside, given) in ways {
+        expect![[r#"
+            H/G1 (example.Gps) other->
+            H/G2 (example.Gps) other->
+            H/R (example.Robot) ID=Text("R") number=Text("2") gps->
+        "#]]
+        .assert_eq(&taken("<property name=\"n\"/>", outside, given));
+    }
+    expect![[r#"
+        H/G1 (example.Gps) other->
+        H/G2 (example.Gps) other->
+        H/R (example.Robot) ID=Text("R") number=Text("2") gps->
+    "#]]
+    .assert_eq(&taken("<property name=\"n\" element=\"x:n\"><x:n>2</x:n></property>", "", ""));
+}
+
+/// A component that names a property with nothing in it gives nothing.
+#[test]
+fn a_property_that_has_to_be_given_a_value_is_not_given_one_by_a_source_without() {
+    let must = "<property name=\"n\" mustSupply=\"true\"/>";
+    expect![[r#"
+        2:115-123 error S2025: component `H` has to give the property `n` of its composite a value: its source has none
+          hall:2:17-18 declared here, without a value
+          2:17-24 declared here, without a value
+          help: write it in the file, or give `--set nothing=...`
+    "#]]
+    .assert_eq(&taken(must, "<property name=\"nothing\"/>", "<property name=\"n\" source=\"$nothing\"/>"));
+    expect![[r#"
+        2:78-79 error S2025: component `H` has to give the property `n` of its composite a value
+          hall:2:17-18 declared here, without a value
+          help: write the value inside
+    "#]]
+    .assert_eq(&taken(must, "", "<property name=\"n\"/>"));
+    // Where nobody takes it, too.
+    let unused = part(
+        "hall",
+        "",
+        "<property name=\"n\" mustSupply=\"true\"/><component name=\"G\"><implementation.java class=\"example.Gps\"/></component>",
+    );
+    let outer = fleet(
+        "<component name=\"H\"><implementation.composite name=\"t:hall\"/><property name=\"n\"/></component>",
+    );
+    expect![[r#"
+        2:78-79 error S2025: component `H` has to give the property `n` of its composite a value
+          hall:2:17-18 declared here, without a value
+          help: write the value inside
+        hall:2:17-18 warning S2026: the property `n` of the composite is used by no component
+          help: a component takes its value with `source="$n"`
+    "#]]
+    .assert_eq(&outcome(&[&outer, &unused], &[]));
+}
+
+/// The environment comes behind what a component says, for expressions and components alike.
+#[test]
+fn a_variable_counts_where_a_component_gives_nothing() {
+    let hall = hall("<property name=\"n\" saoms:env=\"N\">4</property>");
+    let of = |given: &str, value: &str| {
+        let outer = fleet(&format!(
+            "<property name=\"nothing\"/><component name=\"H\"><implementation.composite name=\"t:hall\"/>{given}</component>"
+        ));
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let [outer, hall] = [("outer", &outer), ("hall", &hall)].map(|(name, text)| {
+            load_file(sources.add(name, text.as_str()), &sources, &mut diagnostics).unwrap()
+        });
+        let contribution = Contribution::with(vec![outer], vec![hall]);
+        let get = |_: &str| Some(value.into());
+        let variables = Variable::read(&contribution, get, &mut sources, &mut diagnostics);
+        let options = Options { variables, ..Options::default() };
+        let assembly = check(&contribution, &registry(), &options, &sources, &mut diagnostics);
+        let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+        let components = assembly.into_iter().flat_map(|assembly| assembly.components);
+        found + &components.map(|one| format!("{} {:?}\n", one.path, one.values)).collect::<String>()
+    };
+    expect![[r#"
+        H/G1 []
+        H/G2 []
+        H/R [("ID", Text("R")), ("number", Text("2"))]
+    "#]]
+    .assert_eq(&of("<property name=\"n\" source=\"$nothing\"/>", "2"));
+    expect![[r#"
+        2:17-24 warning S2026: the property `nothing` of the composite is used by no component
+          help: a component takes its value with `source="$nothing"`
+        H/G1 []
+        H/G2 []
+        H/G3 []
+        H/R [("ID", Text("R")), ("number", Text("3"))]
+    "#]]
+    .assert_eq(&of("<property name=\"n\">3</property>", "2"));
+    expect![[r#"
+        2:17-24 warning S2026: the property `nothing` of the composite is used by no component
+          help: a component takes its value with `source="$nothing"`
+        hall:3:42-43 error S2045: here is the text `x`, and a whole number is expected
+          environment:1:3-4 `n` is this
+          help: `docs/fleets.md` says what expressions are
+        environment:1:3-4 error S3007: property `number`: `x` is not a whole number: expected a whole number from 1 to 99
+          hall:4:165-167 used here as `number`
+          help: `number`: The number of the robot
+    "#]].assert_eq(&of("<property name=\"n\"/>", "x"));
+}
+
+/// The value of each composite is found once, and what is in it: this would take for ever otherwise.
+#[test]
+fn long_values_are_given_on_through_many_composites() {
+    const MANY: usize = 8_000;
+    let docks: String =
+        (1..=MANY).map(|place| format!("<dock id=\"d{place}\"><column>{place}</column></dock>")).collect();
+    let outer = part(
+        "outer",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        &format!(
+            r#"<property name="docks"><docks xmlns="">{docks}</docks></property>
+<component name="W${{index}}" saoms:count="{MANY}"><implementation.composite name="t:wing"/><property name="docks" source="$docks"/><property name="nr">${{index}}</property></component>"#
+        ),
+    );
+    let wing = part(
+        "wing",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="docks"/><property name="nr"/>
+<component name="H${index}" saoms:count="1"><implementation.composite name="t:hall"/><property name="column" source="$docks[1]/dock[@id='d${nr}']/column"/></component>"#,
+    );
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="column"/><component name="G" saoms:if="column == 1234"><implementation.java class="example.Gps"/></component>"#,
+    );
+    expect![[r#"
+        W1234/H1/G (example.Gps) other->
+    "#]]
+    .assert_eq(&outcome(&[&outer, &wing, &hall], &[]));
+}
+
+/// What a component gives has to be right although nothing inside takes it.
+#[test]
+fn what_nobody_takes_is_held_to_its_type() {
+    const SCHEMA: &str = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
+    let inner = part(
+        "inner",
+        SCHEMA,
+        r#"<property name="p" type="xsd:int"/><component name="G"><implementation.java class="example.Gps"/></component>"#,
+    );
+    let given = |value: &str| {
+        let outer = format!(
+            r#"<property name="n" type="xsd:string">1</property><component name="K"><implementation.composite name="t:inner"/>{value}</component>"#
+        );
+        outcome(&[&part("outer", SCHEMA, &outer), &inner], &[])
+    };
+    expect![[r#"
+        2:17-18 warning S2026: the property `n` of the composite is used by no component
+          help: a component takes its value with `source="$n"`
+        2:131-134 error S2042: the property `p` is of the type `xsd:int`: found `abc`, expected a whole number of 32 bits
+          inner:2:26-33 the type
+          help: change the value, or the type
+        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
+          help: a component takes its value with `source="$p"`
+    "#]].assert_eq(&given(r#"<property name="p">abc</property>"#));
+    expect![[r#"
+        2:140-141 error S2024: the composite has no property `m`
+          help: its properties are `n`
+        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
+          help: a component takes its value with `source="$p"`
+    "#]]
+    .assert_eq(&given(r#"<property name="p" source="$m"/>"#));
+    expect![[r#"
+        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
+          help: a component takes its value with `source="$p"`
+        K/G (example.Gps) other->
+    "#]]
+    .assert_eq(&given(r#"<property name="p" source="$n"/>"#));
+}

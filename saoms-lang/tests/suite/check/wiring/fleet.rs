@@ -1,0 +1,196 @@
+//! The wiring of a fleet as a whole.
+
+use expect_test::expect;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::load_file;
+use saoms_lang::model::Contribution;
+use saoms_lang::source::Sources;
+
+use crate::check::classes::registry;
+use crate::check::support::{part, shown};
+
+fn found(inside: &str) -> String {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = sources.add("fleet.composite", part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside));
+    let fleet = Contribution::of(load_file(file, &sources, &mut diagnostics).into_iter().collect());
+    let options = Options { wiring: true, ..Options::default() };
+    check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+    diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect()
+}
+
+/// Components in a line each.
+fn fleet(components: &[(&str, &str, &str)]) -> String {
+    let one = |(name, class, properties): &(&str, &str, &str)| {
+        let period =
+            if properties.contains("period") { "" } else { "<property name=\"period\">100</property>" };
+        let count = if name.contains('$') { "saoms:count=\"400\"" } else { "" };
+        format!(
+            "<component name=\"{name}\" {count}><implementation.java class=\"example.{class}\"/><property name=\"ID\">{name}</property>{period}{properties}</component>\n"
+        )
+    };
+    components.iter().map(one).collect()
+}
+
+fn period(text: &str) -> String {
+    format!("<property name=\"period\">{text}</property>")
+}
+
+fn rename(text: &str) -> String {
+    format!("<property name=\"topicRename\">{text}</property>")
+}
+
+#[test]
+fn both_ends_of_a_topic_are_asked_for() {
+    expect![""].assert_eq(&found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", "")])));
+    expect![[r#"
+        2:18-19 note S4010: component `D` publishes topic `ORDERS`, which nobody reads
+          help: it is an event topic of `Order`
+        3:18-20 note S4010: component `T1` and another one publish topic `TRACKS`, which nobody reads
+          help: it is a state topic of `Position`
+    "#]]
+    .assert_eq(&found(&fleet(&[("D", "Dispatcher", ""), ("T1", "Tracker", ""), ("T2", "Tracker", "")])));
+    expect![[r#"
+        2:18-19 warning S4011: component `P` and 2 others read topic `ORDERS`, which nobody publishes
+          help: it is an event topic of `Order`
+    "#]]
+    .assert_eq(&found(&fleet(&[("P", "Picker", ""), ("Q", "Picker", ""), ("R", "Picker", "")])));
+}
+
+#[test]
+fn names_that_are_nearly_the_same_are_told_together() {
+    expect![[r#"
+        2:177-182 warning S4012: component `D` publishes topic `oders`, which nobody reads: there is `orders`
+          3:174-180 reads `orders`
+          fix: replace `oders` with `orders` [2:177-182 "orders"]
+    "#]]
+    .assert_eq(&found(&fleet(&[
+        ("D", "Dispatcher", &rename("ORDERS,oders")),
+        ("P", "Picker", &rename("ORDERS, orders")),
+        ("E", "Dispatcher", &rename("ORDERS,orders")),
+    ])));
+    expect![[r#"
+        2:18-19 warning S4012: component `D` publishes topic `ORDERS`, which nobody reads: there is `orders`
+          3:173-179 reads `orders`
+          help: `topicRename` gives topics other names
+    "#]]
+    .assert_eq(&found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", &rename("ORDERS,orders"))])));
+    expect![[r#"
+        4:174-179 note S4010: component `T` publishes topic `ORDER`, which nobody reads
+          help: it is a state topic of `Position`
+    "#]]
+    .assert_eq(&found(&fleet(&[
+        ("D", "Dispatcher", ""),
+        ("P", "Picker", ""),
+        ("T", "Tracker", &rename("TRACKS,ORDER")),
+    ])));
+}
+
+/// A class at both ends of a topic has both ends wherever a slip takes it.
+#[test]
+fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
+    let number = |number: &str| format!("<property name=\"number\">{number}</property>");
+    let found = |new: &str| {
+        let first = format!("{}{}", number("1"), rename(&format!("POSTOPIC,{new}")));
+        let (second, third) = (number("2"), number("3"));
+        let all = [
+            ("A", "Robot", &*first),
+            ("B", "Robot", &*second),
+            ("C", "Robot", &*third),
+            ("D", "Dispatcher", ""),
+        ];
+        found(&fleet(&all))
+    };
+    expect![[r#"
+        2:210-219 warning S4012: component `A` hears nobody but itself on topic `postopics`: others use `POSTOPIC`
+          3:18-19 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]]
+    .assert_eq(&found("postopics"));
+    expect![""].assert_eq(&found("elsewhere"));
+}
+
+/// Who uses a slip of the name that others have without renaming, however many they are on either side.
+#[test]
+fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
+    let found = |new: &[&str]| {
+        let robot = |(number, new): (usize, &&str)| {
+            let new = if new.is_empty() { String::new() } else { rename(&format!("POSTOPIC,{new}")) };
+            (format!("R{number}"), format!("<property name=\"number\">{}</property>{new}", number + 1))
+        };
+        let robots: Vec<_> = new.iter().enumerate().map(robot).collect();
+        let mut all: Vec<_> =
+            robots.iter().map(|(name, properties)| (name.as_str(), "Robot", properties.as_str())).collect();
+        all.push(("D", "Dispatcher", ""));
+        found(&fleet(&all))
+    };
+    expect![[r#"
+        2:212-219 warning S4012: component `R0` hears nobody but itself on topic `POSTOPC`: others use `POSTOPIC`
+          3:18-20 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]].assert_eq(&found(&["POSTOPC", ""]));
+    expect![""].assert_eq(&found(&["HALL_1", "HALL_1", "HALL_2"]));
+    expect![""].assert_eq(&found(&["HALL_1", "HALL_2", "HALL_2"]));
+    expect![[r#"
+        2:212-219 warning S4012: component `R0` and another one hear nobody but each other on topic `POSTOPC`: others use `POSTOPIC`
+          4:18-20 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]].assert_eq(&found(&["POSTOPC", "POSTOPC", "", ""]));
+    expect![[r#"
+        2:212-220 warning S4012: component `R0` and another one hear nobody but each other on topic `postopic`: others use `POSTOPIC`
+          4:18-20 uses `POSTOPIC`
+          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+    "#]].assert_eq(&found(&["postopic", "postopic", "", ""]));
+    // Halls of one file, kept apart.
+    expect![""].assert_eq(&found(&["POSTOPIC2", "POSTOPIC2", "", ""]));
+    expect![""].assert_eq(&found(&["POSTOPIC_B", "POSTOPIC_B", "", ""]));
+    expect![""].assert_eq(&found(&["HALLA", "HALLA", "HALLB", "HALLB"]));
+}
+
+#[test]
+fn queues_have_room_for_what_can_come_between_two_executions() {
+    let slow = |queue: &str| format!("{}<property name=\"queue\">{queue}</property>", period("1001"));
+    let both = |properties: &str| found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", properties)]));
+    expect![""].assert_eq(&both(&slow("11")));
+    expect![[r#"
+        3:161-163 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P`, and 10 find room
+          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
+    "#]].assert_eq(&both(&slow("10")));
+    expect![""].assert_eq(&both(&format!("{}<property name=\"loss\">accept</property>", slow("10"))));
+    // Of those with the same period, each queue by itself.
+    let pickers = [("P", slow("1")), ("Q", period("1001")), ("R", slow("1")), ("S", slow("2"))];
+    let mut all = vec![("D", "Dispatcher", "")];
+    all.extend(pickers.iter().map(|(name, properties)| (*name, "Picker", properties.as_str())));
+    expect![[r#"
+        3:161-162 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P` and another one, and 1 find room
+          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
+        6:161-162 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `S`, and 2 find room
+          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
+    "#]].assert_eq(&found(&fleet(&all)));
+    expect![[r#"
+        3:18-27 note S4013: up to 1200 messages of topic `ORDERS` can come between two executions of component `P1` and 399 others, and 1024 find room
+          help: component `D1` and 399 others publish it: so many come where each sends one in each execution, and fewer as a rule
+          help: where a run says that messages were lost, give the readers a `queue` of 1200, or a shorter `period`
+    "#]].assert_eq(&found(&fleet(&[
+        ("D${index}", "Dispatcher", ""),
+        ("P${index}", "Picker", &period("300")),
+    ])));
+}
+
+#[test]
+fn readers_in_a_hurry_are_told_once_for_each_period() {
+    expect![[r#"
+        3:18-19 note S4014: component `P` and another one read topic `ORDERS` every 50ms, and nobody publishes it more often than every 100ms
+          help: some of its executions find nothing new
+        5:18-19 note S4014: component `R` reads topic `ORDERS` every 20ms, and nobody publishes it more often than every 100ms
+          help: some of its executions find nothing new
+    "#]].assert_eq(&found(&fleet(&[
+        ("D", "Dispatcher", ""),
+        ("P", "Picker", &period("50")),
+        ("Q", "Picker", &period("50")),
+        ("R", "Picker", &period("20")),
+    ])));
+}

@@ -1,0 +1,209 @@
+//! What composites say of what they promote, held against it.
+
+use expect_test::expect;
+
+use crate::check::component_types::found;
+use crate::check::support::{faults, nested, part, shown};
+
+const TYPE: &[(&str, &str)] = &[(
+    "A.componentType",
+    "<service name='s'/><service name='u'/>\n<reference name='one'/><reference name='many' multiplicity='1..n'/>",
+)];
+
+/// What is wrong with composites whose classes are taken as given.
+fn given(inside: &str) -> String {
+    found(inside, TYPE, true)
+}
+
+#[test]
+fn multiplicities_are_not_widened_whatever_the_classes_are() {
+    let wrong = "<component name='A'><implementation.java class='x.A'/></component>
+<component name='B'><implementation.java class='x.B'/>
+<reference name='r' multiplicity='1..1'/><reference name='q' target='B'/><reference name='p' multiplicity='1..n' target='B'/></component>
+<reference name='a' multiplicity='0..1' promote='A/one'/>
+<reference name='b' multiplicity='0..n' promote='A/many'/>
+<reference name='c' multiplicity='0..1' promote='B/r'/>
+<reference name='d' multiplicity='0..n' promote='B/q'/>
+<reference name='e' multiplicity='0..n' promote='B/p'/>
+<reference name='f' multiplicity='1..1' promote='A/many'/>";
+    expect![[r#"
+        5:35-39 error S2036: `a` promotes reference `one` of component `A`, which takes `1..1`: `0..1` does not narrow it
+          help: it can be `1..1`
+        6:35-39 error S2036: `b` promotes reference `many` of component `A`, which takes `1..n`: `0..n` does not narrow it
+          help: it can be `1..1` and `1..n`
+        7:35-39 error S2036: `c` promotes reference `r` of component `B`, which takes `1..1`: `0..1` does not narrow it
+          help: it can be `1..1`
+    "#]].assert_eq(&given(wrong));
+}
+
+#[test]
+fn what_is_wrong_with_several_that_are_promoted_together_is_told_once() {
+    let component = |name: &str, given: &str| {
+        format!(
+            "<component name='{name}'><implementation.java class='x.B'/><reference name='r' {given}/></component>\n"
+        )
+    };
+    let promoted = |given: &[&str], outer: &str| {
+        let components: String =
+            given.iter().zip(["A", "B", "C", "D"]).map(|(given, name)| component(name, given)).collect();
+        let names: Vec<String> =
+            ["A/r", "B/r", "C/r", "D/r"].iter().take(given.len()).map(|one| (*one).to_owned()).collect();
+        self::given(&format!(
+            "{components}<reference name='w' multiplicity='{outer}' promote='{}'/>",
+            names.join(" ")
+        ))
+    };
+    let (one, many) = ("multiplicity='1..1'", "multiplicity='1..n'");
+    expect![[r#"
+        4:35-39 error S2036: `w` promotes 2 references that `0..n` does not narrow: `A/r` takes `1..1` and `B/r` takes `1..n`
+          help: it can be `1..1`
+    "#]].assert_eq(&promoted(&[one, many], "0..n"));
+    expect![[r#"
+        6:35-39 error S2036: `w` promotes 4 references that `0..n` does not narrow: `A/r` takes `1..1`, `B/r` takes `1..n`, `C/r` takes `1..1` and 1 more
+          help: it can be `1..1`
+    "#]].assert_eq(&promoted(&[one, many, one, one], "0..n"));
+    let fixed = "multiplicity='1..1' nonOverridable='true' target='A'";
+    expect![[r#"
+        4:18-19 error S2037: the references `A/r` and `B/r` must not be overridden
+          2:111-115 said here
+          3:111-115 said here
+          help: do not promote them, or leave `nonOverridable` out
+    "#]]
+    .assert_eq(&promoted(&[fixed, fixed], "1..1"));
+}
+
+#[test]
+fn what_is_promoted_of_several_is_named() {
+    let wrong = "<component name='A'><implementation.java class='x.A'/><reference name='one' target='A'/></component>
+<component name='B'><implementation.java class='x.B'/>
+<service name='s'><interface.java interface='x.S'/></service><service name='u'><interface.java interface='x.U'/></service>
+<reference name='r' target='A/s B'/></component>
+<service name='a' promote='A'/>
+<reference name='b' promote='A'/>
+<service name='c' promote='B'/>
+<reference name='d' promote='B'/>";
+    expect![[r#"
+        2:85-86 warning S2014: component `A` has several services
+          help: name one of `s` and `u`: `A/...`
+        6:28-29 error S2021: component `A` has several services: say which is promoted
+          help: write `A/` and one of `s` and `u`
+        7:30-31 error S2021: component `A` has several references: say which is promoted
+          help: write `A/` and one of `many` and `one`
+        8:28-29 error S2021: component `B` has several services: say which is promoted
+          help: write `B/` and one of `s` and `u`
+    "#]]
+    .assert_eq(&given(wrong));
+}
+
+#[test]
+fn composites_have_several_services_to_choose_from() {
+    let fleet = part(
+        "fleet",
+        "",
+        "<component name='H'><implementation.composite name='t:hall'/></component>
+<component name='A'><implementation.java class='x.A'/><reference name='r' target='H'/><reference name='q' target='H/s'/></component>",
+    );
+    let hall = part(
+        "hall",
+        "",
+        "<service name='s' promote='B/s'/><service name='u' promote='B/u'/><component name='B'><implementation.java class='x.B'/></component>",
+    );
+    let (_, diagnostics, sources) = nested(&[&fleet, &hall], &[], true);
+    let all: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+    expect![[r#"
+        3:83-84 warning S2014: component `H` has several services
+          help: name one of `s` and `u`: `H/...`
+    "#]]
+    .assert_eq(&all);
+}
+
+#[test]
+fn interfaces_of_composites_are_those_of_the_classes() {
+    let wrong = "<component name='N'><implementation.java class='example.Navigator'/></component>
+<component name='R'><implementation.java class='example.Robot001'/><property name='ID'>R</property><property name='period'>1</property></component>
+<component name='G'><implementation.java class='example.Gps'/></component>
+<service name='s' promote='R/move'><interface.java interface='example.Position'/></service>
+<service name='t' promote='G/position'><interface.java interface='example.Positions'/></service>
+<reference name='w' promote='N/wheels' target='R/move'><interface.java interface='example.Position'/></reference>
+<reference name='v' promote='R/gps N/task'/>";
+    expect![[r#"
+        5:63-79 error S2007: the interface of `s` is `example.Wheels`, not `example.Position`
+          fix: replace `example.Position` with `example.Wheels` [5:63-79 "example.Wheels"]
+        7:83-99 error S2007: the interface of `w` is `example.Wheels`, not `example.Position`
+          fix: replace `example.Position` with `example.Wheels` [7:83-99 "example.Wheels"]
+        8:18-19 warning S2022: reference `v` of the composite is wired to nothing: calls through it fail
+          help: the composite runs by itself, and nothing around it can wire its references
+        8:36-42 error S2007: reference `v` of the composite promotes references with the interfaces `example.Positions` and `unibg.robotics.tca.TaskInterface`
+          8:30-35 the first
+          help: promote each by a reference of its own: no service has both interfaces
+    "#]].assert_eq(&faults(wrong));
+}
+
+#[test]
+fn interfaces_that_differ_inside_are_told_inside_alone() {
+    let fleet = part(
+        "fleet",
+        "",
+        "<component name='H'><implementation.composite name='t:hall'/><reference name='v' target='G'/></component>
+<component name='G'><implementation.java class='example.Gps'/></component>",
+    );
+    let hall = part(
+        "hall",
+        "",
+        "<component name='R'><implementation.java class='example.Robot001'/><property name='ID'>R</property><property name='period'>1</property></component>
+<component name='N'><implementation.java class='example.Navigator'/><reference name='wheels' target='R/move'/></component>
+<reference name='v' promote='R/gps N/task'/>",
+    );
+    let (_, diagnostics, sources) = nested(&[&fleet, &hall], &[], false);
+    let all: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+    expect![[r#"
+        hall:4:36-42 error S2007: reference `v` of the composite promotes references with the interfaces `example.Positions` and `unibg.robotics.tca.TaskInterface`
+          hall:4:30-35 the first
+          help: promote each by a reference of its own: no service has both interfaces
+    "#]].assert_eq(&all);
+}
+
+#[test]
+fn implementations_wire_all_that_is_promoted_together_or_nothing() {
+    let wrong = "<component name='B'><implementation.java class='x.B'/><reference name='r' wiredByImpl='true'/><reference name='q' target='B'/></component>
+<reference name='a' promote='B/r B/q'/>
+<reference name='b' promote='B/r' wiredByImpl='false'/>
+<reference name='c' promote='B/q' wiredByImpl='true'/>
+<reference name='d' promote='B/r' wiredByImpl='true'/>";
+    expect![[r#"
+        3:34-37 error S2038: reference `a` of the composite promotes a reference that its implementation wires, and one that it does not
+          3:30-33 the first
+          help: give all of them one `wiredByImpl`, or promote them apart
+        4:48-53 error S2038: reference `b` of the composite says `wiredByImpl="false"`, and promotes reference `r` that says otherwise
+          4:30-33 promoted here
+          help: give all of them one `wiredByImpl`, or promote them apart
+        5:48-52 error S2038: reference `c` of the composite says `wiredByImpl="true"`, and promotes reference `q` that says otherwise
+          5:30-33 promoted here
+          help: give all of them one `wiredByImpl`, or promote them apart
+    "#]].assert_eq(&given(wrong));
+}
+
+#[test]
+fn a_promoted_reference_is_wired_where_it_has_an_address_or_nobody_knows_what_takes_it() {
+    let told = |component: &str, inside: &str| {
+        let around = format!(
+            "<reference name='R' promote='I/r'/>\n<component name='I'><implementation.composite name='t:in'/>{inside}</component>"
+        );
+        let inner = part("in", "", &format!("<reference name='r' promote='C/gps'/>\n{component}"));
+        let (_, diagnostics, sources) = nested(&[&part("fleet", "", &around), &inner], &[], true);
+        diagnostics.iter().map(|one| shown(one, &sources)).collect::<String>()
+    };
+    let class = |class: &str| {
+        format!(
+            "<component name='C'><implementation.java class='{class}'/><property name='ID'>R</property><property name='period'>1</property><reference name='gps'/></component>"
+        )
+    };
+    expect![[r#"
+        2:18-19 warning S2022: reference `R` of the composite is wired to nothing: calls through it fail
+          help: the composite runs by itself, and nothing around it can wire its references
+    "#]]
+    .assert_eq(&told(&class("example.Robot001"), ""));
+    let address = "<reference name='r'><binding.ws uri='http://x'/></reference>";
+    expect![[""]].assert_eq(&told(&class("example.Robot001"), address));
+    expect![[""]].assert_eq(&told(&class("unknown.Robot"), ""));
+}

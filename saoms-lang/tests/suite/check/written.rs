@@ -1,0 +1,233 @@
+//! Rules that need no class: bindings, targets and values as they are written.
+
+use expect_test::expect;
+
+use crate::check::component_types::found;
+use crate::check::support::faults;
+
+/// What is wrong with a component of a class that nobody here knows.
+fn given(inside: &str) -> String {
+    let inside = format!("<component name='A'><implementation.java class='x.A'/>\n{inside}</component>");
+    found(&inside, &[], true)
+}
+
+#[test]
+fn references_that_say_that_they_need_a_target_have_one() {
+    let wrong = "<reference name='a' multiplicity='1..1'/>
+<reference name='b' multiplicity='1..n'/>
+<reference name='c' multiplicity='0..1'/><reference name='d'/>
+<reference name='e' multiplicity='1..1' target='A'/><reference name='f' multiplicity='1..1'><binding.ws/></reference>
+<reference name='g' multiplicity='1..1' autowire='true'/><reference name='h' multiplicity='1..1' wiredByImpl='true'/>
+<reference name='i' multiplicity='1..1'/><reference name='j' multiplicity='1..1'/></component>
+<wire source='A/i' target='A'/><reference name='k' promote='A/j'/>
+<component name='B'><implementation.java class='x.B'/>";
+    expect![[r#"
+        3:18-19 warning S2018: reference `a` of component `A` leads to no service
+          3:35-39 it needs a target by this
+          help: give it a `target`
+        4:18-19 warning S2018: reference `b` of component `A` leads to no service
+          4:35-39 it needs a target by this
+          help: give it a `target`
+    "#]]
+    .assert_eq(&given(wrong));
+}
+
+#[test]
+fn a_target_and_an_address_exclude_each_other() {
+    let wrong = "<reference name='a' target='A'><binding.ws uri='http://a'/></reference>
+<reference name='b' target='A'><binding.ws/></reference><reference name='c'><binding.ws uri='http://a'/></reference>
+<reference name='d'><binding.ws uri='http://a' wsdlElement='http://x#wsdl.port(S/P)'/></reference>
+<reference name='e'><binding.ws uri='http://a' wsdlElement='http://x#wsdl.binding(B)'/></reference>
+<reference name='f' multiplicity='0..1'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>
+<reference name='g' multiplicity='0..n'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>";
+    expect![[r#"
+        3:49-57 error S2054: reference `a` has a target, and a binding that leads to `http://a`
+          3:29-30 the target
+          help: keep one of them
+        5:38-46 warning S2054: binding.ws of reference `d` has a `uri`, and a `wsdlElement` that says where the service is
+          5:61-84 the other one
+          help: keep one of them
+        7:96-101 error S2017: reference `f` takes one target, and its bindings lead to 2
+          7:58-66 the first
+          help: keep one of them
+    "#]].assert_eq(&given(wrong));
+}
+
+#[test]
+fn bindings_without_a_name_are_called_as_what_they_bind() {
+    let wrong = "<service name='a'><binding.ws/><binding.jms/></service>
+<service name='b'><binding.ws/><binding.sca name='b'/></service>
+<service name='c'><binding.ws/><binding.sca name='d'/></service>
+<service name='e'><binding.ws name='f'/><callback><binding.ws name='f'/><binding.jms name='f'/></callback></service>";
+    expect![[r#"
+        3:33-44 warning S2040: service `a` has two bindings `a`: `binding.jms` without a name is called so
+          3:20-30 the first
+          help: give each its own name
+        4:51-52 warning S2040: service `b` has two bindings `b`: `binding.ws` without a name is called so
+          4:20-30 the first
+          help: give each its own name
+        6:92-93 error S2040: the callback of `e` has two bindings `f`
+          6:69-70 the first
+          help: give each its own name
+    "#]]
+    .assert_eq(&given(wrong));
+}
+
+#[test]
+fn targets_name_bindings_that_are_written() {
+    let wrong = "<service name='s'><binding.ws name='q'/></service><service name='t'/>
+<reference name='a' target='A/s/zz A/s/q A/t/zz'/>";
+    expect![[r#"
+        4:33-35 error S2013: service `s` of component `A` has no binding `zz`
+          help: its bindings are `q`
+    "#]]
+    .assert_eq(&given(wrong));
+}
+
+#[test]
+fn a_property_for_one_value_has_one() {
+    let wrong = "<property name='a' many='false'><value>1</value><value>2</value></property>
+<property name='b'><value>1</value><value>2</value></property>
+<property name='c' many='false' source='$two'/></component>
+<property name='two' many='true'><value>1</value><value>2</value></property>
+<property name='one'><value>1</value><value>2</value></property>
+<component name='B'><implementation.java class='x.B'/><property name='c' source='$one'/>";
+    expect![[r#"
+        3:56-57 error S3011: the property `a` takes one value, and here are 2
+          3:40-41 the first
+          3:26-31 it takes one
+        6:57-58 error S3011: the property `c` takes one value, and here are 2
+          6:41-42 the first
+          5:26-31 it takes one
+        7:39-44 error S3011: the property `one` takes one value, and here are 2
+          7:23-28 the first
+          help: keep one of them, or write `many="true"` where the property is declared
+    "#]]
+    .assert_eq(&given(wrong));
+    let inner = "<component name='R'><implementation.java class='example.Robot001'/><property name='ID'>R</property><property name='period' many='true'>1</property></component>";
+    expect![[r#"
+        2:130-134 error S3011: the property `period` takes one value, and is said here to take several
+          help: remove `many`
+    "#]]
+    .assert_eq(&faults(inner));
+}
+
+#[test]
+fn values_are_written_as_their_types_ask_for() {
+    let right = [
+        ("date", "2026-11-22"),
+        ("date", "-0044-02-29Z"),
+        ("time", "23:59:59.5+01:00"),
+        ("time", "24:00:00"),
+        ("dateTime", "2026-11-22T12:30:00"),
+        ("duration", "-P1Y2M3DT4H5M6.7S"),
+        ("duration", "PT1H"),
+        ("gYear", "2026"),
+        ("gYearMonth", "2026-11"),
+        ("gMonth", "--11"),
+        ("gMonthDay", "--02-29"),
+        ("gDay", "---31"),
+        ("QName", "t:x"),
+        ("NCName", "a.b-c"),
+        ("ID", "_1"),
+        ("NMTOKEN", "1:2"),
+        ("language", "de-AT-1996"),
+        ("hexBinary", "0aFF"),
+        ("hexBinary", ""),
+        ("base64Binary", "YQ=="),
+        ("anyURI", "http://x/%20 y"),
+        ("string", ""),
+        ("t:date", "soon"),
+    ];
+    let wrong = [
+        ("date", "2026-13-01"),
+        ("date", "2026-02-30"),
+        ("date", "26-01-01"),
+        ("time", "25:00:00"),
+        ("time", "12:30"),
+        ("dateTime", "2026-11-22"),
+        ("dateTime", "2026-11-22Z T1:00:00"),
+        ("duration", "5"),
+        ("duration", "P"),
+        ("duration", "PT"),
+        ("duration", "P1H"),
+        ("duration", "P1.5D"),
+        ("gYear", "x"),
+        ("gYearMonth", "2026-13"),
+        ("gMonth", "11"),
+        ("gMonthDay", "--02-30"),
+        ("gDay", "---32"),
+        ("QName", "a:b:c"),
+        ("NCName", "a b"),
+        ("ID", "1"),
+        ("NMTOKEN", "a b"),
+        ("language", "!!"),
+        ("hexBinary", "xyz"),
+        ("base64Binary", "*"),
+        ("anyURI", "%%% ^"),
+        ("int", ""),
+    ];
+    let all = |values: &[(&str, &str)]| {
+        let property = |(place, (of, value)): (usize, &(&str, &str))| {
+            let of = if of.contains(':') { (*of).to_owned() } else { format!("xsd:{of}") };
+            format!("<property name='p{place}' type='{of}' value='{value}'/>\n")
+        };
+        given(&values.iter().enumerate().map(property).collect::<String>())
+    };
+    assert_eq!(all(&right), "");
+    let told = all(&wrong);
+    for (place, one) in wrong.iter().enumerate() {
+        assert!(
+            told.contains(&format!("error S3007: the property `p{place}` is of the type")),
+            "{one:?}\n{told}"
+        );
+    }
+    expect![[r#"
+        3:44-54 error S3007: the property `p0` is of the type `xsd:date`: found `2026-13-01`, expected a date such as `2026-11-22`
+          3:27-35 the type
+          help: change the value, or the type
+        4:44-54 error S3007: the property `p1` is of the type `xsd:date`: found `2026-02-30`, expected a date such as `2026-11-22`
+          4:27-35 the type
+          help: change the value, or the type
+    "#]].assert_eq(&all(&wrong[..2]));
+    expect![[r#"
+        3:2-10 error S3007: the property `p0` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+          3:27-34 the type
+          help: change the value, or the type
+    "#]].assert_eq(&all(&[("int", "")]));
+}
+
+#[test]
+fn variables_have_names_that_somebody_can_set() {
+    let told = given(
+        "</component><property name='n' xmlns:saoms='urn:saoms:1' saoms:env='9 bad' many='false'>2</property><component name='B'><implementation.java class='x.B'/><property name='p' source='$n'/>",
+    );
+    expect![[r#"
+        3:69-74 error S1011: `9 bad` is no name of an environment variable: it has letters, digits and `_`, and no digit first
+    "#]].assert_eq(&told);
+}
+
+#[test]
+fn what_its_implementation_wires_nothing_else_wires() {
+    let inside = "<component name='A'><implementation.java class='x.A'/>
+<reference name='a' wiredByImpl='true' target='B'/><reference name='b' wiredByImpl='true' multiplicity='0..1'><binding.ws uri='http://b'/></reference>
+<reference name='c' wiredByImpl='true' autowire='true'/><reference name='d' wiredByImpl='true'/>
+<reference name='e' wiredByImpl='true' autowire='false'><binding.ws/></reference><reference name='f' wiredByImpl='false' target='B'/></component>
+<component name='B'><implementation.java class='x.B'/></component>
+<wire source='A/d' target='B'/><wire source='A/f' target='B/s' replace='true'/>";
+    expect![[r#"
+        3:48-49 error S2038: reference `a` is wired by its implementation, and has a target
+          3:34-38 said here
+          help: remove the target, or `wiredByImpl`
+        3:128-136 error S2038: reference `b` is wired by its implementation, and has a binding that leads to one
+          3:85-89 said here
+          help: remove the target, or `wiredByImpl`
+        4:50-54 error S2038: reference `c` is wired by its implementation, and asks for one by `autowire`
+          4:34-38 said here
+          help: remove the target, or `wiredByImpl`
+        7:15-18 error S2038: reference `d` is wired by its implementation, and starts a wire
+          4:90-94 said here
+          help: remove the target, or `wiredByImpl`
+    "#]].assert_eq(&found(inside, &[], true));
+    assert!(!found(&inside.replace("='true' target", "='0' target"), &[], true).contains("`a`"));
+}

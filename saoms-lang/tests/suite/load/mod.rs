@@ -1,0 +1,15 @@
+//! The loader over real files, broken files, and beside another XML parser.
+
+mod corpus;
+mod declared;
+mod definitions;
+mod exchange;
+mod files;
+mod folders;
+mod imports;
+mod intents;
+mod named;
+mod oracle;
+mod places;
+mod support;
+mod wellformed;

@@ -1,0 +1,8 @@
+//! Plugins at their best and at their worst: real libraries, built once from `tests/plugins`, loaded by the real command.
+
+mod build;
+mod misbehaving;
+mod named;
+mod refused;
+mod run;
+mod together;

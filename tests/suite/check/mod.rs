@@ -1,0 +1,4 @@
+//! Whole fleets and what is wrong with them.
+
+mod mistakes;
+mod rules;

@@ -1,0 +1,11 @@
+//! The command as a user meets it.
+
+mod contributions;
+mod fmt;
+mod graph;
+mod new;
+mod operation;
+mod paths;
+mod schema;
+mod usage;
+mod why;

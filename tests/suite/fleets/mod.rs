@@ -1,0 +1,11 @@
+//! Fleets in virtual time: what each run has to keep.
+
+mod composites;
+mod endings;
+mod environment;
+mod expand;
+mod invariants;
+mod messages;
+mod pause;
+mod replace;
+mod sustained;

@@ -1,0 +1,62 @@
+//! Robots that are replaced while their fleet runs, as `saoms run --reload` does when a library with one of their loops is built anew.
+
+use std::path::Path;
+use std::time::Duration;
+
+use saoms_api::Time;
+use saoms_components as _;
+use saoms_core::schedule::{Fleet, ReplaceError, Replacement, Settings};
+use saoms_lang::assembly::Assembly;
+use saoms_lang::check::{Options, check};
+use saoms_lang::diagnostic::Diagnostics;
+use saoms_lang::load::{MAX_SIZE, load_file, read};
+use saoms_lang::model::Contribution;
+use saoms_lang::registry::Registry;
+use saoms_lang::source::Sources;
+
+fn assembly(composite: &str) -> Assembly {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("composites").join(composite);
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
+    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
+    let contribution = Contribution::of(vec![composite]);
+    let registry = Registry::linked().unwrap();
+    check(&contribution, &registry, &Options::default(), &sources, &mut diagnostics).unwrap()
+}
+
+#[test]
+fn robots_without_a_job_go_on_in_their_successors_and_no_luggage_is_lost() {
+    let assembly = assembly("scenario4.composite");
+    let robots: Vec<_> =
+        assembly.components.iter().filter(|one| one.class.name().contains("Robot0")).cloned().collect();
+    assert_eq!(robots.len(), 10);
+    for seed in 0..3 {
+        let settings = Settings { limit: Some(Duration::from_secs(3600)), ..Settings::simulated(seed) };
+        let fleet = Fleet::start(assembly.clone(), settings, Vec::new()).unwrap();
+        let (mut replaced, mut busy) = (0, 0);
+        for step in 1..40_u64 {
+            fleet.run_until(Time::from_nanos(step * 7_300_000_000));
+            for robot in &robots {
+                match fleet.handle().replace(robot.clone()) {
+                    Ok(done) => {
+                        assert_eq!(done, Replacement::Continued);
+                        replaced += 1;
+                    }
+                    Err(ReplaceError::NotNow(why)) => {
+                        assert!(why.starts_with("it "), "{why}");
+                        busy += 1;
+                    }
+                    // The last steps are after the end of the run.
+                    Err(ReplaceError::Failed(failure)) => assert_eq!(failure.message(), "the run ends"),
+                }
+            }
+        }
+        let report = fleet.run_to_end();
+        assert_eq!(report.sections["luggage"]["delivered"], 100, "seed {seed}: {:?}", report.sections);
+        assert_eq!(report.sections["luggage"]["open"], 0, "seed {seed}");
+        assert_eq!(report.sections["collisions"]["vertex"], 0, "seed {seed}");
+        assert!(replaced > 20 && busy > 20, "seed {seed}: {replaced} replaced, {busy} busy");
+        let counted: u32 = report.components.iter().map(|one| one.replaced).sum();
+        assert_eq!(counted, replaced, "seed {seed}");
+    }
+}

@@ -1,0 +1,5 @@
+//! Libraries that are loaded: the examples, components in C, and code that changes while the fleet runs.
+
+mod c;
+mod examples;
+mod reload;

@@ -1,0 +1,158 @@
+//! `saoms run --reload` with real libraries, which the system's C compiler builds anew while the fleet runs.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Lines};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdout, Command, Stdio};
+
+use serde_json::Value;
+
+const FLEET: &str = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
+  <component name="Counter">
+    <implementation.rust class="test.Counter"/>
+    <property name="ID">Counter</property>
+    <property name="period">20</property>
+  </component>
+  <component name="Master">
+    <implementation.rust class="saoms.MasterEnvironment"/>
+    <property name="ID">Master</property>
+    <property name="period">500</property>
+  </component>
+</composite>
+"#;
+
+/// A fleet that runs, and its folder.
+struct Run {
+    folder: tempfile::TempDir,
+    child: Child,
+    lines: Lines<BufReader<ChildStdout>>,
+    seen: Vec<String>,
+}
+
+/// Builds the library into the folder, over an earlier build, with these definitions.
+fn build(folder: &Path, definitions: &[&str]) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let new = folder.join("new");
+    let output = Command::new("cc")
+        .args(["-std=c99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
+        .arg(root.join("saoms-api/include"))
+        .args(definitions)
+        .arg(root.join("tests/suite/plugins/reload/counter.c"))
+        .arg("-o")
+        .arg(&new)
+        .output();
+    let output =
+        output.unwrap_or_else(|error| panic!("this test needs the system's C compiler, `cc`: {error}"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    // As a linker that writes over the file, which is the worst that can happen to a library in use.
+    fs::write(library(folder), fs::read(new).unwrap()).unwrap();
+}
+
+fn library(folder: &Path) -> PathBuf {
+    folder.join("libcounter.so")
+}
+
+impl Run {
+    fn start(definitions: &[&str]) -> Run {
+        let folder = tempfile::tempdir().unwrap();
+        build(folder.path(), definitions);
+        let composite = folder.path().join("f.composite");
+        fs::write(&composite, FLEET).unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_saoms"))
+            .args(["run", "--reload", "--for", "60s", "--report"])
+            .arg(folder.path().join("report.json"))
+            .arg(composite)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let mut run = Run { folder, child, lines, seen: Vec::new() };
+        run.wait_for("build 1 counts 1");
+        run
+    }
+
+    fn build(&self, definitions: &[&str]) {
+        build(self.folder.path(), definitions);
+    }
+
+    /// Reads on to a line with this text, and gives it.
+    fn wait_for(&mut self, text: &str) -> String {
+        for line in self.lines.by_ref() {
+            self.seen.push(line.unwrap());
+            if self.seen.last().unwrap().contains(text) {
+                return self.seen.last().unwrap().clone();
+            }
+        }
+        panic!("`{text}` was never said: {:#?}", self.seen)
+    }
+
+    /// Ends the run; what it said, its report and its exit code.
+    fn end(mut self) -> (Vec<String>, Value, Option<i32>) {
+        let pid = i32::try_from(self.child.id()).unwrap();
+        // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
+        assert_eq!(unsafe { libc::kill(pid, libc::SIGINT) }, 0);
+        self.seen.extend(self.lines.by_ref().map(Result::unwrap));
+        let code = self.child.wait().unwrap().code();
+        let report = fs::read(self.folder.path().join("report.json")).unwrap();
+        (self.seen, serde_json::from_slice(&report).unwrap(), code)
+    }
+}
+
+/// The number that a line says last.
+fn counted(line: &str) -> u64 {
+    line.rsplit(' ').next().unwrap().parse().unwrap()
+}
+
+#[test]
+fn a_new_build_goes_on_where_the_earlier_one_was() {
+    let mut run = Run::start(&["-DBUILD=1"]);
+    run.build(&["-DBUILD=2", "-DDOC=\"Counts on.\""]);
+    run.wait_for("is replaced later: it has not counted to 100 yet");
+    run.wait_for("is replaced by its new build, and goes on");
+    let first = counted(&run.wait_for("build 2 counts"));
+    run.build(&["-DBUILD=3"]);
+    let later = counted(&run.wait_for("build 3 counts"));
+    let (seen, report, code) = run.end();
+    let before = seen.iter().rev().find(|line| line.contains("build 1 counts")).unwrap();
+    assert_eq!(first, counted(before) + 1, "no execution is lost, none is counted twice");
+    assert!(later > first);
+    let ends: Vec<_> = seen.iter().filter(|line| line.contains(" ends")).collect();
+    assert!(ends.len() == 1 && ends[0].contains("build 3 ends"), "only the last one is shut down: {ends:?}");
+    assert_eq!(report["components"][0]["replaced"], 2);
+    assert_eq!(report["components"][0]["failures"], 0);
+    assert_eq!(code, Some(130));
+}
+
+#[test]
+fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
+    let mut run = Run::start(&["-DBUILD=1"]);
+    run.wait_for("build 1 counts 100");
+    run.build(&["-DBUILD=2", "-DSTUMBLES"]);
+    run.wait_for("is not replaced, the earlier one goes on: this build cannot initialize");
+    run.wait_for("build 1 counts");
+    fs::write(library(run.folder.path()), "no library at all").unwrap();
+    run.wait_for("the fleet goes on with the earlier build");
+    run.wait_for("build 1 counts");
+    run.build(&["-DBUILD=3", "-DREFUSES"]);
+    run.wait_for("the fleet goes on with the earlier build");
+    run.wait_for("build 1 counts");
+    run.build(&["-DBUILD=4", "-DFORGETS"]);
+    run.wait_for("build 4 counts");
+    run.build(&["-DBUILD=5"]);
+    run.wait_for("is replaced by its new build, and begins anew");
+    assert!(counted(&run.wait_for("build 5 counts")) <= 2);
+    let (_, report, _) = run.end();
+    assert_eq!(report["components"][0]["replaced"], 2);
+}
+
+#[test]
+fn a_new_build_brings_back_what_failed() {
+    let mut run = Run::start(&["-DBUILD=1", "-DFAILS"]);
+    run.wait_for("failed: this build fails");
+    run.build(&["-DBUILD=2"]);
+    run.wait_for("build 2 counts 1");
+    let (_, report, _) = run.end();
+    assert_eq!(report["components"][0]["failures"], 1);
+    assert!(report["outcome"].to_string().contains("this build fails"), "what failed once is not forgotten");
+}

@@ -1,0 +1,131 @@
+//! Holds the import rule of ARCHITECTURE.md: what a crate and a module must not know.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The crates with an order of modules: each module may use those before it, none after it.
+const ORDERS: &[(&str, &[&str])] = &[
+    (
+        "saoms-lang",
+        &[
+            "source",
+            "diagnostic",
+            "expression",
+            "xml",
+            "model",
+            "load",
+            "schema",
+            "registry",
+            "assembly",
+            "check",
+        ],
+    ),
+    ("saoms-core", &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "schedule"]),
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files.extend(rust_files(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    files
+}
+
+/// The first path segments that follow `crate::` in the file, with their lines; comments do not count.
+fn crate_paths(text: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let code = line.split("//").next().unwrap_or_default();
+        for after in code.split("crate::").skip(1) {
+            let names = match after.strip_prefix('{') {
+                Some(list) => list.split('}').next().unwrap_or_default().split(',').map(str::trim).collect(),
+                None => vec![after],
+            };
+            for name in names {
+                let end = name.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(name.len());
+                found.push((number + 1, name[..end].to_owned()));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn a_module_uses_only_modules_before_it() {
+    let mut wrong = Vec::new();
+    for (name, order) in ORDERS {
+        let source = root().join(name).join("src");
+        for file in rust_files(&source) {
+            let relative = file.strip_prefix(&source).unwrap();
+            let module = relative.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
+            if module == "lib" {
+                continue;
+            }
+            let Some(place) = order.iter().position(|name| *name == module) else {
+                panic!("module `{module}` of {name} has no place in the order {order:?}");
+            };
+            for (line, used) in crate_paths(&fs::read_to_string(&file).unwrap()) {
+                if order.iter().position(|name| *name == used).is_some_and(|other| other > place) {
+                    let file = file.display();
+                    wrong
+                        .push(format!("{file}:{line}: `{module}` comes before `{used}` and must not use it"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The names of the crates of this workspace that the crate depends on, tests aside.
+fn dependencies(package: &str) -> Vec<String> {
+    let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
+    let section = manifest.split("[dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
+    section
+        .lines()
+        .filter_map(|line| line.split(['.', ' ', '=']).next())
+        .filter(|name| name.starts_with("saoms-"))
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn crates_know_only_what_they_may() {
+    assert_eq!(dependencies("saoms-derive"), Vec::<String>::new());
+    assert_eq!(dependencies("saoms-api"), ["saoms-derive"]);
+    assert_eq!(dependencies("saoms-lang"), ["saoms-api"], "what judges composites never runs them");
+    assert_eq!(dependencies("saoms-core"), ["saoms-api", "saoms-lang"], "the core never knows a component");
+    assert_eq!(dependencies("saoms-tools"), ["saoms-api", "saoms-lang"], "no tool runs a fleet");
+    assert_eq!(dependencies("saoms-components"), ["saoms-api"], "components know the contract alone");
+}
+
+#[test]
+fn the_contract_does_no_input_or_output() {
+    for file in rust_files(&root().join("saoms-api/src")) {
+        let text = fs::read_to_string(&file).unwrap();
+        for absent in ["std::fs", "std::net", "std::io", "std::process", "std::thread", "async fn"] {
+            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            assert!(!code.clone().any(|line| line.contains(absent)), "{} uses `{absent}`", file.display());
+        }
+    }
+}
+
+#[test]
+fn the_checker_knows_no_clock_no_thread_and_no_network() {
+    let is_test = |file: &PathBuf| file.iter().any(|part| part == "tests" || part == "tests.rs");
+    for file in rust_files(&root().join("saoms-lang/src")).into_iter().filter(|file| !is_test(file)) {
+        let text = fs::read_to_string(&file).unwrap();
+        for absent in ["Instant", "SystemTime", "std::thread", "TcpStream", "UdpSocket", "ToSocketAddrs"] {
+            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            assert!(!code.clone().any(|line| line.contains(absent)), "{} uses `{absent}`", file.display());
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! What the repository says of itself: its documents, its editors, the order of its modules.
+
+mod architecture;
+mod editors;
+mod pages;
+mod readme;
