@@ -6,3 +6,4 @@ mod components;
 mod declarations;
 mod header;
 mod layout;
+mod refused;
