@@ -1,6 +1,6 @@
 //! The difference between the fleet that runs and the fleet that is wanted.
 //!
-//! A [`Plan`] says what has to end, what has to start, what is replaced and what stays. A run starts with the plan from nothing to
+//! A [`Plan`] names the components that end, that start, that are replaced and that stay. A run starts with the plan from nothing to
 //! its assembly and ends with the plan back to nothing, so that changing a fleet and starting it are one thing. A plan is data: making
 //! it touches nothing, and needs neither a clock nor a running fleet.
 
@@ -9,4 +9,15 @@ mod plan;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use order::providers_first;
 pub use plan::{Difference, Plan, Replacement};
+
+use saoms_lang::assembly::{Assembly, ComponentSpec};
+
+/// The components of a fleet by their numbers, to which wires lead; `None` is a number that is not in use.
+pub type Members<'a> = [Option<&'a ComponentSpec>];
+
+/// The components of an assembly by their places.
+pub fn members(assembly: &Assembly) -> Vec<Option<&ComponentSpec>> {
+    assembly.components.iter().map(Some).collect()
+}

@@ -2,24 +2,26 @@ use std::collections::HashMap;
 
 use saoms_api::PropertyValue;
 
+use super::Members;
 use super::order::providers_first;
-use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, Target, Wire};
+use saoms_lang::assembly::{ComponentSpec, LoopSpec, Target, Wire};
 
-/// What turns one fleet into another. Components are the same when their paths are; numbers are places in the two assemblies.
+/// The steps that turn one fleet into another. Components are the same when their paths are.
 ///
 /// ```
-/// use saoms_core::assemble::Plan;
+/// use saoms_core::assemble::{Plan, members};
 /// use saoms_lang::assembly::Assembly;
 ///
-/// assert!(Plan::between(&Assembly::default(), &Assembly::default()).is_empty());
+/// let fleet = Assembly::default();
+/// assert!(Plan::between(&members(&fleet), &members(&fleet)).is_empty());
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Plan {
-    /// Components of the current assembly that have to end, each before those whose services it calls.
+    /// Components of the current fleet that have to end, each before those whose services it calls.
     pub remove: Vec<usize>,
     /// Components that end and start again, because something about them differs; in the order in which they have to start.
     pub replace: Vec<Replacement>,
-    /// Components of the wanted assembly that have to start, each after those whose services it calls.
+    /// Components of the wanted fleet that have to start, each after those whose services it calls.
     pub add: Vec<usize>,
     /// Components that stay as they are, as (current, wanted).
     pub keep: Vec<(usize, usize)>,
@@ -28,68 +30,66 @@ pub struct Plan {
 /// A component that ends and starts again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Replacement {
-    /// Its place in the current assembly.
+    /// Its number in the current fleet.
     pub current: usize,
-    /// Its place in the wanted assembly.
+    /// Its number in the wanted fleet.
     pub wanted: usize,
     /// Why it cannot stay.
     pub differences: Vec<Difference>,
 }
 
-/// What differs between two components of one path.
+/// A difference between two components of one path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Difference {
     /// The class.
     Class,
     /// The value of this property of the class.
     Value(String),
-    /// How it runs: period, delay, renames, policies.
+    /// Its task properties: period, delay, renames, policies.
     Task,
-    /// Where this reference leads.
+    /// The services to which this reference leads, or the class of one that offers them.
     Reference(String),
-    /// Which loops it has, in which order, or the values of one of them.
+    /// Its loops, their order, or the values of one of them.
     Loops,
 }
 
 impl Plan {
     /// The plan from the fleet that runs to the fleet that is wanted.
-    pub fn between(current: &Assembly, wanted: &Assembly) -> Plan {
-        let running: HashMap<&str, usize> = current
-            .components
-            .iter()
-            .enumerate()
-            .map(|(place, component)| (component.path.as_str(), place))
-            .collect();
-        let mut stays = vec![false; current.components.len()];
+    pub fn between(current: &Members<'_>, wanted: &Members<'_>) -> Plan {
+        let present = current.iter().enumerate().filter_map(|(number, spec)| Some((number, (*spec)?)));
+        let running: HashMap<&str, usize> =
+            present.map(|(number, component)| (component.path.as_str(), number)).collect();
+        let mut stays = vec![false; current.len()];
         let mut plan = Plan::default();
-        for place in providers_first(wanted) {
-            let component = &wanted.components[place];
-            let Some(&before) = running.get(component.path.as_str()) else {
-                plan.add.push(place);
+        for number in providers_first(wanted) {
+            let Some(component) = wanted[number] else { continue };
+            let before = running.get(component.path.as_str()).copied();
+            let Some((before, known)) = before.and_then(|before| Some((before, current[before]?))) else {
+                plan.add.push(number);
                 continue;
             };
             stays[before] = true;
-            let differences = differences(current, &current.components[before], wanted, component);
+            let differences = differences(current, known, wanted, component);
             if differences.is_empty() {
-                plan.keep.push((before, place));
+                plan.keep.push((before, number));
             } else {
-                plan.replace.push(Replacement { current: before, wanted: place, differences });
+                plan.replace.push(Replacement { current: before, wanted: number, differences });
             }
         }
-        plan.remove = providers_first(current).into_iter().rev().filter(|&place| !stays[place]).collect();
+        plan.remove = providers_first(current).into_iter().rev().filter(|&number| !stays[number]).collect();
         plan
     }
 
-    /// Whether nothing has to change.
+    /// True if nothing has to change.
     pub fn is_empty(&self) -> bool {
         self.remove.is_empty() && self.replace.is_empty() && self.add.is_empty()
     }
 }
 
 fn differences(
-    current: &Assembly,
+    current: &Members<'_>,
     before: &ComponentSpec,
-    wanted: &Assembly,
+    wanted: &Members<'_>,
     after: &ComponentSpec,
 ) -> Vec<Difference> {
     if before.class.name() != after.class.name() {
@@ -112,17 +112,21 @@ fn differences(
     if loops(before) != loops(after) {
         differences.push(Difference::Loops);
     }
-    let leads_to = |assembly: &Assembly, wire: &Wire| -> Vec<Option<(String, String)>> {
-        let of = |target: &Target| {
-            Some((assembly.components.get(target.component)?.path.clone(), target.service.clone()))
-        };
-        wire.targets.iter().map(of).collect()
+    let same_target = |one: &Target, other: &Target| {
+        let (before, after) = (current.get(one.component), wanted.get(other.component));
+        let same = matches!((before, after), (Some(Some(before)), Some(Some(after)))
+            if before.path == after.path && before.class.name() == after.class.name());
+        same && one.service == other.service
+    };
+    let same_targets = |one: &Wire, other: &Wire| {
+        one.targets.len() == other.targets.len()
+            && one.targets.iter().zip(&other.targets).all(|(one, other)| same_target(one, other))
     };
     for wire in &after.references {
         let same = before.references.iter().any(|known| {
             known.reference == wire.reference
                 && known.interface == wire.interface
-                && leads_to(current, known) == leads_to(wanted, wire)
+                && same_targets(known, wire)
         });
         if !same {
             differences.push(Difference::Reference(wire.reference.clone()));

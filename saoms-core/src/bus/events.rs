@@ -55,6 +55,10 @@ impl EventLog {
         }
     }
 
+    pub(super) fn resize(&mut self, place: u32, queue: usize) {
+        self.readers[place as usize].queue = queue.max(1) as u64;
+    }
+
     /// Frees a reader's place, and returns what it has lost since it last read.
     pub(super) fn leave(&mut self, place: u32) -> u64 {
         let end = self.end();

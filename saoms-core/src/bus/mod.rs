@@ -125,6 +125,11 @@ impl Bus {
         subscription.reader.rewind();
     }
 
+    /// Gives a reader another bound for the events that wait for it.
+    pub fn resize(&mut self, subscription: &Subscription, queue: usize) {
+        self.topics[subscription.topic.0 as usize].resize(&subscription.reader, queue);
+    }
+
     /// The topic that a subscription reads.
     pub fn topic_of(&self, subscription: &Subscription) -> TopicId {
         subscription.topic

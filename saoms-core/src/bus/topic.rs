@@ -114,6 +114,12 @@ impl Topic {
         }
     }
 
+    pub(super) fn resize(&mut self, reader: &Reader, queue: usize) {
+        if let (Store::Event(log), Reader::Event(place)) = (&mut self.store, reader) {
+            log.resize(*place, queue);
+        }
+    }
+
     pub(super) fn leave(&mut self, reader: Reader) -> u64 {
         match (&mut self.store, reader) {
             (Store::Event(log), Reader::Event(place)) => log.leave(place),

@@ -3,11 +3,11 @@ use std::time::Duration;
 
 use saoms_api::Time;
 
-use super::Entry;
 use super::batch::Batch;
 use super::entry::What;
 use super::recorder::{Notice, Recorder};
 use super::ring::Names;
+use super::{Entry, Named};
 
 /// How many records may wait for their reader.
 const CAPACITY: usize = 65_536;
@@ -32,8 +32,8 @@ struct Waiting {
     batch: Batch,
     /// Names of loops, by component and place.
     names: Vec<(u32, u16, String)>,
-    /// Names of components, in the order of their numbers.
-    joined: Vec<Arc<str>>,
+    /// Components in the order of their numbers; the flag says that they joined a running fleet.
+    joined: Vec<(Named, bool)>,
     lost: u64,
     writers_sleep: bool,
     /// When the run ended.
@@ -63,9 +63,9 @@ impl RecordQueue {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A component has the next number from now on.
-    pub(crate) fn join(&self, component: Arc<str>) {
-        self.lock().joined.push(component);
+    /// A component has the next number from now on. `later` says that the fleet runs already.
+    pub(crate) fn join(&self, component: Named, later: bool) {
+        self.lock().joined.push((component, later));
     }
 
     /// Takes over what a component has written.
@@ -109,8 +109,8 @@ impl RecordQueue {
     }
 
     /// Waits until there is something to tell, and takes all of it. Returns how many records found no room, and when the run ended, where
-    /// these are the last ones.
-    pub(crate) fn next(&self, entries: &mut Vec<Entry>) -> (u64, Option<Time>) {
+    /// these are the last ones. `joined` are the components that joined a running fleet.
+    pub(crate) fn next(&self, entries: &mut Vec<Entry>, joined: &mut Vec<Named>) -> (u64, Option<Time>) {
         let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
         let Reader { batch, components } = &mut *reader;
         batch.clear();
@@ -120,14 +120,17 @@ impl RecordQueue {
         }
         std::mem::swap(batch, &mut waiting.batch);
         let names = std::mem::take(&mut waiting.names);
-        let joined = std::mem::take(&mut waiting.joined);
+        let members = std::mem::take(&mut waiting.joined);
         let lost = std::mem::take(&mut waiting.lost);
         let end = waiting.closed;
         if std::mem::take(&mut waiting.writers_sleep) {
             self.emptied.notify_all();
         }
         drop(waiting);
-        components.extend(joined.into_iter().map(|name| (name, Names::default())));
+        components
+            .extend(members.iter().map(|(named, _)| (Arc::from(named.name.as_str()), Names::default())));
+        joined.clear();
+        joined.extend(members.into_iter().filter_map(|(named, later)| later.then_some(named)));
         for (component, place, name) in names {
             components[component as usize].1.set(place, &name);
         }

@@ -1,6 +1,7 @@
 use std::fmt;
 
 use saoms_api::Time;
+use saoms_lang::assembly::ComponentSpec;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -15,6 +16,12 @@ pub struct Named {
     /// Its `ID`; a passive component has none.
     #[serde(default)]
     pub id: Option<String>,
+}
+
+impl Named {
+    pub(crate) fn of(spec: &ComponentSpec) -> Named {
+        Named { name: spec.path.clone(), id: spec.task.as_ref().map(|task| task.id.clone()) }
+    }
 }
 
 /// What a file tells about a run: the report that `saoms run --report` writes, or the lines of `--journal`.
@@ -81,6 +88,12 @@ struct Head {
     components: Vec<Named>,
 }
 
+/// A line about a component that joined the running fleet.
+#[derive(Deserialize)]
+struct Joined {
+    joined: Named,
+}
+
 /// The last line.
 #[derive(Deserialize)]
 struct Last {
@@ -120,7 +133,7 @@ const REPORT: &str = "this is no whole report of `saoms run --report`, and no fi
 fn lines(text: &str) -> Result<Document, ReadError> {
     let mut lines = text.lines().enumerate().peekable();
     let head = lines.next().map_or("", |(_, line)| line);
-    let head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
+    let mut head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
     if head.journal != 1 {
         let message =
             format!("this file has the form {}, which a newer version of the program writes", head.journal);
@@ -135,6 +148,12 @@ fn lines(text: &str) -> Result<Document, ReadError> {
             let last: Last = serde_json::from_str(line)
                 .map_err(|error| malformed(number, &error, "this is not how a journal ends"))?;
             end = Some(last.end);
+            continue;
+        }
+        if line.starts_with("{\"joined\"") {
+            let joined: Joined = serde_json::from_str(line)
+                .map_err(|error| malformed(number, &error, "this is no component of a journal"))?;
+            head.components.push(joined.joined);
             continue;
         }
         match serde_json::from_str::<Entry>(line) {

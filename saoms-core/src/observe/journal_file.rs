@@ -74,6 +74,9 @@ impl Open {
         self.records += records.entries.len() as u64 + records.lost;
         self.lost += records.lost;
         self.text.clear();
+        for component in records.joined {
+            writeln!(self.text, "{}", json!({ "joined": component }))?;
+        }
         for entry in records.entries {
             serde_json::to_writer(&mut self.text, entry)?;
             self.text.push(b'\n');

@@ -106,6 +106,8 @@ pub struct Beginning<'a> {
 pub struct Records<'a> {
     /// The records.
     pub entries: &'a [Entry],
+    /// Components that joined the running fleet since the last ones.
+    pub joined: &'a [Named],
     /// How many found no room since the last ones, and are lost.
     pub lost: u64,
     /// When the run ended; these are the last ones then.

@@ -18,10 +18,10 @@ pub(crate) struct Told {
 pub(crate) fn tell_records(queue: &RecordQueue, observers: &Observers, failed: impl Fn(&Failure)) -> Told {
     let mut listeners: Vec<_> = observers.of_journal().map(|observer| (observer, 0_u64, true)).collect();
     let mut told = Told::default();
-    let mut entries = Vec::new();
+    let (mut entries, mut joined) = (Vec::new(), Vec::new());
     loop {
-        let (lost, end): (u64, Option<Time>) = queue.next(&mut entries);
-        let records = Records { entries: &entries, lost, end };
+        let (lost, end): (u64, Option<Time>) = queue.next(&mut entries, &mut joined);
+        let records = Records { entries: &entries, joined: &joined, lost, end };
         for (observer, missing, is_well) in &mut listeners {
             *missing += lost;
             if !*is_well {

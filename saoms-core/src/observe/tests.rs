@@ -135,7 +135,7 @@ fn an_observer_that_takes_no_records_is_told_once_and_all_that_is_missing_is_cou
     let large = Arc::new(Shelf { room: 99, records: AtomicUsize::new(0) });
     let observers = Observers::new(vec![small, large.clone()]);
     let queue = RecordQueue::new(true);
-    queue.join(Arc::from("A"));
+    queue.join(Named { name: "A".to_owned(), id: None }, false);
     queue.put(0, &recorder(5));
     queue.close(Time::START);
     let said = AtomicU64::new(0);
@@ -155,7 +155,7 @@ fn in_real_time_records_that_find_no_room_are_counted() {
     let components = [Named { name: "A".to_owned(), id: None }];
     file.begin(&Beginning { seed: 1, is_virtual: false, components: &components }).unwrap();
     let queue = RecordQueue::new(false);
-    queue.join(Arc::from("A"));
+    queue.join(Named { name: "A".to_owned(), id: None }, false);
     let recorder = recorder(1000);
     for _ in 0..70 {
         queue.put(0, &recorder);

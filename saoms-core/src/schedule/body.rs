@@ -41,8 +41,10 @@ pub(super) struct Part {
     pub(super) initializing: bool,
     /// What goes to the journal.
     pub(super) recorder: Recorder,
-    /// The specification of a new build, where there is one: it counts instead of that of the assembly.
-    pub(super) spec: Option<Box<ComponentSpec>>,
+    /// What the component is made of; the targets of its wires are numbers of slots.
+    pub(super) spec: Arc<ComponentSpec>,
+    /// The instance is part of a change that is not committed: what it sends waits.
+    pub(super) held: bool,
 }
 
 /// What can be asked of a component.
@@ -57,7 +59,13 @@ pub(super) enum Job {
 }
 
 impl Body {
-    pub(super) fn new(index: u32, name: Arc<str>, period: u64, cancelled: Arc<AtomicBool>) -> Body {
+    pub(super) fn new(
+        index: u32,
+        spec: Arc<ComponentSpec>,
+        name: Arc<str>,
+        period: u64,
+        cancelled: Arc<AtomicBool>,
+    ) -> Body {
         let part = Part {
             index,
             name,
@@ -75,7 +83,8 @@ impl Body {
             period,
             initializing: false,
             recorder: Recorder::default(),
-            spec: None,
+            spec,
+            held: true,
         };
         Body { instance: None, inboxes: Vec::new(), part }
     }
@@ -103,7 +112,7 @@ impl Body {
     }
 
     fn start(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
-        let spec = self.part.spec(shared);
+        let spec = &self.part.spec;
         self.instance = Some(contained(|| spec.class.construct(&spec.values))??);
         self.part.initializing = true;
         self.part.recorder.reset();
@@ -151,11 +160,6 @@ impl Body {
 }
 
 impl Part {
-    /// What the component is made of.
-    pub(super) fn spec<'a>(&'a self, shared: &'a Shared) -> &'a ComponentSpec {
-        self.spec.as_deref().unwrap_or_else(|| shared.spec(self.index))
-    }
-
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }

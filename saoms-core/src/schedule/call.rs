@@ -3,7 +3,7 @@ use std::sync::Arc;
 use saoms_api::{CallError, Failure, Invocation, ServiceCall, TARGET_SHIFT, cdr};
 
 use super::body::{Body, Job, Part};
-use super::engine::{Engine, Phase};
+use super::engine::Engine;
 use super::lifecycle::Request;
 use super::shared::Shared;
 use super::slot::NEVER;
@@ -17,7 +17,7 @@ pub(super) fn call(
     call: &mut dyn ServiceCall,
 ) -> Result<(), CallError> {
     let place = reference & ((1 << TARGET_SHIFT) - 1);
-    let Some(wire) = caller.spec(shared).references.get(place as usize) else {
+    let Some(wire) = caller.spec.references.get(place as usize) else {
         return Err(CallError::NotWired {
             reference: "(a handle that `Context::reference` did not give)".to_owned(),
         });
@@ -26,11 +26,12 @@ pub(super) fn call(
         return Err(CallError::NotWired { reference: wire.reference.clone() });
     };
     let provider = target.component as u32;
-    if is_task_service(shared, provider, &target.service) {
+    let mut engine = shared.lock();
+    if engine.is_task_service(provider, &target.service) {
+        drop(engine);
         return task(shared, caller, provider, call);
     }
-    let mut engine = shared.lock();
-    let mut body = engine.begin_call(provider)?;
+    let mut body = engine.begin_call(provider, caller.held)?;
     shared.release(engine);
     let own = (body.part.now, body.part.due);
     (body.part.now, body.part.due) = (caller.now, caller.due);
@@ -57,12 +58,6 @@ fn named(error: CallError, name: &str) -> CallError {
         }
         other => other,
     }
-}
-
-/// Whether it is the service that the host itself serves for every periodic component.
-fn is_task_service(shared: &Shared, provider: u32, service: &str) -> bool {
-    let declaration = shared.spec(provider).class.declaration();
-    declaration.offers().any(|offered| offered.name == service && offered.is_of_host())
 }
 
 /// Serves [`saoms_api::TaskInterface`], whose operations have the numbers of their places in the trait.
@@ -98,14 +93,20 @@ fn task(shared: &Shared, caller: &Part, provider: u32, call: &mut dyn ServiceCal
 }
 
 impl Engine {
-    /// Takes a component's body to serve a call.
-    fn begin_call(&mut self, index: u32) -> Result<Box<Body>, CallError> {
+    /// True if it is the service that the host itself serves for every periodic component.
+    fn is_task_service(&self, provider: u32, service: &str) -> bool {
+        let declaration = self.slots[provider as usize].spec.class.declaration();
+        declaration.offers().any(|offered| offered.name == service && offered.is_of_host())
+    }
+
+    /// Takes a component's body to serve a call. An instance that is not committed serves others of the same change alone.
+    fn begin_call(&mut self, index: u32, is_held: bool) -> Result<Box<Body>, CallError> {
         let slot = &mut self.slots[index as usize];
         let provider = || slot.name.to_string();
         if !slot.is_alive() {
             return Err(CallError::NotRunning { provider: provider() });
         }
-        let Some(body) = slot.body.take() else {
+        let Some(body) = slot.body.take_if(|_| is_held || !slot.held) else {
             return Err(CallError::Busy { provider: provider() });
         };
         self.out += 1;
@@ -124,10 +125,10 @@ impl Engine {
             self.slots[index as usize].body = Some(body);
             return;
         }
-        if self.phase != Phase::Starting {
+        if !body.part.held {
             self.deliver(&mut body.part, now);
         }
-        let vote = body.part.vote.take();
+        let vote = body.part.vote.take_if(|_| !body.part.held);
         self.slots[index as usize].body = Some(body);
         if let Some(vote) = vote {
             self.vote(index, vote, now);

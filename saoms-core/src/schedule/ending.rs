@@ -9,7 +9,6 @@ use crate::observe::Occurrence;
 use crate::report::{
     ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, Sections, Status, Votes,
 };
-use saoms_lang::assembly::Assembly;
 
 /// What ended a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,18 +42,14 @@ impl Engine {
             slot.cancelled.store(true, Ordering::Relaxed);
         }
         // The end of a run is the change to a fleet without components.
-        self.ending = self.order_of_end.iter().copied().collect();
+        let members: Vec<_> = self.slots.iter().map(|slot| slot.is_member().then_some(&*slot.spec)).collect();
+        self.ending = Plan::between(&members, &[]).remove.into_iter().map(|number| number as u32).collect();
     }
 
     /// The engine itself is at fault: nothing can go on.
     pub(super) fn break_down(&mut self) {
         self.phase = Phase::Ended;
         self.reasons.push("a fault of the program itself, told on standard error, ended the run".to_owned());
-    }
-
-    /// The order in which the components of an assembly end.
-    pub(super) fn order_of_end(assembly: &Assembly) -> Vec<u32> {
-        Plan::between(assembly, &Assembly::default()).remove.into_iter().map(|place| place as u32).collect()
     }
 
     /// The next component that has to shut down. Those whose code runs come when it returns.
@@ -84,13 +79,13 @@ impl Engine {
     }
 
     /// The report of a run that has ended.
-    pub(super) fn report(&self, assembly: &Assembly, sections: &Sections) -> RunReport {
+    pub(super) fn report(&self, sections: &Sections) -> RunReport {
         RunReport {
             seed: self.seed,
             time_s: self.ended.0 as f64 / 1e9,
             periods: self.slots.iter().map(|slot| slot.statistics.executions).sum(),
             sections: sections.to_json(),
-            components: self.components(assembly),
+            components: self.components(),
             journal: self.journal(),
             votes: self.votes_report(),
             outcome: self.outcome(),
@@ -99,17 +94,18 @@ impl Engine {
     }
 
     fn journal(&self) -> Journal {
-        let rings = self.slots.iter().map(|slot| (&slot.name, &slot.journal));
+        let rings = self.slots.iter().filter(|slot| slot.joined).map(|slot| (&slot.name, &slot.journal));
         let mut journal = Journal::of_rings(rings);
         journal.lost = self.lost_records;
         journal
     }
 
-    fn components(&self, assembly: &Assembly) -> Vec<ComponentReport> {
-        let components = self.slots.iter().zip(&assembly.components);
-        components
-            .map(|(slot, spec)| {
-                let statistics = &slot.statistics;
+    fn components(&self) -> Vec<ComponentReport> {
+        // All that were ever part of the fleet.
+        let joined = self.slots.iter().filter(|slot| slot.joined);
+        joined
+            .map(|slot| {
+                let (spec, statistics) = (&slot.spec, &slot.statistics);
                 ComponentReport {
                     name: spec.path.clone(),
                     id: spec.task.as_ref().map(|task| task.id.clone()),

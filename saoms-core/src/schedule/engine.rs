@@ -1,4 +1,4 @@
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -6,15 +6,16 @@ use saoms_api::{Chance, Failure, Time, Work};
 
 use super::body::{Body, Job, Part};
 use super::ending::Cause;
+use super::overrun::Decision;
 use super::queue::Queue;
 use super::settings::{ClockKind, Settings, nanos};
-use super::slot::{NEVER, Policy, Slot, State, Wish};
+use super::slot::{NEVER, Slot, State, Wish};
 use super::trace::{Step, Trace};
 use crate::bus::Bus;
 use crate::hash::fold;
 use crate::journal::RecordQueue;
 use crate::observe::{Event, News, Occurrence, Sent};
-use saoms_lang::assembly::{Assembly, Loss, Overrun};
+use saoms_lang::assembly::Loss;
 
 /// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives
 /// it takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the body back with
@@ -33,17 +34,22 @@ pub(super) struct Engine {
     /// Records for the observers of the journal; `None` where there is none.
     pub(super) records: Option<Arc<RecordQueue>>,
     /// How many records of each component are kept.
-    journal_capacity: usize,
+    pub(super) journal_capacity: usize,
     /// Records that did not reach those observers.
     pub(super) lost_records: u64,
     /// Executions of all components.
     pub(super) executions: Arc<AtomicU64>,
     /// Bodies that are with code that runs.
     pub(super) out: usize,
+    /// Threads that wait for a body to return, and whether they have to look.
+    pub(super) awaited: usize,
+    pub(super) has_returned: bool,
     /// Components that still have to shut down, once the run ends.
     pub(super) ending: VecDeque<u32>,
-    /// In which order components end.
-    pub(super) order_of_end: Vec<u32>,
+    /// The number of each component, by its path.
+    pub(super) numbers: HashMap<Arc<str>, u32>,
+    /// The component of a change that failed in a call, before the change was committed.
+    pub(super) held_failure: Option<(u32, Failure)>,
     pub(super) cause: Option<Cause>,
     pub(super) reasons: Vec<String>,
     /// When the end began, in the time of the run and on the machine's clock.
@@ -109,10 +115,9 @@ pub(super) enum Next {
 }
 
 impl Engine {
-    pub(super) fn new(assembly: &Assembly, settings: &Settings) -> Engine {
-        let components = assembly.components.iter().enumerate();
+    pub(super) fn new(settings: &Settings) -> Engine {
         Engine {
-            slots: components.map(|(index, spec)| Slot::new(index as u32, spec)).collect(),
+            slots: Vec::new(),
             queue: Queue::default(),
             bus: Bus::default(),
             phase: Phase::Starting,
@@ -121,12 +126,15 @@ impl Engine {
             wake: false,
             trace: (settings.clock == ClockKind::Virtual).then(Trace::default),
             records: None,
-            journal_capacity: settings.journal / assembly.components.len().max(1),
+            journal_capacity: settings.journal,
             lost_records: 0,
             executions: Arc::default(),
             out: 0,
+            awaited: 0,
+            has_returned: false,
             ending: VecDeque::new(),
-            order_of_end: Engine::order_of_end(assembly),
+            numbers: HashMap::new(),
+            held_failure: None,
             cause: None,
             reasons: Vec::new(),
             ended: (0, 0),
@@ -157,7 +165,7 @@ impl Engine {
                         continue;
                     }
                     slot.entry = NEVER;
-                    if slot.body.is_none() {
+                    if slot.body.is_none() || slot.held {
                         slot.waiting = true;
                     } else if slot.apart.now {
                         slot.queued = true;
@@ -193,21 +201,20 @@ impl Engine {
                 self.enqueue(index, when);
                 None
             }
-            State::Active
-                if slot.policy.overrun == Overrun::Stop && now - slot.due.min(now) >= slot.policy.period =>
-            {
-                self.condemn(index, now);
-                Some(Job::Shutdown)
-            }
-            State::Active => Some(Job::Execute),
-            State::Idle | State::Failed | State::Abandoned => None,
+            State::Active => match slot.decide(now, self.limit) {
+                Decision::Stop { missed } => {
+                    self.condemn(index, missed, now);
+                    Some(Job::Shutdown)
+                }
+                Decision::Execute { .. } => Some(Job::Execute),
+            },
+            State::Idle | State::Failed | State::Abandoned | State::Removed => None,
         }
     }
 
     /// Executions could not start in time, and the composite wants the component to stop then.
-    fn condemn(&mut self, index: u32, now: u64) {
+    fn condemn(&mut self, index: u32, missed: u64, now: u64) {
         let slot = &mut self.slots[index as usize];
-        let missed = (now - slot.due) / slot.policy.period;
         slot.statistics.missed += missed;
         slot.state = State::Leaving;
         slot.wish = Wish::None;
@@ -240,19 +247,14 @@ impl Engine {
 
     fn begin_execution(&mut self, index: u32, body: &mut Body, now: u64) {
         let slot = &mut self.slots[index as usize];
-        let Policy { period, overrun, .. } = slot.policy;
         let (due, part) = (slot.due, &mut body.part);
-        let late = now.saturating_sub(due);
-        let mut next = due.saturating_add(period);
         if self.real {
-            slot.statistics.late.record(late);
-            if late >= period && overrun == Overrun::Skip {
-                next += late / period * period;
-                // What would have been due after the end of the run is not missed.
-                slot.statistics.missed += now.min(self.limit.saturating_sub(1)).saturating_sub(due) / period;
-            }
+            slot.statistics.late.record(now.saturating_sub(due));
         }
-        slot.due = next;
+        if let Decision::Execute { next, missed } = slot.decide(now, self.limit) {
+            slot.due = next;
+            slot.statistics.missed += missed;
+        }
         slot.last_due = Some(due);
         part.due = due;
         part.execution = slot.execution;
@@ -327,10 +329,11 @@ impl Engine {
                 self.slots[index as usize].body = Some(body);
             }
             Ok(()) => {
-                if self.phase != Phase::Starting {
+                let held = body.part.held;
+                if !held {
                     self.deliver(&mut body.part, ended);
                 }
-                let vote = body.part.vote.take();
+                let vote = body.part.vote.take_if(|_| !held);
                 if job == Job::Start {
                     body.inboxes.resize_with(body.part.subscriptions.len(), Vec::new);
                 }
@@ -350,6 +353,7 @@ impl Engine {
     /// A body is back. At the end of a run the timer may wait for just that.
     pub(super) fn came_back(&mut self) {
         self.out -= 1;
+        self.has_returned |= self.awaited > 0;
         self.wake |= self.phase == Phase::Stopping && self.roles.asleep_until != 0;
     }
 
@@ -417,8 +421,14 @@ impl Engine {
         }
     }
 
-    /// Notes what a component says about the work that is left.
+    /// Notes what a component says about the work that is left, and ends the run when none is.
     pub(super) fn vote(&mut self, index: u32, vote: Work, now: u64) {
+        self.note_vote(index, vote, now);
+        self.end_if_done(now);
+    }
+
+    /// Notes what a component says about the work that is left.
+    pub(super) fn note_vote(&mut self, index: u32, vote: Work, now: u64) {
         let before = self.slots[index as usize].vote.replace(vote);
         if before == Some(vote) {
             return;
@@ -429,7 +439,6 @@ impl Engine {
             Work::Open => self.votes.done -= usize::from(before.is_some()),
         }
         self.step(now, index, Step::Voted);
-        self.end_if_done(now);
     }
 
     /// Ends the run when all who voted see no work left.

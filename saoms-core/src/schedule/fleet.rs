@@ -6,18 +6,19 @@ use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use saoms_api::{Failure, Level, Time};
+use saoms_api::{Level, Time};
 
+use super::change::{self, ChangeError, Changed};
 use super::clock::Clock;
 use super::drive;
 use super::engine::Phase;
 use super::lifecycle::Request;
 use super::realtime;
-use super::replace::{self, ReplaceError, Replacement};
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::slot::NEVER;
-use super::start::{self, StartError};
+use super::start::StartError;
+use super::takeover::Takeover;
 use crate::journal::Named;
 use crate::observe::{Beginning, Observer, Progress, Told, tell_records};
 use crate::report::RunReport;
@@ -104,8 +105,11 @@ impl Fleet {
         }
         let awake = realtime.then(realtime::keep_awake).transpose();
         let clock = if simulated { Clock::simulated() } else { Clock::real() };
-        let shared = Arc::new(Shared::new(assembly, settings, clock, observers));
-        begin_observers(&shared).map_err(StartError::Observer)?;
+        let shared = Arc::new(Shared::new(settings, clock, observers));
+        let components: Vec<Named> = assembly.components.iter().map(Named::of).collect();
+        let (seed, is_virtual) = (shared.settings.seed, simulated);
+        let beginning = Beginning { seed, is_virtual, components: &components };
+        shared.observers.begin(&beginning).map_err(StartError::Observer)?;
         let teller = Arc::clone(&shared);
         let teller = thread::Builder::new()
             .name("saoms-events".to_owned())
@@ -124,7 +128,7 @@ impl Fleet {
         fleet.journal = spawn_journal(&fleet.handle.shared).map_err(StartError::Thread)?;
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
-        start::start(shared)?;
+        change::apply(shared, assembly)?;
         Ok(fleet)
     }
 
@@ -142,10 +146,13 @@ impl Fleet {
             drive::wait_until(shared, |engine| engine.roles.asleep_until != 0 && shared.clock.now() >= time);
             return;
         }
-        let ended = || shared.lock().phase == Phase::Ended;
-        while !ended() && shared.clock.now() < time {
-            let left = Duration::from_nanos(time.saturating_sub(shared.clock.now()));
-            thread::sleep(left.min(Duration::from_millis(10)));
+        let deadline = shared.clock.on_machine(time);
+        loop {
+            let ticket = shared.end.ticket();
+            if shared.lock().phase == Phase::Ended || shared.clock.now() >= time {
+                return;
+            }
+            shared.end.wait(ticket, Some(deadline));
         }
     }
 
@@ -159,7 +166,7 @@ impl Fleet {
         drive::wait_until(shared, |_| false);
         self.finish_journal();
         let shared = &self.handle.shared;
-        let report = shared.lock().report(&shared.assembly, &shared.sections());
+        let report = shared.lock().report(&shared.sections());
         self.finish();
         self.handle.shared.observers.end(&report);
         report
@@ -202,16 +209,6 @@ impl Fleet {
             let _ = teller.join();
         }
     }
-}
-
-/// Lets every observer prepare itself.
-fn begin_observers(shared: &Shared) -> Result<(), Failure> {
-    let components = shared.assembly.components.iter();
-    let named = components
-        .map(|spec| Named { name: spec.path.clone(), id: spec.task.as_ref().map(|task| task.id.clone()) });
-    let components: Vec<Named> = named.collect();
-    let (seed, is_virtual) = (shared.settings.seed, shared.clock.is_virtual());
-    shared.observers.begin(&Beginning { seed, is_virtual, components: &components })
 }
 
 /// Starts the thread that tells observers the records of the journal, where one wants them.
@@ -288,21 +285,25 @@ impl Handle {
         Ok(self.shared.lock().slots[index].is_scheduled())
     }
 
-    /// Replaces a component by one of a new build of its class, between two executions: the new one is constructed first, then the present one
-    /// [saves](saoms_api::Component::save) what the new one goes on with, which initializes, restores that and takes over the place in topics
-    /// and services. Values and loops are those of the specification, wires too, whose targets count the components of this fleet; how the task
-    /// runs (period, delay, policies) stays as it is. Returns when it is done.
+    /// Makes the fleet that of an assembly: components of other paths end and start, those in which something differs are replaced, and
+    /// all others go on. Wires lead to components of the assembly.
+    ///
+    /// All new instances initialize first; then what is new takes part from one instant on, and what is not wanted any more shuts down. A replaced
+    /// component [saves](saoms_api::Component::save) what its successor goes on with; one of another class begins anew.
     ///
     /// # Errors
-    /// The earlier component goes on: there is no such component, the new one does not come to be, or it is not possible now.
-    pub fn replace(&self, spec: ComponentSpec) -> Result<Replacement, ReplaceError> {
-        let components = &self.shared.assembly.components;
-        let index = components.iter().position(|known| known.path == spec.path);
-        let index = index.ok_or_else(|| {
-            ReplaceError::Failed(Failure::new(format!("the fleet has no component `{}`", spec.path)))
-        })?;
-        let task = components[index].task.clone();
-        replace::replace(&self.shared, index as u32, ComponentSpec { task, ..spec })
+    /// Nothing has changed: a component does not come to be, or cannot be replaced or ended now, or the run ends.
+    pub fn apply(&self, assembly: &Assembly) -> Result<Changed, ChangeError> {
+        change::apply(&self.shared, assembly.clone())
+    }
+
+    /// Replaces a component by one of a new build of its class, as [`apply`](Handle::apply) does. The targets of its wires are those that
+    /// they were at the start; how its task runs (period, delay, policies) stays as it is.
+    ///
+    /// # Errors
+    /// As [`apply`](Handle::apply), or there is no such component.
+    pub fn replace(&self, spec: ComponentSpec) -> Result<Takeover, ChangeError> {
+        change::replace(&self.shared, spec)
     }
 
     /// Tells the program something about the fleet as a whole, among its other events.
@@ -324,17 +325,18 @@ impl Handle {
     }
 
     fn find(&self, component: &str) -> Result<usize, UnknownComponent> {
-        let components = &self.shared.assembly.components;
-        let index = components.iter().position(|known| known.path == component);
-        match index {
-            Some(index) if components[index].task.is_some() => Ok(index),
-            _ => Err(UnknownComponent { name: component.to_owned(), passive: index.is_some() }),
+        let engine = self.shared.lock();
+        let known = engine.numbers.get(component).map(|number| *number as usize);
+        let slot = known.map(|number| &engine.slots[number]).filter(|slot| slot.is_member());
+        match (known, slot) {
+            (Some(number), Some(slot)) if slot.policy.periodic => Ok(number),
+            _ => Err(UnknownComponent { name: component.to_owned(), passive: slot.is_some() }),
         }
     }
 }
 
 impl fmt::Debug for Handle {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.debug_struct("Handle").field("components", &self.shared.assembly.components.len()).finish()
+        formatter.debug_struct("Handle").field("components", &self.shared.lock().slots.len()).finish()
     }
 }

@@ -28,7 +28,7 @@ const MOST_TARGETS: usize = (1 << (32 - TARGET_SHIFT)) - 1;
 
 impl ComponentHost<'_> {
     fn spec(&self) -> &ComponentSpec {
-        self.part.spec(self.shared)
+        &self.part.spec
     }
 
     /// The reference of a handle.
@@ -149,7 +149,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn name_of(&self, sender: u32) -> Option<&str> {
-        self.shared.assembly.components.get(sender as usize).map(|component| component.path.as_str())
+        self.shared.names.get(sender).map(AsRef::as_ref)
     }
 
     fn now(&self) -> Time {
@@ -310,9 +310,8 @@ impl Host for ComponentHost<'_> {
 
     fn journal(&mut self, phase: Phase, record: &Record) {
         let stamp = stamp(self.shared, self.part);
-        let Part { recorder, spec, index, .. } = &mut *self.part;
+        let Part { recorder, spec, .. } = &mut *self.part;
         let place = recorder.present().map(usize::from);
-        let spec = spec.as_deref().unwrap_or_else(|| self.shared.spec(*index));
         let class = place.and_then(|place| spec.loops.get(place)).map(|one| &one.class);
         let senses = class.map_or(&[][..], |class| &class.declaration().senses);
         recorder.write(stamp, phase, record, senses);

@@ -55,14 +55,14 @@ impl Engine {
                     self.enqueue(index, when);
                 }
             }
-            (State::Abandoned, _) => {}
+            (State::Abandoned | State::Removed, _) => {}
         }
     }
 
     fn unschedule(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         match slot.state {
-            State::Idle | State::Failed | State::Abandoned => {}
+            State::Idle | State::Failed | State::Abandoned | State::Removed => {}
             State::Leaving => slot.wish = Wish::None,
             State::Starting if slot.body.is_some() => {
                 slot.state = State::Idle;
@@ -115,7 +115,7 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         slot.state = State::Active;
         let (number, again) = (slot.restarts, std::mem::take(&mut slot.restarting));
-        if self.phase == Phase::Starting {
+        if slot.held {
             return;
         }
         self.step(now, index, Step::Started);
@@ -175,6 +175,14 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         slot.statistics.failures += 1;
         slot.waiting = false;
+        if body.part.held {
+            // Its change is not made.
+            slot.state = State::Failed;
+            let reason = format!("component `{}` failed: {message}", slot.name);
+            self.held_failure = Some((index, Failure::new(reason)));
+            self.tell(now, index, Occurrence::Failed { message, restart: None });
+            return;
+        }
         let stays = self.phase == Phase::Running && job != Job::Shutdown && slot.wish == Wish::None;
         let pause = match slot.policy.restart {
             Restart::OnFailure { backoff, limit } if stays && slot.restarts < limit => {
@@ -225,7 +233,7 @@ impl Engine {
     }
 
     /// A component that does not take part has no say about the work that is left.
-    fn forget_vote(&mut self, index: u32, now: u64) {
+    pub(super) fn forget_vote(&mut self, index: u32, now: u64) {
         if self.phase != Phase::Running {
             return;
         }
@@ -246,7 +254,7 @@ impl Engine {
     }
 
     /// Takes a component off all topics.
-    fn leave_topics(&mut self, index: u32, now: u64) {
+    pub(super) fn leave_topics(&mut self, index: u32, now: u64) {
         if let Some(mut body) = self.slots[index as usize].body.take() {
             self.keep_subscriptions(&mut body);
             self.release(index, &mut body, now);

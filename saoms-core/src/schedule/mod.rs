@@ -10,6 +10,7 @@
 
 mod body;
 mod call;
+mod change;
 mod clock;
 mod drive;
 mod ending;
@@ -17,21 +18,24 @@ mod engine;
 mod fleet;
 mod host;
 mod lifecycle;
+mod names;
+mod overrun;
 mod pulse;
 mod queue;
 mod realtime;
-mod replace;
 mod settings;
 mod shared;
 mod slot;
 mod start;
 mod sys;
+mod takeover;
 #[cfg(test)]
 mod tests;
 mod trace;
 
+pub use change::{ChangeError, Changed};
 pub use fleet::{Fleet, Handle, UnknownComponent};
 pub use realtime::RealtimeError;
-pub use replace::{ReplaceError, Replacement};
 pub use settings::{ClockKind, Settings};
 pub use start::StartError;
+pub use takeover::Takeover;

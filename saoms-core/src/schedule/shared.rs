@@ -1,24 +1,30 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use saoms_api::Time;
 
 use super::clock::Clock;
 use super::engine::Engine;
+use super::names::Names;
 use super::pulse::Pulse;
 use super::settings::Settings;
 use super::sys::Gate;
 use crate::journal::RecordQueue;
 use crate::observe::{Event, EventQueue, Observer, Observers, Occurrence, Progress};
 use crate::report::Sections;
-use saoms_lang::assembly::{Assembly, ComponentSpec};
 
 /// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while component code runs or a
 /// thread sleeps.
 pub(super) struct Shared {
     engine: Mutex<Engine>,
     sections: Mutex<Sections>,
-    pub(super) assembly: Assembly,
+    /// The paths of components by their numbers.
+    pub(super) names: Names,
+    /// Held by who changes the fleet: one change at a time.
+    changes: Mutex<()>,
+    /// A body that somebody waits for has returned.
+    returned: Condvar,
     pub(super) settings: Settings,
     pub(super) clock: Clock,
     /// What happens, on its way to the observers.
@@ -47,26 +53,21 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    pub(super) fn new(
-        assembly: Assembly,
-        settings: Settings,
-        clock: Clock,
-        observers: Vec<Arc<dyn Observer>>,
-    ) -> Shared {
-        let mut engine = Engine::new(&assembly, &settings);
+    pub(super) fn new(settings: Settings, clock: Clock, observers: Vec<Arc<dyn Observer>>) -> Shared {
+        let mut engine = Engine::new(&settings);
         let observers = Observers::new(observers);
         let interest = observers.interest();
         let events = EventQueue::new(interest, clock.is_virtual());
         if interest.journal {
-            let records = RecordQueue::new(clock.is_virtual());
-            engine.slots.iter().for_each(|slot| records.join(Arc::clone(&slot.name)));
-            engine.records = Some(Arc::new(records));
+            engine.records = Some(Arc::new(RecordQueue::new(clock.is_virtual())));
         }
         Shared {
             executions: Arc::clone(&engine.executions),
             engine: Mutex::new(engine),
             sections: Mutex::new(Sections::standard()),
-            assembly,
+            names: Names::default(),
+            changes: Mutex::default(),
+            returned: Condvar::new(),
             settings,
             clock,
             events,
@@ -93,6 +94,9 @@ impl Shared {
     #[inline]
     pub(super) fn release(&self, mut engine: MutexGuard<'_, Engine>) {
         let wake = std::mem::take(&mut engine.wake);
+        if std::mem::take(&mut engine.has_returned) {
+            self.returned.notify_all();
+        }
         let news = std::mem::take(&mut engine.news);
         let is_telling = !news.is_empty();
         if is_telling {
@@ -133,8 +137,22 @@ impl Shared {
         self.sections.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub(super) fn spec(&self, component: u32) -> &ComponentSpec {
-        &self.assembly.components[component as usize]
+    /// Lets nobody else change the fleet.
+    pub(super) fn lock_changes(&self) -> MutexGuard<'_, ()> {
+        self.changes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Frees the engine until a body returns, or for so long.
+    pub(super) fn wait_for_return<'a>(
+        &self,
+        mut engine: MutexGuard<'a, Engine>,
+        time: Duration,
+    ) -> MutexGuard<'a, Engine> {
+        engine.awaited += 1;
+        let waited = self.returned.wait_timeout(engine, time).unwrap_or_else(PoisonError::into_inner);
+        let mut engine = waited.0;
+        engine.awaited -= 1;
+        engine
     }
 
     /// Something about the fleet as a whole.

@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 use saoms_api::Work;
 
 use super::body::Body;
+use super::overrun::{self, Decision};
 use super::settings::nanos;
 use crate::journal::Ring;
 use crate::report::Lateness;
@@ -17,6 +18,12 @@ pub(super) struct Slot {
     /// What runs; absent while its code runs.
     pub(super) body: Option<Box<Body>>,
     pub(super) state: State,
+    /// What the component is made of, as its body has it.
+    pub(super) spec: Arc<ComponentSpec>,
+    /// Its instance is part of a change that is not committed: it is not executed.
+    pub(super) held: bool,
+    /// It has been part of the fleet.
+    pub(super) joined: bool,
     /// The time of its entry in the queue: an entry with another time does not hold any more.
     pub(super) entry: u64,
     /// When the next execution is due.
@@ -66,6 +73,8 @@ pub(super) enum State {
     Failed,
     /// Its code did not return, and nobody waits for it any more.
     Abandoned,
+    /// It is not part of the fleet any more, or not yet.
+    Removed,
 }
 
 /// What was asked for while the component's code was running.
@@ -122,7 +131,7 @@ pub(super) struct Policy {
 }
 
 impl Policy {
-    fn of(spec: &ComponentSpec) -> Policy {
+    pub(super) fn of(spec: &ComponentSpec) -> Policy {
         match &spec.task {
             Some(task) => Policy {
                 periodic: true,
@@ -166,13 +175,17 @@ pub(super) struct Statistics {
 }
 
 impl Slot {
-    pub(super) fn new(index: u32, spec: &ComponentSpec) -> Slot {
+    pub(super) fn new(index: u32, spec: Arc<ComponentSpec>) -> Slot {
         let name: Arc<str> = Arc::from(spec.path.as_str());
-        let policy = Policy::of(spec);
+        let policy = Policy::of(&spec);
         let cancelled = Arc::new(AtomicBool::new(false));
-        let body = Body::new(index, Arc::clone(&name), policy.period, Arc::clone(&cancelled));
+        let body =
+            Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
         Slot {
             body: Some(Box::new(body)),
+            spec,
+            held: true,
+            joined: false,
             state: State::Idle,
             entry: NEVER,
             due: NEVER,
@@ -197,16 +210,27 @@ impl Slot {
         }
     }
 
-    /// Whether it is scheduled, or about to be.
+    /// The decision about its execution that is due.
+    #[inline]
+    pub(super) fn decide(&self, now: u64, limit: u64) -> Decision {
+        overrun::decide(self.policy.overrun, self.due, now, self.policy.period, limit)
+    }
+
+    /// True if it is part of the fleet, or is about to be.
+    pub(super) fn is_member(&self) -> bool {
+        self.state != State::Removed
+    }
+
+    /// True if it is scheduled, or about to be.
     pub(super) fn is_scheduled(&self) -> bool {
         match self.state {
             State::Starting | State::Active => self.wish != Wish::Leave,
             State::Leaving => matches!(self.wish, Wish::Return { .. }),
-            State::Idle | State::Failed | State::Abandoned => false,
+            State::Idle | State::Failed | State::Abandoned | State::Removed => false,
         }
     }
 
-    /// Whether its instance is initialized and not shut down.
+    /// True if its instance is initialized and not shut down.
     pub(super) fn is_alive(&self) -> bool {
         matches!(self.state, State::Active | State::Leaving)
     }

@@ -1,18 +1,10 @@
 use std::fmt;
 use std::io;
-use std::sync::Arc;
 
 use saoms_api::Failure;
 
-use super::body::Job;
-use super::engine::{Engine, Phase};
+use super::change::ChangeError;
 use super::realtime::RealtimeError;
-use super::shared::Shared;
-use super::slot::{State, Wish};
-use super::trace::Step;
-use crate::assemble::Plan;
-use crate::observe::Occurrence;
-use saoms_lang::assembly::Assembly;
 
 /// Why a fleet did not start. Nothing of it runs.
 #[derive(Debug)]
@@ -60,111 +52,14 @@ impl std::error::Error for StartError {
     }
 }
 
-/// Brings the fleet from nothing to its assembly: either every component that runs from the start has initialized, or none is left.
-pub(super) fn start(shared: &Arc<Shared>) -> Result<(), StartError> {
-    let plan = Plan::between(&Assembly::default(), &shared.assembly);
-    let mut begun = Vec::new();
-    for place in plan.add {
-        let index = place as u32;
-        if !shared.lock().slots[place].policy.on_startup {
-            continue;
-        }
-        if let Err((culprit, failure)) = initialize(shared, index) {
-            for earlier in begun.into_iter().rev() {
-                take_back(shared, earlier);
+impl From<ChangeError> for StartError {
+    fn from(error: ChangeError) -> StartError {
+        match error {
+            ChangeError::Failed { component, class, failure } => {
+                StartError::Component { component, class, failure }
             }
-            let spec = shared.spec(culprit);
-            let (component, class) = (spec.path.clone(), spec.class.name().to_owned());
-            return Err(StartError::Component { component, class, failure });
+            // Nothing runs yet that could be busy or end.
+            other => StartError::Observer(Failure::new(other.to_string())),
         }
-        begun.push(index);
-    }
-    shared.clock.start();
-    let mut engine = shared.lock();
-    engine.commit();
-    shared.release(engine);
-    Ok(())
-}
-
-/// Constructs and initializes a component. What it sends is held back. A failure may be that of a provider which it called.
-fn initialize(shared: &Arc<Shared>, index: u32) -> Result<(), (u32, Failure)> {
-    let mut engine = shared.lock();
-    engine.slots[index as usize].state = State::Starting;
-    let Some(mut body) = engine.begin(index, Job::Start, 0) else {
-        return Err((index, Failure::new("it is in use")));
-    };
-    shared.release(engine);
-    let result = body.perform(shared, Job::Start);
-    let mut engine = shared.lock();
-    let result = match result {
-        Ok(()) => {
-            engine.finish(index, body, Job::Start, Ok(()), 0, 0);
-            // A failure in this phase can only be that of a component that was called.
-            match engine.reasons.pop() {
-                None => Ok(()),
-                Some(reason) => {
-                    let culprit = engine.slots.iter().position(|slot| slot.state == State::Failed);
-                    Err((culprit.unwrap_or(index as usize) as u32, Failure::new(reason)))
-                }
-            }
-        }
-        Err(failure) => {
-            engine.out -= 1;
-            let slot = &mut engine.slots[index as usize];
-            slot.state = State::Failed;
-            slot.body = Some(body);
-            Err((index, failure))
-        }
-    };
-    shared.release(engine);
-    result
-}
-
-/// Shuts down a component of a fleet that does not start after all.
-fn take_back(shared: &Arc<Shared>, index: u32) {
-    let mut engine = shared.lock();
-    if engine.slots[index as usize].state != State::Active {
-        return;
-    }
-    let Some(mut body) = engine.begin(index, Job::Shutdown, 0) else { return };
-    shared.release(engine);
-    let result = body.perform(shared, Job::Shutdown);
-    let mut engine = shared.lock();
-    engine.out -= 1;
-    body.part.outbox.clear();
-    if let Err(failure) = result {
-        let message = format!("could not shut down: {failure}");
-        engine.tell(0, index, Occurrence::Failed { message, restart: None });
-    }
-    let slot = &mut engine.slots[index as usize];
-    slot.state = State::Idle;
-    slot.body = Some(body);
-    shared.release(engine);
-}
-
-impl Engine {
-    /// All have initialized: what they sent leaves, and time begins.
-    fn commit(&mut self) {
-        self.phase = Phase::Running;
-        // The timer sleeps without a term so far; where nobody is due, the end of the run still is.
-        self.wake = true;
-        for index in 0..self.slots.len() as u32 {
-            let slot = &mut self.slots[index as usize];
-            let Some(mut body) = slot.body.take_if(|_| slot.state == State::Active) else { continue };
-            self.deliver(&mut body.part, 0);
-            self.step(0, index, Step::Started);
-            self.tell(0, index, Occurrence::Started);
-            let slot = &mut self.slots[index as usize];
-            slot.body = Some(body);
-            if slot.policy.periodic {
-                slot.due = slot.policy.delay;
-                let when = slot.due.min(slot.until);
-                match slot.wish {
-                    Wish::None => self.enqueue(index, when),
-                    Wish::Leave | Wish::Return { .. } => self.resume(index, 0),
-                }
-            }
-        }
-        self.end_if_done(0);
     }
 }

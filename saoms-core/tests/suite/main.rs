@@ -4,6 +4,7 @@
 
 mod actor;
 mod bus;
+mod change;
 mod chaos;
 mod endings;
 mod failures;

@@ -9,7 +9,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use saoms_api::Level;
-use saoms_core::schedule::{Handle, ReplaceError};
+use saoms_core::schedule::{ChangeError, Handle};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::Severity;
@@ -155,16 +155,22 @@ impl Watcher {
             let path = component.path.clone();
             match self.handle.replace(component) {
                 Ok(_) => {}
-                Err(ReplaceError::NotNow(why)) => {
+                Err(ChangeError::NotNow { why, .. }) => {
                     if !again {
                         self.handle.note(Level::Info, format!("component `{path}` is replaced later: {why}"));
                     }
                     self.waiting.push(next);
                 }
-                Err(ReplaceError::Failed(failure)) => self.handle.note(
-                    Level::Error,
-                    format!("component `{path}` is not replaced, the earlier one goes on: {failure}"),
-                ),
+                Err(error) => {
+                    let why = match error {
+                        ChangeError::Failed { failure, .. } => failure.to_string(),
+                        other => other.to_string(),
+                    };
+                    self.handle.note(
+                        Level::Error,
+                        format!("component `{path}` is not replaced, the earlier one goes on: {why}"),
+                    );
+                }
             }
         }
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use saoms_api::Time;
 use saoms_components as _;
-use saoms_core::schedule::{Fleet, ReplaceError, Replacement, Settings};
+use saoms_core::schedule::{ChangeError, Fleet, Settings, Takeover};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::Diagnostics;
@@ -39,15 +39,15 @@ fn robots_without_a_job_go_on_in_their_successors_and_no_luggage_is_lost() {
             for robot in &robots {
                 match fleet.handle().replace(robot.clone()) {
                     Ok(done) => {
-                        assert_eq!(done, Replacement::Continued);
+                        assert_eq!(done, Takeover::Continued);
                         replaced += 1;
                     }
-                    Err(ReplaceError::NotNow(why)) => {
+                    Err(ChangeError::NotNow { why, .. }) => {
                         assert!(why.starts_with("it "), "{why}");
                         busy += 1;
                     }
                     // The last steps are after the end of the run.
-                    Err(ReplaceError::Failed(failure)) => assert_eq!(failure.message(), "the run ends"),
+                    Err(error) => assert_eq!(error, ChangeError::Ending),
                 }
             }
         }
