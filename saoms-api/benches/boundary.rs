@@ -12,11 +12,12 @@ mod host;
 use std::hint::black_box;
 use std::time::Instant;
 
-use saoms_api::abi::{ClassTable, ImportedClass};
+use saoms_api::boundary::class_table;
 use saoms_api::{
     Cause, Class, Component, Context, DynComponent, Failure, Header, Message, Publisher, Registration,
     SharedMessage, Subscription, Time, Topic,
 };
+use saoms_core::plugin::ImportedClass;
 
 use host::FakeHost;
 
@@ -106,7 +107,7 @@ impl Component for Reader {
 fn both<C: Class>(host: &mut FakeHost) -> [Box<dyn DynComponent>; 2] {
     let linked = Registration::of::<C>().construct(&[]).unwrap();
     // SAFETY: the tables are made by this crate, whose functions keep the rules.
-    let imported = unsafe { ImportedClass::new(&ClassTable::of::<C>()) }.construct(&[]).unwrap();
+    let imported = unsafe { ImportedClass::new(&class_table::<C>()) }.construct(&[]).unwrap();
     [linked, imported].map(|mut component| {
         component.initialize(&mut Context::new(host, &[])).unwrap();
         component

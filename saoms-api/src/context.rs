@@ -1,10 +1,10 @@
 use std::fmt;
 use std::time::Duration;
 
+use crate::host::{Host, TARGET_SHIFT};
 use crate::{
-    CallError, Cause, Chance, DynLoop, Failure, Header, Loops, Message, Messages, NamedLoops, Phase,
-    PropertyValue, Publisher, Record, Reference, ReportValue, ServiceCall, SharedMessage, SmolStr,
-    Subscription, Time, Topic, TopicDeclaration, Value, Work,
+    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Phase, Publisher, Record, Reference,
+    ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, Value, Work,
 };
 
 /// How much a log line matters.
@@ -297,114 +297,4 @@ impl<'a> Context<'a> {
     pub fn vote(&mut self, work: Work) {
         self.host.vote(work);
     }
-}
-
-/// Where in a handle of a reference the number of the target is; below it is the place of the reference in its class.
-pub const TARGET_SHIFT: u32 = 16;
-
-/// Sees the loops of a component: name, class and values of each.
-pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(SmolStr, PropertyValue)]) + 'a;
-
-/// What a host gives to a component: the scheduler in a run, a stand-in in a test, a function table behind a plugin's boundary.
-/// Component authors use [`Context`].
-pub trait Host {
-    /// See [`Context::name`].
-    fn name(&self) -> &str;
-    /// The index that stands for this component in [`Header::sender`].
-    fn sender(&self) -> u32;
-    /// The name of the component that an index stands for in [`Header::sender`].
-    fn name_of(&self, sender: u32) -> Option<&str> {
-        let _ = sender;
-        None
-    }
-    /// See [`Context::now`].
-    fn now(&self) -> Time;
-    /// See [`Context::date`].
-    fn date(&self) -> Option<Duration>;
-    /// See [`Context::due`].
-    fn due(&self) -> Time;
-    /// See [`Context::execution`].
-    fn execution(&self) -> u64;
-    /// See [`Context::period`].
-    fn period(&self) -> Duration;
-    /// See [`Context::cancelled`].
-    fn cancelled(&self) -> bool;
-    /// See [`Context::chance`].
-    fn chance(&mut self) -> &mut Chance;
-    /// See [`Context::publish`].
-    ///
-    /// # Errors
-    /// As there.
-    fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure>;
-    /// See [`Context::subscribe`]. The index is the place of the subscription's inbox in the context.
-    ///
-    /// # Errors
-    /// As there.
-    fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure>;
-    /// See [`Context::send`].
-    ///
-    /// # Errors
-    /// As there.
-    fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure>;
-    /// See [`Context::reference`].
-    ///
-    /// # Errors
-    /// As there.
-    fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure>;
-    /// See [`Context::is_wired`].
-    fn is_wired(&self, reference: u32) -> bool;
-    /// How many targets a reference has. The handle of one of them is that of the reference with the number of the target, from 0,
-    /// in the bits from [`TARGET_SHIFT`] on.
-    fn targets(&self, reference: u32) -> u32 {
-        u32::from(self.is_wired(reference))
-    }
-    /// Calls through a reference.
-    ///
-    /// # Errors
-    /// As [`CallError`] says.
-    fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
-    /// Constructs the component's loops. See [`Context::loops`].
-    ///
-    /// # Errors
-    /// As there.
-    fn loops(&mut self) -> Result<NamedLoops, Failure>;
-    /// The journal calls the loop at this place by this name.
-    fn name_loop(&mut self, place: u32, name: &str) {
-        let _ = (place, name);
-    }
-    /// For a host across a boundary, which constructs what it has itself: name, class and values of each of the component's loops.
-    fn chosen_loops(&mut self, visit: &mut LoopVisit<'_>) {
-        let _ = visit;
-    }
-    /// Constructs the loop at this place of [`chosen_loops`](Host::chosen_loops).
-    ///
-    /// # Errors
-    /// It refuses its properties, or there is none.
-    fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
-        Err(Failure::new(format!("there is no loop {place}")))
-    }
-    /// The loop at this place acts from now on, or none.
-    fn enter_loop(&mut self, place: Option<u32>);
-    /// See [`Context::because`].
-    fn because(&mut self, cause: Cause);
-    /// See [`Context::cause`].
-    fn cause(&self) -> Cause;
-    /// Writes to the journal what the present loop saw, decided or did.
-    fn journal(&mut self, phase: Phase, record: &Record);
-    /// Writes to the journal that the present loop changed an entry of the knowledge.
-    fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
-        let _ = (entry, before, after);
-    }
-    /// Whether somebody reads the log at this level, or without one the classic console.
-    fn listens(&self, level: Option<Level>) -> bool;
-    /// See [`Context::log`].
-    fn log(&mut self, level: Level, line: fmt::Arguments<'_>);
-    /// See [`Context::console`].
-    fn console(&mut self, line: fmt::Arguments<'_>);
-    /// See [`Context::report`].
-    fn report(&mut self, path: &str, value: ReportValue);
-    /// See [`Context::count`].
-    fn count(&mut self, path: &str, more: i64);
-    /// See [`Context::vote`].
-    fn vote(&mut self, work: Work);
 }

@@ -17,7 +17,9 @@ impl Failure {
         Failure { message: message.into(), findings: Vec::new() }
     }
 
-    pub(crate) fn with_findings(message: String, findings: Vec<Finding>) -> Failure {
+    /// For hosts: a failure with findings.
+    #[doc(hidden)]
+    pub fn with_findings(message: String, findings: Vec<Finding>) -> Failure {
         Failure { message, findings }
     }
 

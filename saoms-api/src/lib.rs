@@ -60,8 +60,9 @@
 // So that the macros' paths lead here from inside, too.
 extern crate self as saoms_api;
 
-pub mod abi;
 mod adaptation;
+#[doc(hidden)]
+pub mod boundary;
 pub mod cdr;
 mod chance;
 mod component;
@@ -73,6 +74,7 @@ pub mod extension;
 mod failure;
 mod field;
 mod finding;
+pub mod host;
 mod message;
 mod nearest;
 mod property;
@@ -92,7 +94,7 @@ pub use adaptation::{
 };
 pub use chance::Chance;
 pub use component::{Class, Component, DynComponent};
-pub use context::{Context, Host, Level, LoopVisit, TARGET_SHIFT};
+pub use context::{Context, Level};
 pub use failure::{CallError, Failure};
 pub use field::{Arguments, Field};
 pub use finding::{Finding, Place};
@@ -119,6 +121,9 @@ pub use saoms_derive::{
 #[doc(hidden)]
 pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
+    pub use crate::boundary::{API, class_table, loop_class_table, rule_table};
+    pub use crate::contain::install_hook;
+    pub use crate::declaration::Text;
     pub use crate::message::Key;
     pub use crate::property::{
         Preset, PropertyShape, Values, all_names, are_distinct, bounds_fit, chosen, complex, contains,
@@ -127,4 +132,5 @@ pub mod generated {
     pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};
     pub use inventory;
+    pub use saoms_abi::{ClassTable, LoopClassTable, PluginTable, RuleTable};
 }

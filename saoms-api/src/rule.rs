@@ -152,8 +152,9 @@ impl<'a> FleetView<'a> {
         FleetView { missing, ..self }
     }
 
-    /// What [`without`](FleetView::without) left out.
-    pub(crate) fn missing(&self) -> &'a [Option<Vec<&'a str>>] {
+    /// For hosts: the components that [`without`](FleetView::without) left out.
+    #[doc(hidden)]
+    pub fn missing(&self) -> &'a [Option<Vec<&'a str>>] {
         self.missing
     }
 

@@ -7,8 +7,9 @@ mod host;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use saoms_api::abi::{ClassTable, ImportedClass};
+use saoms_api::boundary::class_table;
 use saoms_api::{Class, Component, Context, Failure};
+use saoms_core::plugin::ImportedClass;
 
 use host::FakeHost;
 
@@ -62,7 +63,7 @@ impl Component for Asking {
 fn an_execution_across_the_boundary_allocates_nothing() {
     let mut host = FakeHost::new();
     // SAFETY: the functions of the table are this crate's own.
-    let class = unsafe { ImportedClass::new(&ClassTable::of::<Asking>()) };
+    let class = unsafe { ImportedClass::new(&class_table::<Asking>()) };
     let mut asking = class.construct(&[]).unwrap();
     asking.initialize(&mut Context::new(&mut host, &[])).unwrap();
     let before = COUNT.get();

@@ -4,9 +4,10 @@ use std::fmt::{self, Write as _};
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::host::{Host, LoopVisit};
 use saoms_api::{
-    CallError, Cause, Chance, Failure, Host, Level, LoopVisit, NamedLoops, Phase, PropertyValue, Record,
-    ReportValue, ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration, Value, Work,
+    CallError, Cause, Chance, Failure, Level, NamedLoops, Phase, PropertyValue, Record, ReportValue,
+    ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration, Value, Work,
 };
 use saoms_lang::registry::{Class, LoopClass, Registry, TopicDeclaration as Declared};
 use saoms_lang::schema::Schema;

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BinaryHeap};
 use std::fmt;
 use std::time::Duration;
 
+use saoms_api::host::Host;
 use saoms_api::{
-    CallError, Cause, Chance, Class, Context, DynComponent, Failure, Host, Invocation, Level,
-    LoopRegistration, NamedLoops, Phase, PropertyValue, Record, Registration, ReportValue, ServiceCall,
-    SharedMessage, SmolStr, Time, TopicDeclaration, TopicKind, Work,
+    CallError, Cause, Chance, Class, Context, DynComponent, Failure, Invocation, Level, LoopRegistration,
+    NamedLoops, Phase, PropertyValue, Record, Registration, ReportValue, ServiceCall, SharedMessage, SmolStr,
+    Time, TopicDeclaration, TopicKind, Work,
 };
 
 /// A fleet in virtual time.

@@ -1,7 +1,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use saoms_api::abi::{API, SECTION, VERSION};
+use saoms_abi::{SECTION, VERSION};
+use saoms_api::boundary::API;
 
 /// Why a library cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use std::path::Path;
 use object::elf::{self, FileHeader64, Machine};
 use object::read::elf::{FileHeader as _, ProgramHeader as _, SectionHeader as _};
 use object::{Endianness, FileKind};
-use saoms_api::abi::SECTION;
+use saoms_abi::SECTION;
 
 use super::PluginError;
 

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::{env, error, fmt, fs, io, process};
 
 use libloading::{Library, Symbol};
-use saoms_api::abi::{Entry, ImportedClass, ImportedLoopClass, ImportedRule, PluginTable, VERSION};
+use saoms_abi::{EntryPoint, PluginTable, VERSION};
 
-use super::{Code, Metadata, PluginError};
+use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
 
 /// Loads a library for good.
 pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
@@ -34,7 +34,7 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
     let library: &'static Library = Box::leak(Box::new(library));
     let table = {
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
-        let entry: Symbol<'_, Entry> =
+        let entry: Symbol<'_, EntryPoint> =
             unsafe { library.get(metadata.entry.as_bytes()) }.map_err(|error| {
                 unloadable(format!("it has no function `{}`: {}", metadata.entry, whole(&error)))
             })?;

@@ -1,7 +1,7 @@
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use saoms_api::abi::VERSION;
+use saoms_abi::VERSION;
 use saoms_api::{Code, Severity};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};

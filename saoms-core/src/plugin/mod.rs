@@ -1,8 +1,9 @@
 //! Libraries that bring classes, loops and rules over whole fleets.
 //!
 //! A [`Plugin`] is known by its metadata, which lie in a section of the file and are read before anything in it runs (see
-//! [`saoms_api::abi`]). Its code is loaded when the first component of its classes is constructed, and stays until the program ends.
+//! [`saoms_abi`]). Its code is loaded when the first component of its classes is constructed, and stays until the program ends.
 
+mod boundary;
 mod error;
 mod file;
 mod library;
@@ -13,10 +14,10 @@ mod search;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use saoms_api::abi::{ImportedClass, ImportedLoopClass, ImportedRule};
 use saoms_api::{DynComponent, DynLoop, Failure, Finding, FleetView, PropertyValue};
 use smol_str::SmolStr;
 
+pub use boundary::{ImportedClass, ImportedLoopClass, ImportedRule};
 pub use error::PluginError;
 pub use metadata::Metadata;
 pub use named::open_named;

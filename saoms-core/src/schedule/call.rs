@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use saoms_api::{CallError, Failure, Invocation, ServiceCall, TARGET_SHIFT, cdr};
+use saoms_api::host::TARGET_SHIFT;
+use saoms_api::{CallError, Failure, Invocation, ServiceCall, cdr};
 
 use super::body::{Body, Job, Part};
 use super::engine::Engine;

@@ -2,9 +2,10 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
 use saoms_api::{
-    CallError, Cause, Chance, DynLoop, Failure, Host, Level, LoopVisit, NamedLoops, Phase, Record,
-    ReportValue, ServiceCall, SharedMessage, TARGET_SHIFT, Time, TopicDeclaration, Value, Work,
+    CallError, Cause, Chance, DynLoop, Failure, Level, NamedLoops, Phase, Record, ReportValue, ServiceCall,
+    SharedMessage, Time, TopicDeclaration, Value, Work,
 };
 
 use super::body::Part;

@@ -36,8 +36,17 @@ impl Names {
             "macro", "override", "priv", "try", "typeof", "unsized", "virtual", "yield", "gen",
         ];
         // A crate cannot depend on another one of its own name.
-        const CRATES: &[&str] =
-            &["saoms", "saoms-api", "saoms-components", "saoms-core", "saoms-derive", "saoms-testkit"];
+        const CRATES: &[&str] = &[
+            "saoms",
+            "saoms-abi",
+            "saoms-api",
+            "saoms-components",
+            "saoms-core",
+            "saoms-derive",
+            "saoms-lang",
+            "saoms-testkit",
+            "saoms-tools",
+        ];
         if !starts || !fits {
             return Err(format!(
                 "found the name `{package}`, expected one for a Rust package: a small letter, then small letters, digits, `-` and `_`, such as `my-robot`"

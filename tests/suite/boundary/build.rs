@@ -47,7 +47,7 @@ fn built() -> &'static Path {
     })
 }
 
-/// `saoms-api` with another version in another folder.
+/// `saoms-api` and the crates that it needs, with another version in another folder.
 fn copy_of_api(folder: &Path) {
     let manifest = |text: &str| {
         let mut lines: Vec<String> = Vec::new();
@@ -64,9 +64,10 @@ fn copy_of_api(folder: &Path) {
     let (_, package) = workspace.split_once("[workspace.package]").unwrap();
     let (package, _) = package.split_once("\n[workspace.lints").unwrap();
     let package = package.replace("version = \"0.1.0\" }", "version = \"0.1.99\" }");
-    let members = "[workspace]\nmembers = [\"saoms-api\", \"saoms-derive\"]\n\n[workspace.package]";
+    let members =
+        "[workspace]\nmembers = [\"saoms-abi\", \"saoms-api\", \"saoms-derive\"]\n\n[workspace.package]";
     write(&folder.join("Cargo.toml"), &format!("{members}{package}\n"));
-    for name in ["saoms-api", "saoms-derive"] {
+    for name in ["saoms-abi", "saoms-api", "saoms-derive"] {
         copy(&root().join(name).join("src"), &folder.join(name).join("src"), &str::to_owned);
         copy_file(&root().join(name).join("Cargo.toml"), &folder.join(name).join("Cargo.toml"), &manifest);
     }

@@ -27,7 +27,7 @@ fn messages_and_calls_go_between_plugins_and_the_program() {
 #[test]
 fn a_library_of_another_version_in_another_folder_works() {
     let bytes = fs::read(library("elsewhere")).unwrap();
-    let own = format!("\"api\":\"{}\"", saoms_api::abi::API);
+    let own = format!("\"api\":\"{}\"", saoms_api::boundary::API);
     let has = |text: &str| bytes.windows(text.len()).any(|part| part == text.as_bytes());
     assert!(has("\"api\":\"0.1.99\"") && !has(&own), "the test has to be one of another version");
     let components = component("Sender", "good.Sender", "") + &component("Echo", "elsewhere.Echo", "");

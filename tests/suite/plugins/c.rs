@@ -30,7 +30,7 @@ fn build(sources: &[PathBuf], library: &Path) {
     command
         // JSON is longer than the texts that C99 promises to take.
         .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wno-overlength-strings"])
-        .args(["-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I", "saoms-api/include", "-o"])
+        .args(["-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-I", "saoms-abi/include", "-o"])
         .arg(library)
         .args(sources)
         .current_dir(root());

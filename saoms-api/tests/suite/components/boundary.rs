@@ -1,6 +1,6 @@
 //! What a component or a loop does behind the boundary to plugins is what it does without one.
 
-use saoms_api::abi::{ClassTable, ImportedClass, ImportedLoopClass, ImportedRule, LoopClassTable, RuleTable};
+use saoms_api::boundary::{class_table, loop_class_table, rule_table};
 use saoms_api::{
     CallError, Cause, Class, ClassView, Code, Component, ComponentView, Context, DynComponent, DynLoop,
     Effector, Entries, Entry, Extras, Failure, Field, Finding, FleetRule, FleetView, Header, Invocation,
@@ -8,6 +8,7 @@ use saoms_api::{
     Publisher, Record, Registration, ReportValue, Severity, SharedMessage, SmolStr, Subscription, Time,
     Topic, TypedCall, Work, interface, record,
 };
+use saoms_core::plugin::{ImportedClass, ImportedLoopClass, ImportedRule};
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -142,7 +143,7 @@ fn linked(values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, 
 
 fn imported(values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
     // SAFETY: the functions of the tables are this crate's own.
-    unsafe { ImportedClass::new(&ClassTable::of::<Busy>()) }.construct(values)
+    unsafe { ImportedClass::new(&class_table::<Busy>()) }.construct(values)
 }
 
 type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
@@ -389,7 +390,7 @@ fn a_loop_does_the_same_behind_the_boundary() {
     let expected = dimmed(LoopRegistration::of::<Dimmer>().construct(&[]).unwrap());
     assert!(expected.contains("\"isOn: yes -> no\"") && expected.contains("Ok(2)"), "{expected}");
     // SAFETY: the functions of the tables are this crate's own.
-    let imported = unsafe { ImportedLoopClass::new(&LoopClassTable::of::<Dimmer>()) };
+    let imported = unsafe { ImportedLoopClass::new(&loop_class_table::<Dimmer>()) };
     assert_eq!(dimmed(imported.construct(&[]).unwrap()), expected);
     let panics = [("panics".into(), "true".into())];
     let text = dimmed(imported.construct(&panics).unwrap());
@@ -435,7 +436,7 @@ fn a_rule_finds_the_same_behind_the_boundary() {
     let class = Rc::new(ClassView { publishes: Vec::new(), ..class });
     let other = ComponentView { class, period: None, has_broker: false, values: &[], ..one.clone() };
     // SAFETY: the function of the table is this crate's own.
-    let imported = unsafe { ImportedRule::new(RuleTable::of(&SHOWN)) };
+    let imported = unsafe { ImportedRule::new(rule_table(&SHOWN)) };
     for missing in [
         vec![],
         vec![Some(vec!["{}"])],

@@ -4,8 +4,9 @@ use std::any::Any;
 use std::fmt;
 use std::time::Duration;
 
+use saoms_api::host::Host;
 use saoms_api::{
-    CallError, Cause, Chance, Context, DynComponent, Failure, Host, Invocation, Level, LoopRegistration,
+    CallError, Cause, Chance, Context, DynComponent, Failure, Invocation, Level, LoopRegistration,
     NamedLoops, Operation, Phase, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration,
     Value, Work,
 };

@@ -4,7 +4,7 @@ use std::ffi::c_void;
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::{ptr, thread};
 
-use saoms_api::abi::{
+use saoms_abi::{
     Bytes, ClassTable, ComponentTable, FindingSink, HostHandle, PluginTable, PropertyView, RecordView,
     ReportView, Sink, Status, TopicView, ValueView,
 };

@@ -35,7 +35,7 @@ fn build(folder: &Path, definitions: &[&str]) {
     let new = folder.join("new");
     let output = Command::new("cc")
         .args(["-std=c99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
-        .arg(root.join("saoms-api/include"))
+        .arg(root.join("saoms-abi/include"))
         .args(definitions)
         .arg(root.join("tests/suite/plugins/reload/counter.c"))
         .arg("-o")

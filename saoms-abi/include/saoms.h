@@ -1,0 +1,564 @@
+/* The boundary between SAOMS and a library that was built separately, for authors in C and in languages that call C.
+ *
+ * Generated from `saoms-abi`; `docs/c.md` is the guide, `plugins/robot-in-c` an example.
+ *
+ * - Nothing is shared but these tables of functions and the bytes that are lent for the time of a call. Each side frees
+ *   what it allocated; text and bytes that a callee gives back go through a sink of the caller.
+ * - A library is never unloaded, so texts that are part of it may be kept. Nothing may unwind or jump out of a function.
+ * - A component, and all functions that it is lent, are used by one thread at a time, and only until the present call
+ *   ends.
+ * - All text is UTF-8. Messages, arguments and replies are CDR: see `saoms_author.h`, which helps with them.
+ * - A table says its size, in bytes, in its first member. Within one version tables only grow at their end: ask the size
+ *   of a table of the program before you use a function that is newer than the oldest program which you support.
+ */
+
+#ifndef SAOMS_H
+#define SAOMS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The section of a library for its metadata, which are read before anything in the library runs:
+// `SAOMS_METADATA static const char metadata[] = "{\"saoms\":\"plugin\",...}";`. `docs/c.md` describes them.
+#define SAOMS_METADATA __attribute__((used, section(".saoms.plugin")))
+
+// The function that the metadata name as the entry: `SAOMS_EXPORT const SaomsPluginTable *my_entry(uint32_t version)`.
+#ifdef __cplusplus
+#define SAOMS_EXPORT extern "C" __attribute__((visibility("default")))
+#else
+#define SAOMS_EXPORT __attribute__((visibility("default")))
+#endif
+
+struct SaomsHostHandle;
+
+// The greatest length of a message, a text or a reply; a longer one is refused.
+#define SAOMS_MAX_BYTES (64 << 20)
+
+// The version of the boundary. A program loads libraries of its own version alone.
+#define SAOMS_ABI_VERSION 1
+
+// Bytes that are lent for the time of a call.
+typedef struct SaomsBytes {
+    // The first byte; may be null when there are none.
+    const uint8_t *data;
+    // Their number.
+    size_t length;
+} SaomsBytes;
+
+// The outcome of a call. Every value but `OK` comes with a text in the call's sink for errors.
+typedef uint32_t SaomsStatus;
+// It is done.
+#define SaomsStatus_OK 0
+// A failure.
+#define SaomsStatus_FAILED 1
+// The code of the callee panicked.
+#define SaomsStatus_PANICKED 2
+// The reference is not wired; the text is its name.
+#define SaomsStatus_NOT_WIRED 3
+// The provider is in the middle of something; the text is its name.
+#define SaomsStatus_BUSY 4
+// The provider is not running; the text is its name.
+#define SaomsStatus_NOT_RUNNING 5
+// The provider knows no such service, operation or arguments.
+#define SaomsStatus_MISMATCH 6
+// The provider failed; the text is its name, a zero byte, and its words.
+#define SaomsStatus_PROVIDER_FAILED 7
+
+// The value of a property.
+typedef struct SaomsPropertyView {
+    // The property's name; empty for one of many values.
+    struct SaomsBytes name;
+    // 0: `text` counts; 1: `children` are its many values; 2: `children` are the properties of a complex one.
+    uint32_t kind;
+    // The text.
+    struct SaomsBytes text;
+    // The values that it consists of.
+    const struct SaomsPropertyView *children;
+    // Their number.
+    size_t child_count;
+} SaomsPropertyView;
+
+// A place in a composite: a component, a property of it, or a part of the property's text.
+typedef struct SaomsPlaceView {
+    // The place of the component in its fleet; `SIZE_MAX`: the one that says so.
+    size_t component;
+    // The property; null: the component itself.
+    struct SaomsBytes property;
+    // 1: these bytes of this value of the property, which counts from 0; 0: all of it.
+    uint32_t has_part;
+    // The number of the value.
+    size_t value;
+    // The first byte.
+    size_t start;
+    // The first byte behind it.
+    size_t end;
+} SaomsPlaceView;
+
+// A further place that explains a finding.
+typedef struct SaomsLabelView {
+    // Its place.
+    struct SaomsPlaceView place;
+    // The explanation.
+    struct SaomsBytes text;
+} SaomsLabelView;
+
+// A fault in a composite, found by a class or a rule.
+typedef struct SaomsFindingView {
+    // Its place.
+    struct SaomsPlaceView place;
+    // The message: what was found, and what was expected.
+    struct SaomsBytes message;
+    // Lines of help.
+    const struct SaomsBytes *helps;
+    // Their number.
+    size_t help_count;
+    // The text that is probably meant in place of the part; null: none.
+    struct SaomsBytes instead;
+    // Further places.
+    const struct SaomsLabelView *labels;
+    // Their number.
+    size_t label_count;
+    // 0: as the rule's code says, 1: a note, 2: a warning, 3: an error.
+    uint32_t severity;
+} SaomsFindingView;
+
+// The receiver of findings that a callee gives back. They are copied at once.
+typedef struct SaomsFindingSink {
+    // The caller's own; the first argument of `put`.
+    void *state;
+    // Takes a finding.
+    void (*put)(void *state, const struct SaomsFindingView *finding);
+} SaomsFindingSink;
+
+// The receiver of text or bytes that a callee gives back. They are copied at once; putting again appends.
+typedef struct SaomsSink {
+    // The caller's own; the first argument of `put`.
+    void *state;
+    // Appends bytes.
+    void (*put)(void *state, struct SaomsBytes bytes);
+} SaomsSink;
+
+// Makes a component or a loop from the values that the composite gives, which it may refuse with findings. The checker
+// makes components that never run, so it does no work, opens nothing and sends nothing.
+typedef SaomsStatus (*SaomsConstruct)(const struct SaomsPropertyView *values,
+                                      size_t value_count,
+                                      void **made,
+                                      struct SaomsFindingSink findings,
+                                      struct SaomsSink error);
+
+// A topic that a component publishes or subscribes to.
+typedef struct SaomsTopicView {
+    // The name before any `topicRename`.
+    struct SaomsBytes name;
+    // The name of the message type.
+    struct SaomsBytes message;
+    // The schema of the message type, as JSON.
+    struct SaomsBytes schema;
+    // 0: state, 1: event.
+    uint32_t kind;
+} SaomsTopicView;
+
+// A value for the run's report.
+typedef struct SaomsReportView {
+    // Its name within `children` of kind 6.
+    struct SaomsBytes name;
+    // 0: null, 1: false or true (`bits`), 2: a whole number (`bits`), 3: a number (`bits` of its IEEE
+    // 754 form), 4: the `text`, 5: the list of `children`, 6: the named `children`.
+    uint32_t kind;
+    // A number.
+    uint64_t bits;
+    // A text.
+    struct SaomsBytes text;
+    // The values that it consists of.
+    const struct SaomsReportView *children;
+    // Their number.
+    size_t child_count;
+} SaomsReportView;
+
+// Sees a loop of a component: its name, its class, its values and their number.
+typedef void (*SaomsLoopVisitor)(void *visitor,
+                                 struct SaomsBytes name,
+                                 struct SaomsBytes class_name,
+                                 const struct SaomsPropertyView *values,
+                                 size_t value_count);
+
+// The declaration of an entry.
+typedef struct SaomsEntryView {
+    // Its name; stays as long as the program runs.
+    struct SaomsBytes name;
+    // Its type as a fragment of a schema; stays as long as the program runs.
+    struct SaomsBytes of;
+    // 1 if of the loops of a component only one may change it.
+    uint32_t effector;
+} SaomsEntryView;
+
+// A value of a record or an entry.
+typedef struct SaomsValueView {
+    // 0: false or true (`bits` 0 or 1), 1: a whole number (`bits` as a signed integer), 2: a number
+    // (`bits` of its IEEE 754 form), 3: a pair (the first in the lower 32 bits of `bits`), 4: the `word`, 5: no value.
+    uint32_t kind;
+    // The value.
+    uint64_t bits;
+    // A word; it has to be part of the library.
+    struct SaomsBytes word;
+} SaomsValueView;
+
+// The functions of entries. The first argument of each is the `state` of their handle. An entry is known by its place.
+typedef struct SaomsEntriesFunctions {
+    // The size of this table in bytes.
+    size_t size;
+    // Their declaration, as JSON; empty for entries of a loop.
+    struct SaomsBytes (*declaration)(void *state);
+    // Their number.
+    uint32_t (*count)(void *state);
+    // The declaration of one that is there.
+    void (*describe)(void *state, uint32_t entry, struct SaomsEntryView *view);
+    // Gives the value of one; 0 where it is no single value.
+    uint32_t (*get)(void *state, uint32_t entry, struct SaomsValueView *value);
+    // Sets it.
+    SaomsStatus (*set)(void *state, uint32_t entry, const struct SaomsValueView *value, struct SaomsSink error);
+    // Gives the CDR form of one.
+    SaomsStatus (*get_bytes)(void *state, uint32_t entry, struct SaomsSink bytes, struct SaomsSink error);
+    // Sets it from that.
+    SaomsStatus (*set_bytes)(void *state, uint32_t entry, struct SaomsBytes bytes, struct SaomsSink error);
+    // Frees entries that were given away; does nothing for those that are lent.
+    void (*destroy)(void *state);
+} SaomsEntriesFunctions;
+
+// Entries that the other side holds: the knowledge of a component for the time of a call, or the entries that a loop
+// adds to it.
+typedef struct SaomsEntriesHandle {
+    // The first argument of each function.
+    void *state;
+    // The functions.
+    const struct SaomsEntriesFunctions *functions;
+} SaomsEntriesHandle;
+
+// A function of a loop, with its component's knowledge.
+typedef SaomsStatus (*SaomsStep)(void *looping,
+                                 const struct SaomsEntriesHandle *knowledge,
+                                 const struct SaomsHostHandle *host,
+                                 struct SaomsSink error);
+
+// The functions of a loop. The first argument of each is the loop.
+typedef struct SaomsLoopTable {
+    // The size of this table in bytes.
+    size_t size;
+    // The name of an entry that it changes, by its number from 0; empty behind the last. It stays as long as the
+    // program runs.
+    struct SaomsBytes (*effect)(void *looping, uint32_t number);
+    // The entries that it adds to the knowledge; 0 where there are none.
+    uint32_t (*entries)(void *looping, struct SaomsEntriesHandle *given);
+    // Asks for topics, references and entries. Called once, after all loops have added their entries.
+    SaomsStep initialize;
+    // Takes in messages and measurements. Called in each execution, for all loops before the first one adapts.
+    SaomsStep monitor;
+    // Analyzes, plans and executes, and writes symptom and decision to the journal. The caller finds the changes by
+    // itself.
+    SaomsStep adapt;
+    // Ends the work.
+    SaomsStep shutdown;
+    // Frees the loop.
+    void (*destroy)(void *looping);
+} SaomsLoopTable;
+
+// A loop that is given away, with its functions.
+typedef struct SaomsLoopInstance {
+    // The loop.
+    void *instance;
+    // Its functions.
+    const struct SaomsLoopTable *table;
+} SaomsLoopInstance;
+
+// A record of the journal. Text and names have to be part of the library.
+typedef struct SaomsRecordView {
+    // The text, with `{name}` where a value goes.
+    struct SaomsBytes text;
+    // The names of the values, each with a comma behind it.
+    struct SaomsBytes names;
+    // The values.
+    const struct SaomsValueView *values;
+    // The number of the values, at most 6.
+    size_t count;
+} SaomsRecordView;
+
+// The functions of a component's context. The first argument of each is the `state` of the handle that the present
+// call was lent.
+//
+// Times are nanoseconds of the run, which starts at 0.
+typedef struct SaomsHostFunctions {
+    // The size of this table in bytes.
+    size_t size;
+    // The component's name: its path in the composite.
+    struct SaomsBytes (*name)(void *state);
+    // The component's index in the running fleet, as in the messages that it sends.
+    uint32_t (*sender)(void *state);
+    // The name of the component with this index; null where there is none.
+    struct SaomsBytes (*name_of)(void *state, uint32_t sender);
+    // The present time. In virtual time it stands still during an execution.
+    uint64_t (*now)(void *state);
+    // The present date and time of day, in nanoseconds since 1970-01-01 00:00 of local time; `UINT64_MAX`: there is
+    // none, in virtual time.
+    uint64_t (*date)(void *state);
+    // The time when the present execution was due.
+    uint64_t (*due)(void *state);
+    // The number of the present execution, from 0.
+    uint64_t (*execution)(void *state);
+    // The component's period in nanoseconds, 0 for a passive one.
+    uint64_t (*period)(void *state);
+    // 1 if a long execution should end early: the component was unscheduled, or the run ends.
+    uint32_t (*cancelled)(void *state);
+    // The state of the component's xoshiro256++, four numbers, which may be advanced in place until the call ends.
+    uint64_t *(*chance)(void *state);
+    // The next random number of the component's own source: the same seed gives the same ones.
+    uint64_t (*next_random)(void *state);
+    // Becomes a publisher of a topic that the class declares, in `initialize` alone; gives the index to send with.
+    SaomsStatus (*publish)(void *state, const struct SaomsTopicView *topic, uint32_t *publisher, struct SaomsSink error);
+    // Becomes a subscriber of a topic that the class declares, in `initialize` alone; gives the place of its inbox.
+    SaomsStatus (*subscribe)(void *state,
+                             const struct SaomsTopicView *topic,
+                             uint32_t *subscription,
+                             struct SaomsSink error);
+    // Sends a message in its CDR form, with its key or null; it leaves at the end of the present execution.
+    SaomsStatus (*send)(void *state,
+                        uint32_t publisher,
+                        const uint64_t *key,
+                        struct SaomsBytes message,
+                        struct SaomsSink error);
+    // Gives the index of a reference that the class declares, by its name and the name of its interface, in
+    // `initialize` alone.
+    SaomsStatus (*reference)(void *state,
+                             struct SaomsBytes name,
+                             struct SaomsBytes interface,
+                             uint32_t *reference,
+                             struct SaomsSink error);
+    // 1 if the reference leads to a component.
+    uint32_t (*is_wired)(void *state, uint32_t reference);
+    // The number of targets of a reference; the number of one, from 0, goes into the upper 16 bits of the reference's
+    // index.
+    uint32_t (*targets)(void *state, uint32_t reference);
+    // Calls an operation, by its number, through a reference: arguments and reply in their CDR form.
+    SaomsStatus (*call)(void *state,
+                        uint32_t reference,
+                        uint32_t operation,
+                        struct SaomsBytes arguments,
+                        struct SaomsSink reply,
+                        struct SaomsSink error);
+    // 1 if somebody reads the log at a level: 0 errors, 1 warnings, 2 information, 3 for debugging, 4 the classic
+    // console.
+    uint32_t (*listens)(void *state, uint32_t level);
+    // Writes a line at such a level.
+    void (*log)(void *state, uint32_t level, struct SaomsBytes line);
+    // Sets a value of the run's report, such as `map.blocks`; dots lead into nested objects. The last value counts.
+    void (*report)(void *state, struct SaomsBytes path, const struct SaomsReportView *value);
+    // Adds to a number of the run's report, such as `luggage.delivered`, which several components may share.
+    void (*count)(void *state, struct SaomsBytes path, int64_t more);
+    // Says that this component has work left (0), or that its work is done (1). The run ends by itself when at least
+    // one component voted and the work of all that voted is done.
+    void (*vote)(void *state, uint32_t work);
+    // Shows each of the component's loops to `visit`, which gets `visitor` as its first argument.
+    void (*chosen_loops)(void *state, void *visitor, SaomsLoopVisitor visit);
+    // Makes the loop at this place of `chosen_loops`, of whatever library it is, and gives it away.
+    SaomsStatus (*chosen_loop)(void *state, uint32_t place, struct SaomsLoopInstance *given, struct SaomsSink error);
+    // Names the loop at this place.
+    void (*name_loop)(void *state, uint32_t place, struct SaomsBytes name);
+    // Says that the loop at this place acts from now on; `UINT32_MAX`: none.
+    void (*enter_loop)(void *state, uint32_t place);
+    // Says that records and messages from here on follow from a record of the journal, such as the cause of a message.
+    void (*because)(void *state, uint64_t cause);
+    // The cause that a message carries which is sent now.
+    uint64_t (*cause)(void *state);
+    // Writes a record to the journal: of phase 0 a symptom, 1 a decision, 2 an effect.
+    void (*journal)(void *state, uint32_t phase, const struct SaomsRecordView *record);
+    // Writes to the journal that the present loop changed an entry; its name has to be part of the library.
+    void (*changed)(void *state,
+                    struct SaomsBytes entry,
+                    const struct SaomsValueView *before,
+                    const struct SaomsValueView *after);
+} SaomsHostFunctions;
+
+// A message that arrived.
+typedef struct SaomsMessageView {
+    // Its CDR form.
+    struct SaomsBytes bytes;
+    // The time when it was sent, in nanoseconds of the run.
+    uint64_t sent;
+    // The record of the journal that it follows from; 0 for none.
+    uint64_t cause;
+    // Its key, if `has_key` is 1.
+    uint64_t key;
+    // The index of its sender.
+    uint32_t sender;
+    // 0 or 1.
+    uint32_t has_key;
+} SaomsMessageView;
+
+// The messages that arrived for a subscription since the last execution.
+typedef struct SaomsInbox {
+    // The oldest first.
+    const struct SaomsMessageView *messages;
+    // Their number.
+    size_t count;
+} SaomsInbox;
+
+// The context that a component is lent for the time of a call: its functions, and the messages that arrived.
+typedef struct SaomsHostHandle {
+    // The first argument of each function.
+    void *state;
+    // The functions.
+    const struct SaomsHostFunctions *functions;
+    // One for each subscription, in the order of subscribing; none at all when nothing arrived.
+    const struct SaomsInbox *inboxes;
+    // Their number.
+    size_t inbox_count;
+} SaomsHostHandle;
+
+// The functions of the components of a class. The first argument of each is the component.
+//
+// They are called from one thread at a time and never twice at once. One that answers something else than `OK` has
+// failed, with the text that it put into `error`; the component's `restart` policy decides then.
+typedef struct SaomsComponentTable {
+    // The size of this table in bytes.
+    size_t size;
+    // Asks for topics and references. Called once, when the component is scheduled.
+    SaomsStatus (*initialize)(void *component, const struct SaomsHostHandle *host, struct SaomsSink error);
+    // Does the work of one period, with what arrived since the last one. Never called for a passive component. It must
+    // not wait for anything.
+    SaomsStatus (*execute)(void *component, const struct SaomsHostHandle *host, struct SaomsSink error);
+    // Ends the work; messages that it sends still leave. Called once, when the component is unscheduled or the run
+    // ends.
+    SaomsStatus (*shutdown)(void *component, const struct SaomsHostHandle *host, struct SaomsSink error);
+    // Serves a call of one of the services that the class declares: the number of the operation, arguments and reply
+    // in their CDR form.
+    SaomsStatus (*serve)(void *component,
+                         const struct SaomsHostHandle *host,
+                         struct SaomsBytes service,
+                         uint32_t operation,
+                         struct SaomsBytes arguments,
+                         struct SaomsSink reply,
+                         struct SaomsSink error);
+    // Frees the component.
+    void (*destroy)(void *component);
+    // Puts the state that a component of a new build goes on with, when that takes its place in a running fleet;
+    // nothing where it begins anew. `FAILED`: it cannot be replaced now. May be null: there is nothing to go on with.
+    SaomsStatus (*save)(void *component, struct SaomsSink saved, struct SaomsSink error);
+    // Goes on with the state that a component of an earlier build put, after `initialize`. May be null: it cannot.
+    SaomsStatus (*restore)(void *component, struct SaomsBytes saved, struct SaomsSink error);
+} SaomsComponentTable;
+
+// A class: how to make components of it, and their functions.
+typedef struct SaomsClassTable {
+    // The size of this table in bytes.
+    size_t size;
+    // Makes a component of it.
+    SaomsConstruct construct;
+    // The functions of its components.
+    const struct SaomsComponentTable *component;
+} SaomsClassTable;
+
+// A loop class: how to make loops of it, and their functions.
+typedef struct SaomsLoopClassTable {
+    // The size of this table in bytes.
+    size_t size;
+    // Makes a loop of it.
+    SaomsConstruct construct;
+    // The functions of its loops.
+    const struct SaomsLoopTable *looping;
+} SaomsLoopClassTable;
+
+// A list of texts.
+typedef struct SaomsTextList {
+    // The first.
+    const struct SaomsBytes *texts;
+    // Their number.
+    size_t count;
+} SaomsTextList;
+
+// A reference of a component that is wired.
+typedef struct SaomsWireView {
+    // Its name.
+    struct SaomsBytes reference;
+    // The index of the component that it leads to.
+    size_t target;
+} SaomsWireView;
+
+// A component of a fleet.
+typedef struct SaomsMemberView {
+    // Its path in the composite.
+    struct SaomsBytes path;
+    // The name of its class, as declared.
+    struct SaomsBytes class_name;
+    // The declaration of its class.
+    struct SaomsBytes declaration;
+    // The declarations of the classes that its class extends, the nearest first.
+    struct SaomsTextList extends;
+    // The values of the class's own properties, presets included; an absent one takes its default.
+    const struct SaomsPropertyView *values;
+    // Their number.
+    size_t value_count;
+    // From one execution to the next, in nanoseconds; `UINT64_MAX`: it is not periodic.
+    uint64_t period;
+    // 1 if its messages go to a broker, where others may be that this fleet does not know; otherwise 0.
+    uint32_t has_broker;
+    // The topics that it publishes, by their names before any `topicRename`.
+    struct SaomsTextList publishes;
+    // The classes of its loops, in their order.
+    struct SaomsTextList loops;
+    // Its references that are wired.
+    const struct SaomsWireView *wires;
+    // Their number.
+    size_t wire_count;
+} SaomsMemberView;
+
+// The components of a fleet.
+typedef struct SaomsFleetList {
+    // The components in document order; the place of one here is its index.
+    const struct SaomsMemberView *components;
+    // Their number.
+    size_t component_count;
+    // The components that are left out for a fault of their own: the declarations of the class of each and of those
+    // that this extends; none where the class is not known.
+    const struct SaomsTextList *missing;
+    // Their number.
+    size_t missing_count;
+} SaomsFleetList;
+
+// A rule over whole fleets: finds faults that no component can see alone.
+typedef struct SaomsRuleTable {
+    // The size of this table in bytes.
+    size_t size;
+    // The first argument of `check`.
+    const void *state;
+    // Puts what it finds in a fleet.
+    SaomsStatus (*check)(const void *state,
+                         const struct SaomsFleetList *fleet,
+                         struct SaomsFindingSink findings,
+                         struct SaomsSink error);
+} SaomsRuleTable;
+
+// The tables of what a library offers, each list in the order of its metadata.
+typedef struct SaomsPluginTable {
+    // The size of this table in bytes.
+    size_t size;
+    // The version of the boundary that the library was built with.
+    uint32_t version;
+    // The metadata, as in its own section of the library.
+    struct SaomsBytes metadata;
+    // The classes.
+    const struct SaomsClassTable *const *classes;
+    // Their number.
+    size_t class_count;
+    // The loops.
+    const struct SaomsLoopClassTable *const *loops;
+    // Their number.
+    size_t loop_count;
+    // The rules over whole fleets.
+    const struct SaomsRuleTable *const *rules;
+    // Their number.
+    size_t rule_count;
+} SaomsPluginTable;
+
+// The function by which a library gives its table: it takes the version of the program's boundary.
+typedef const struct SaomsPluginTable *(*SaomsEntry)(uint32_t version);
+
+#endif  /* SAOMS_H */

@@ -1,0 +1,59 @@
+use saoms_abi::{Bytes, RecordView, ValueView};
+
+use crate::{Failure, Record, Value};
+
+/// The view of a value.
+pub(in crate::boundary) fn value_view(value: Value) -> ValueView {
+    let (kind, bits, word) = match value {
+        Value::Bool(value) => (0, u64::from(value), Bytes::NONE),
+        Value::Integer(value) => (1, value as u64, Bytes::NONE),
+        Value::Number(value) => (2, value.to_bits(), Bytes::NONE),
+        Value::Pair(x, y) => (3, u64::from(x as u32) | u64::from(y as u32) << 32, Bytes::NONE),
+        Value::Word(word) => (4, 0, Bytes::text(word)),
+        Value::Nothing => (5, 0, Bytes::NONE),
+    };
+    ValueView { kind, bits, word }
+}
+
+/// The value.
+///
+/// # Errors
+/// It is none.
+///
+/// # Safety
+/// A word is part of a library that stays loaded.
+pub(in crate::boundary) unsafe fn read_value(view: ValueView) -> Result<Value, Failure> {
+    Ok(match view.kind {
+        0 => Value::Bool(view.bits != 0),
+        1 => Value::Integer(view.bits as i64),
+        2 => Value::Number(f64::from_bits(view.bits)),
+        3 => Value::Pair(view.bits as u32 as i32, (view.bits >> 32) as u32 as i32),
+        // SAFETY: as the caller promises.
+        4 => Value::Word(unsafe { view.word.get_text() }?),
+        5 => Value::Nothing,
+        other => {
+            return Err(Failure::new(format!("found {other} for the kind of a value, expected 0 to 5")));
+        }
+    })
+}
+
+/// The record behind a view.
+///
+/// # Errors
+/// It has too many values, or one of them, or a text, cannot be read.
+///
+/// # Safety
+/// The view is readable, and its texts are for as long as the program runs.
+pub(in crate::boundary) unsafe fn read_record(view: &RecordView) -> Result<Record, Failure> {
+    let mut values = [Value::Bool(false); 6];
+    if view.count > values.len() {
+        return Err(Failure::new(format!("found {} values, expected at most {}", view.count, values.len())));
+    }
+    // SAFETY: as the caller promises.
+    unsafe {
+        for (place, value) in values.iter_mut().enumerate().take(view.count) {
+            *value = read_value(*view.values.add(place))?;
+        }
+        Ok(Record::new(view.text.get_text()?, view.names.get_text()?, values))
+    }
+}

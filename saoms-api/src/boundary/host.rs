@@ -1,0 +1,326 @@
+//! The functions of a context that this side lends.
+
+use std::ffi::c_void;
+use std::time::Duration;
+
+use saoms_abi::{
+    Bytes, HostFunctions, LoopInstance, LoopVisitor, RecordView, ReportView, Sink, Status, TopicView,
+    ValueView,
+};
+
+use crate::host::Host;
+use crate::{Cause, Failure, Header, Level, Phase, SharedMessage, Time, Work};
+
+use super::convert::{PropertyViews, read_record, read_report, read_topic, read_value};
+use super::guard::{guarded, guarded_call, guarded_value};
+use super::lease_cell::host;
+use super::looping::export_loop;
+use super::service::BytesCall;
+
+/// The levels of [`HostFunctions::log`] in their order; behind them comes the console.
+pub(super) const LEVELS: [Level; 4] = [Level::Error, Level::Warning, Level::Info, Level::Debug];
+
+/// Runs code with the host behind a state, for a function that cannot answer with a failure: then the answer is
+/// `otherwise`.
+///
+/// # Safety
+/// The state is that of a handle, however old.
+unsafe fn with_host<T: Copy>(state: *mut c_void, otherwise: T, code: impl FnOnce(&mut dyn Host) -> T) -> T {
+    // SAFETY: as the caller promises.
+    guarded_value(otherwise, || unsafe { host(state) }.map_or(otherwise, |mut host| code(&mut *host)))
+}
+
+macro_rules! getters {
+    ($($function:ident -> $type:ty, $otherwise:expr, |$host:ident| $value:expr;)*) => {
+        $(unsafe extern "C" fn $function(state: *mut c_void) -> $type {
+            // SAFETY: callers pass the state of their handle.
+            unsafe { with_host(state, $otherwise, |$host| $value) }
+        })*
+    };
+}
+
+getters! {
+    name -> Bytes, Bytes::NONE, |host| Bytes::text(host.name());
+    sender -> u32, 0, |host| host.sender();
+    now -> u64, 0, |host| host.now().as_nanos();
+    date -> u64, u64::MAX, |host| host.date().map_or(u64::MAX, nanos);
+    due -> u64, 0, |host| host.due().as_nanos();
+    execution -> u64, 0, |host| host.execution();
+    period -> u64, 0, |host| nanos(host.period());
+    cancelled -> u32, 0, |host| u32::from(host.cancelled());
+    chance -> *mut u64, std::ptr::null_mut(), |host| host.chance().state().cast();
+    next_random -> u64, 0, |host| host.chance().next_u64();
+    cause -> u64, 0, |host| host.cause().0;
+}
+
+fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+unsafe extern "C" fn publish(
+    state: *mut c_void,
+    view: *const TopicView,
+    index: *mut u32,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded(error, || {
+            *index = host(state)?.publish(&read_topic(view)?)?;
+            Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn subscribe(
+    state: *mut c_void,
+    view: *const TopicView,
+    index: *mut u32,
+    error: Sink,
+) -> Status {
+    // SAFETY: as in `publish`.
+    unsafe {
+        guarded(error, || {
+            *index = host(state)?.subscribe(&read_topic(view)?)?;
+            Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn send(
+    state: *mut c_void,
+    publisher: u32,
+    key: *const u64,
+    bytes: Bytes,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded(error, || {
+            let mut host = host(state)?;
+            let header = Header { sender: host.sender(), sent: host.due(), cause: host.cause() };
+            host.send(
+                publisher,
+                SharedMessage::from_bytes(header, key.as_ref().copied(), bytes.get()?.to_vec()),
+            )
+        })
+    }
+}
+
+unsafe extern "C" fn reference(
+    state: *mut c_void,
+    name: Bytes,
+    interface: Bytes,
+    index: *mut u32,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded(error, || {
+            *index = host(state)?.reference(name.get_text()?, interface.get_text()?)?;
+            Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn is_wired(state: *mut c_void, reference: u32) -> u32 {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, 0, |host| u32::from(host.is_wired(reference))) }
+}
+
+unsafe extern "C" fn targets(state: *mut c_void, reference: u32) -> u32 {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, 0, |host| host.targets(reference)) }
+}
+
+unsafe extern "C" fn name_of(state: *mut c_void, sender: u32) -> Bytes {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, Bytes::NONE, |host| host.name_of(sender).map_or(Bytes::NONE, Bytes::text)) }
+}
+
+unsafe extern "C" fn chosen_loops(state: *mut c_void, visitor: *mut c_void, visit: LoopVisitor) {
+    // SAFETY: callers pass the state of their handle, and their own function and state; the rest is lent to that.
+    unsafe {
+        with_host(state, (), |host| {
+            host.chosen_loops(&mut |name, class, values| {
+                let views = PropertyViews::of(values);
+                visit(visitor, Bytes::text(name), Bytes::text(class), views.top.as_ptr(), views.top.len());
+            });
+        });
+    }
+}
+
+unsafe extern "C" fn chosen_loop(
+    state: *mut c_void,
+    place: u32,
+    given: *mut LoopInstance,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and a place for the loop.
+    unsafe {
+        guarded(error, || {
+            *given = export_loop(host(state)?.chosen_loop(place)?);
+            Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn name_loop(state: *mut c_void, place: u32, name: Bytes) {
+    // SAFETY: callers pass the state of their handle, and lend the name.
+    unsafe { with_host(state, (), |host| host.name_loop(place, name.get_text().unwrap_or_default())) }
+}
+
+unsafe extern "C" fn call(
+    state: *mut c_void,
+    reference: u32,
+    operation: u32,
+    arguments: Bytes,
+    reply: Sink,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded_call(error, || {
+            let mut call = BytesCall::new(operation, arguments.get()?, reply);
+            host(state)?.call(reference, &mut call)
+        })
+    }
+}
+
+unsafe extern "C" fn listens(state: *mut c_void, level: u32) -> u32 {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, 0, |host| u32::from(host.listens(LEVELS.get(level as usize).copied()))) }
+}
+
+unsafe extern "C" fn log(state: *mut c_void, level: u32, line: Bytes) {
+    // SAFETY: callers pass the state of their handle, and lend the line to this call.
+    unsafe {
+        with_host(state, (), |host| {
+            let line = String::from_utf8_lossy(line.get().unwrap_or_default());
+            match LEVELS.get(level as usize) {
+                Some(level) => host.log(*level, format_args!("{line}")),
+                None => host.console(format_args!("{line}")),
+            }
+        });
+    }
+}
+
+/// A value for the report that cannot be read, or a path that is no text, is left out with a warning.
+unsafe extern "C" fn report(state: *mut c_void, path: Bytes, value: *const ReportView) {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        with_host(state, (), |host| {
+            let read =
+                path.get_text().map_err(Failure::from).and_then(|path| Ok((path, read_report(&*value)?)));
+            match read {
+                Ok((path, value)) => host.report(path, value),
+                Err(failure) => warn(host, "a value for the report", &failure),
+            }
+        });
+    }
+}
+
+/// A path that is no text is left out with a warning.
+unsafe extern "C" fn count(state: *mut c_void, path: Bytes, more: i64) {
+    // SAFETY: callers pass the state of their handle, and lend the path to this call.
+    unsafe {
+        with_host(state, (), |host| match path.get_text() {
+            Ok(path) => host.count(path, more),
+            Err(error) => warn(host, "a count for the report", &error.into()),
+        });
+    }
+}
+
+unsafe extern "C" fn vote(state: *mut c_void, work: u32) {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, (), |host| host.vote(if work == 0 { Work::Open } else { Work::Done })) }
+}
+
+unsafe extern "C" fn enter_loop(state: *mut c_void, place: u32) {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, (), |host| host.enter_loop((place != u32::MAX).then_some(place))) }
+}
+
+unsafe extern "C" fn because(state: *mut c_void, cause: u64) {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, (), |host| host.because(Cause(cause))) }
+}
+
+/// A record that cannot be read is left out with a warning.
+unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const RecordView) {
+    // SAFETY: callers pass the state of their handle, and lend the view; its texts are part of their library, which stays.
+    unsafe {
+        with_host(state, (), |host| {
+            let phase = [Phase::Symptom, Phase::Decision, Phase::Effect].get(phase as usize).copied();
+            let phase = phase.ok_or_else(|| Failure::new("it is of no phase"));
+            match phase.and_then(|phase| Ok((phase, read_record(&*view)?))) {
+                Ok((phase, record)) => host.journal(phase, &record),
+                Err(failure) => warn(host, "a record", &failure),
+            }
+        });
+    }
+}
+
+/// A change that cannot be read is left out with a warning.
+unsafe extern "C" fn changed(
+    state: *mut c_void,
+    entry: Bytes,
+    before: *const ValueView,
+    after: *const ValueView,
+) {
+    // SAFETY: callers pass the state of their handle, and lend the views; texts are part of their library, which stays.
+    unsafe {
+        with_host(state, (), |host| {
+            let read = || Ok((entry.get_text()?, read_value(*before)?, read_value(*after)?));
+            match read() {
+                Ok((entry, before, after)) => host.changed(entry, before, after),
+                Err(failure) => warn(host, "a changed entry", &failure),
+            }
+        });
+    }
+}
+
+fn warn(host: &mut dyn Host, what: &str, failure: &Failure) {
+    host.log(Level::Warning, format_args!("{what} was left out: {failure}"));
+}
+
+/// The functions of this program.
+pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
+    size: size_of::<HostFunctions>(),
+    name,
+    sender,
+    name_of,
+    now,
+    date,
+    due,
+    execution,
+    period,
+    cancelled,
+    chance,
+    next_random,
+    publish,
+    subscribe,
+    send,
+    reference,
+    is_wired,
+    targets,
+    call,
+    listens,
+    log,
+    report,
+    count,
+    vote,
+    chosen_loops,
+    chosen_loop,
+    name_loop,
+    enter_loop,
+    because,
+    cause,
+    journal,
+    changed,
+};
+
+/// A time of the other side.
+pub(super) const fn time(nanos: u64) -> Time {
+    Time::from_nanos(nanos)
+}

@@ -1,0 +1,130 @@
+use std::ffi::c_void;
+use std::ptr;
+
+use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
+use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_findings};
+use saoms_api::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue, Saved, SmolStr};
+
+/// A class of the other side.
+#[derive(Clone, Copy, Debug)]
+pub struct ImportedClass {
+    construct: Construct,
+    component: ComponentTable,
+}
+
+impl ImportedClass {
+    /// A class by its table.
+    ///
+    /// # Safety
+    /// The functions of the table keep the rules of [the boundary](saoms_abi), for as long as the program runs.
+    pub const unsafe fn new(table: &ClassTable) -> ImportedClass {
+        // SAFETY: as the caller promises, the pointer leads to a table.
+        ImportedClass { construct: table.construct, component: unsafe { *table.component } }
+    }
+
+    /// Makes a component.
+    ///
+    /// # Errors
+    /// The class refuses the values, or panics.
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        // SAFETY: `new`'s caller promised that the function keeps the rules.
+        let instance = unsafe { construct(self.construct, values) }?;
+        Ok(Box::new(ImportedComponent { table: self.component, instance, lease: Lease::default() }))
+    }
+}
+
+/// Makes a component or a loop of the other side.
+///
+/// # Safety
+/// The function keeps the rules of the boundary.
+pub(super) unsafe fn construct(
+    construct: Construct,
+    values: &[(SmolStr, PropertyValue)],
+) -> Result<*mut c_void, Failure> {
+    let views = PropertyViews::of(values);
+    let mut instance = ptr::null_mut();
+    // SAFETY: as the caller promises; the rest is lent to this call.
+    let (result, findings) = call_with_findings(|findings, error| unsafe {
+        construct(views.top.as_ptr(), views.top.len(), &raw mut instance, findings, error)
+    });
+    match result {
+        Ok(()) => Ok(instance),
+        Err(failure) => {
+            let findings = findings.into_iter().collect::<Result<_, _>>()?;
+            Err(Failure::with_findings(failure.message().to_owned(), findings))
+        }
+    }
+}
+
+/// A component of the other side.
+#[derive(Debug)]
+struct ImportedComponent {
+    table: ComponentTable,
+    instance: *mut c_void,
+    lease: Lease,
+}
+
+// SAFETY: the rules say that a component is used by one thread at a time, not by which.
+unsafe impl Send for ImportedComponent {}
+
+impl ImportedComponent {
+    #[inline]
+    fn call(
+        &mut self,
+        context: &mut Context<'_>,
+        function: unsafe extern "C" fn(*mut c_void, *const HostHandle, Sink) -> Status,
+    ) -> Result<(), Failure> {
+        let instance = self.instance;
+        // SAFETY: the functions keep the rules, the instance is theirs, and the handle is lent to this call.
+        self.lease.call(context, |handle, error| unsafe { function(instance, handle, error) })
+    }
+}
+
+impl DynComponent for ImportedComponent {
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.call(context, self.table.initialize)
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.call(context, self.table.execute)
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.call(context, self.table.shutdown)
+    }
+
+    fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError> {
+        let arguments = invocation.call.arguments();
+        let (service, operation) = (Bytes::text(invocation.service), invocation.call.operation());
+        let (serve, instance) = (self.table.serve, self.instance);
+        let reply = self.lease.serve(context, |handle, reply, error| {
+            // SAFETY: the functions keep the rules, the instance is theirs, and the rest is lent to this call.
+            unsafe { serve(instance, handle, service, operation, Bytes::lend(&arguments), reply, error) }
+        })?;
+        invocation.call.reply(reply)
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        let Some(save) = self.table.save else { return Ok(Saved::default()) };
+        let (instance, mut bytes) = (self.instance, Vec::new());
+        // SAFETY: the functions keep the rules, the instance is theirs, and the sinks are lent to this call.
+        call_for_bytes(&mut bytes, |saved, error| unsafe { save(instance, saved, error) })?;
+        Ok(Saved::from_bytes(bytes))
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        let Some(restore) = self.table.restore else {
+            return Err("the earlier build saved its state, and this one has no function `restore`".into());
+        };
+        let instance = self.instance;
+        // SAFETY: as in `save`.
+        call(|error| unsafe { restore(instance, Bytes::lend(saved.bytes()), error) })
+    }
+}
+
+impl Drop for ImportedComponent {
+    fn drop(&mut self) {
+        // SAFETY: the instance is the one that `construct` gave, and is given back once.
+        unsafe { (self.table.destroy)(self.instance) }
+    }
+}

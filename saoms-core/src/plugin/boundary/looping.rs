@@ -1,0 +1,32 @@
+use saoms_abi::{Construct, LoopClassTable, LoopTable};
+use saoms_api::boundary::import_loop;
+use saoms_api::{DynLoop, Failure, PropertyValue, SmolStr};
+
+use super::component::construct;
+
+/// A loop class of the other side.
+#[derive(Clone, Copy, Debug)]
+pub struct ImportedLoopClass {
+    construct: Construct,
+    looping: LoopTable,
+}
+
+impl ImportedLoopClass {
+    /// A loop class by its table.
+    ///
+    /// # Safety
+    /// The functions of the table keep the rules of [the boundary](saoms_abi), for as long as the program runs.
+    pub const unsafe fn new(table: &LoopClassTable) -> ImportedLoopClass {
+        // SAFETY: as the caller promises, the pointer leads to a table.
+        ImportedLoopClass { construct: table.construct, looping: unsafe { *table.looping } }
+    }
+
+    /// Makes a loop.
+    ///
+    /// # Errors
+    /// The loop refuses the values, or panics.
+    pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+        // SAFETY: `new`'s caller promised that the functions keep the rules; the loop is given away to this.
+        unsafe { import_loop(construct(self.construct, values)?, self.looping) }
+    }
+}

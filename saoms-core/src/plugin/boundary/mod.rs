@@ -1,0 +1,9 @@
+//! Classes, loops and rules of a library, called through the tables of the boundary.
+
+mod component;
+mod looping;
+mod rule;
+
+pub use component::ImportedClass;
+pub use looping::ImportedLoopClass;
+pub use rule::ImportedRule;
