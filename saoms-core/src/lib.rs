@@ -2,6 +2,7 @@
 
 pub mod assemble;
 pub mod bus;
+pub mod fault;
 mod hash;
 pub mod journal;
 pub mod observe;

@@ -74,6 +74,16 @@ impl Bus {
         self.user(name, declared, by)
     }
 
+    /// The topic of this name, where somebody uses it.
+    pub fn find(&self, name: &str) -> Option<TopicId> {
+        self.names.get(name).copied().filter(|id| self.topics[id.0 as usize].users > 0)
+    }
+
+    /// The names of the topics that somebody uses, in the order in which they came to be.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.topics.iter().filter(|topic| topic.users > 0).map(|topic| &*topic.name)
+    }
+
     /// The schema of the topic's messages, as text.
     pub fn schema(&self, topic: TopicId) -> &str {
         self.topics[topic.0 as usize].schema()

@@ -39,6 +39,20 @@ pub struct Change {
 }
 
 impl Entry {
+    /// A symptom from outside the fleet.
+    pub(crate) fn from_outside(id: Cause, time: Time, source: &str, text: String) -> Entry {
+        Entry {
+            id,
+            time,
+            component: Arc::from(source),
+            loop_name: None,
+            phase: Phase::Symptom,
+            cause: Cause::default(),
+            change: false,
+            what: What::Read { text, values: Map::new() },
+        }
+    }
+
     /// Its number in the run, from 1: what came later has a larger one.
     pub fn id(&self) -> Cause {
         self.id

@@ -4,7 +4,7 @@ use saoms_api::Cause;
 use serde::{Deserialize, Serialize};
 
 use super::entry::What;
-use super::{Entry, Ring, Selection};
+use super::{Entry, OutsideRing, Ring, Selection};
 
 /// What is left of the records of a run, and counts of all that were written.
 ///
@@ -62,7 +62,10 @@ impl LoopCounts {
 
 impl Journal {
     /// What the components of a run have written.
-    pub(crate) fn of_rings<'a>(rings: impl Iterator<Item = (&'a Arc<str>, &'a Ring)>) -> Journal {
+    pub(crate) fn of_rings<'a>(
+        rings: impl Iterator<Item = (&'a Arc<str>, &'a Ring)>,
+        outside: &OutsideRing,
+    ) -> Journal {
         let mut journal = Journal::default();
         for (component, ring) in rings {
             journal.overwritten += ring.overwritten;
@@ -89,6 +92,14 @@ impl Journal {
                     what: What::Noted(batch.record(head)),
                 }));
             }
+        }
+        journal.entries.extend(outside.entries.iter().cloned());
+        let symptoms = outside.overwritten + outside.entries.len() as u64;
+        if let Some(entry) = outside.entries.front() {
+            journal.records += symptoms;
+            journal.overwritten += outside.overwritten;
+            let component = entry.component().to_owned();
+            journal.loops.push(LoopCounts { component, symptoms, ..LoopCounts::default() });
         }
         journal.entries.sort_unstable_by_key(|entry| entry.id);
         journal

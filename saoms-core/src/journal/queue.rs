@@ -34,6 +34,8 @@ struct Waiting {
     names: Vec<(u32, u16, String)>,
     /// Components in the order of their numbers; the flag says that they joined a running fleet.
     joined: Vec<(Named, bool)>,
+    /// Records of what came from outside.
+    outside: Vec<Entry>,
     lost: u64,
     writers_sleep: bool,
     /// When the run ended.
@@ -66,6 +68,11 @@ impl RecordQueue {
     /// A component has the next number from now on. `later` says that the fleet runs already.
     pub(crate) fn join(&self, component: Named, later: bool) {
         self.lock().joined.push((component, later));
+    }
+
+    /// Takes a record of what came from outside.
+    pub(crate) fn put_outside(&self, entry: Entry) {
+        self.lock().outside.push(entry);
     }
 
     /// Takes over what a component has written.
@@ -121,6 +128,7 @@ impl RecordQueue {
         std::mem::swap(batch, &mut waiting.batch);
         let names = std::mem::take(&mut waiting.names);
         let members = std::mem::take(&mut waiting.joined);
+        let outside = std::mem::take(&mut waiting.outside);
         let lost = std::mem::take(&mut waiting.lost);
         let end = waiting.closed;
         if std::mem::take(&mut waiting.writers_sleep) {
@@ -135,6 +143,7 @@ impl RecordQueue {
             components[component as usize].1.set(place, &name);
         }
         entries.clear();
+        entries.extend(outside);
         entries.extend(batch.heads().iter().map(|head| {
             let (component, loops) = &components[head.component as usize];
             Entry {

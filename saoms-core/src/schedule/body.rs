@@ -6,6 +6,7 @@ use saoms_api::{CallError, Cause, Chance, Context, DynComponent, Failure, Invoca
 use super::host::ComponentHost;
 use super::shared::Shared;
 use crate::bus::{Subscription, TopicId};
+use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
 use saoms_api::contain::contained;
 use saoms_lang::assembly::ComponentSpec;
@@ -39,6 +40,8 @@ pub(super) struct Part {
     pub(super) execution: u64,
     pub(super) period: u64,
     pub(super) initializing: bool,
+    /// The fault of the present execution.
+    pub(super) fault: Option<TaskFaultKind>,
     /// What goes to the journal.
     pub(super) recorder: Recorder,
     /// What the component is made of; the targets of its wires are numbers of slots.
@@ -82,6 +85,7 @@ impl Body {
             execution: 0,
             period,
             initializing: false,
+            fault: None,
             recorder: Recorder::default(),
             spec,
             held: true,
@@ -95,7 +99,12 @@ impl Body {
         self.part.recorder.begin(Cause::default());
         let result = match job {
             Job::Execute => {
-                self.call(shared, |instance, context| instance.execute(context)).unwrap_or_else(Err)
+                let fault = self.part.fault.take();
+                let execute = |instance: &mut dyn DynComponent, context: &mut Context<'_>| {
+                    fault.map_or(Ok(()), commit_fault)?;
+                    instance.execute(context)
+                };
+                self.call(shared, execute).unwrap_or_else(Err)
             }
             Job::Start => self.start(shared),
             Job::Shutdown => {
@@ -155,6 +164,20 @@ impl Body {
         if let Some(instance) = self.instance.take() {
             // A panic here says nothing that the failure or the shutdown before has not said.
             let _ = contained(|| drop(instance));
+        }
+    }
+}
+
+/// Does what a fault demands of an execution.
+#[cold]
+fn commit_fault(fault: TaskFaultKind) -> Result<(), Failure> {
+    match fault {
+        TaskFaultKind::Fails => Err(Failure::new("a fault was put into this execution")),
+        #[expect(clippy::panic, reason = "a panic is asked for")]
+        TaskFaultKind::Panics => panic!("a fault was put into this execution"),
+        TaskFaultKind::Stalls(time) => {
+            std::thread::sleep(time);
+            Ok(())
         }
     }
 }

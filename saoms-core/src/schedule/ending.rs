@@ -35,6 +35,7 @@ impl Engine {
         self.cause = Some(cause);
         self.ended = (now, sys::monotonic());
         self.queue.clear();
+        self.injections.clear();
         self.roles.work.clear();
         self.wake = true;
         for slot in &mut self.slots {
@@ -95,7 +96,7 @@ impl Engine {
 
     fn journal(&self) -> Journal {
         let rings = self.slots.iter().filter(|slot| slot.joined).map(|slot| (&slot.name, &slot.journal));
-        let mut journal = Journal::of_rings(rings);
+        let mut journal = Journal::of_rings(rings, &self.outside);
         journal.lost = self.lost_records;
         journal
     }

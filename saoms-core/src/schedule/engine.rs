@@ -2,18 +2,20 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use saoms_api::{Chance, Failure, Time, Work};
+use saoms_api::{Chance, Failure, SharedMessage, Time, Work};
 
 use super::body::{Body, Job, Part};
 use super::ending::Cause;
+use super::inject::Injections;
 use super::overrun::Decision;
 use super::queue::Queue;
 use super::settings::{ClockKind, Settings, nanos};
 use super::slot::{NEVER, Slot, State, Wish};
 use super::trace::{Step, Trace};
-use crate::bus::Bus;
+use crate::bus::{Bus, TopicId};
+use crate::fault::{Faults, MessageFaultKind};
 use crate::hash::fold;
-use crate::journal::RecordQueue;
+use crate::journal::{OutsideRing, RecordQueue};
 use crate::observe::{Event, News, Occurrence, Sent};
 use saoms_lang::assembly::Loss;
 
@@ -46,6 +48,13 @@ pub(super) struct Engine {
     pub(super) has_returned: bool,
     /// Components that still have to shut down, once the run ends.
     pub(super) ending: VecDeque<u32>,
+    /// Messages from outside, and those that faults hold up.
+    pub(super) injections: Injections,
+    /// The newest records of what came from outside.
+    pub(super) outside: OutsideRing,
+    /// Records of the journal.
+    pub(super) record_ids: Arc<AtomicU64>,
+    pub(super) faults: Faults,
     /// The number of each component, by its path.
     pub(super) numbers: HashMap<Arc<str>, u32>,
     /// The component of a change that failed in a call, before the change was committed.
@@ -133,6 +142,10 @@ impl Engine {
             awaited: 0,
             has_returned: false,
             ending: VecDeque::new(),
+            injections: Injections::default(),
+            outside: OutsideRing::default(),
+            record_ids: Arc::default(),
+            faults: settings.faults.clone(),
             numbers: HashMap::new(),
             held_failure: None,
             cause: None,
@@ -153,12 +166,16 @@ impl Engine {
             match self.phase {
                 Phase::Running => {
                     // What was due before the limit still runs, however late it is.
-                    if now >= self.limit && self.queue.earliest().is_none_or(|when| when >= self.limit) {
+                    if now >= self.limit && self.earliest().is_none_or(|when| when >= self.limit) {
                         self.begin_stop(Cause::Elapsed, self.limit);
                         continue;
                     }
+                    if self.injections.earliest().is_some_and(|when| when <= now && when < self.limit) {
+                        self.deliver_injections(now);
+                        continue;
+                    }
                     let Some((when, index)) = self.queue.pop_due(now) else {
-                        return Next::Wait(self.queue.earliest().unwrap_or(NEVER).min(self.limit));
+                        return Next::Wait(self.earliest().unwrap_or(NEVER).min(self.limit));
                     };
                     let slot = &mut self.slots[index as usize];
                     if slot.entry != when {
@@ -184,6 +201,11 @@ impl Engine {
                 Phase::Ended => return Next::Ended,
             }
         }
+    }
+
+    /// The next time at which something is due.
+    fn earliest(&self) -> Option<u64> {
+        self.queue.earliest().into_iter().chain(self.injections.earliest()).min()
     }
 
     /// What a component whose time has come has to do.
@@ -257,6 +279,9 @@ impl Engine {
         }
         slot.last_due = Some(due);
         part.due = due;
+        if !self.faults.is_empty() {
+            part.fault = self.faults.take_of_execution(&slot.name, Time::from_nanos(now));
+        }
         part.execution = slot.execution;
         slot.execution += 1;
         slot.statistics.executions += 1;
@@ -394,8 +419,30 @@ impl Engine {
                 self.news.push(News::Sent(sent, Arc::clone(observers)));
             }
             if self.phase == Phase::Running {
+                if self.faults.is_empty() {
+                    self.bus.publish(topic, message);
+                } else {
+                    self.publish_with_faults(topic, message, now);
+                }
+            }
+        }
+    }
+
+    /// Lets a message go to its topic, unless a fault is in its way.
+    #[cold]
+    fn publish_with_faults(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
+        match self.faults.of_message(self.bus.name(topic), Time::from_nanos(now)) {
+            Some(MessageFaultKind::Lost) => {}
+            Some(MessageFaultKind::Late(time)) => {
+                let when = now.saturating_add(nanos(time));
+                self.injections.hold_up(when, topic, message);
+                self.wake |= when < self.roles.asleep_until;
+            }
+            Some(MessageFaultKind::Duplicated) => {
+                self.bus.publish(topic, message.clone());
                 self.bus.publish(topic, message);
             }
+            None => self.bus.publish(topic, message),
         }
     }
 
@@ -441,9 +488,9 @@ impl Engine {
         self.step(now, index, Step::Voted);
     }
 
-    /// Ends the run when all who voted see no work left.
+    /// Ends the run when all who voted see no work left, and none can come from outside.
     pub(super) fn end_if_done(&mut self, now: u64) {
-        if self.votes.voters > 0 && self.votes.done == self.votes.voters {
+        if self.votes.voters > 0 && self.votes.done == self.votes.voters && self.injections.are_over() {
             self.begin_stop(Cause::Done, now);
         }
     }

@@ -12,6 +12,7 @@ use super::change::{self, ChangeError, Changed};
 use super::clock::Clock;
 use super::drive;
 use super::engine::Phase;
+use super::inject::{self, InjectError, Injection};
 use super::lifecycle::Request;
 use super::realtime;
 use super::settings::{ClockKind, Settings, nanos};
@@ -306,6 +307,26 @@ impl Handle {
         change::replace(&self.shared, spec)
     }
 
+    /// Sends a message from outside on a topic of the fleet. It is checked against the schema of the topic, takes effect at the next instant, or
+    /// at its time, before components that are due then, and is part of the journal and of the trace.
+    ///
+    /// # Errors
+    /// The fleet has no such topic, the message is none of that topic, or the run ends.
+    pub fn inject(&self, injection: Injection) -> Result<(), InjectError> {
+        inject::inject(&self.shared, injection)
+    }
+
+    /// Keeps the run from ending because no work is left, as long as what is returned lives: more may come from outside.
+    pub fn hold(&self) -> Hold {
+        self.shared.lock().injections.holds += 1;
+        Hold { shared: Arc::clone(&self.shared) }
+    }
+
+    /// Adds to a count of the report.
+    pub fn count(&self, path: &str, more: i64) {
+        self.shared.sections().add(path, more);
+    }
+
     /// Tells the program something about the fleet as a whole, among its other events.
     pub fn note(&self, level: Level, text: String) {
         self.shared.note(level, text);
@@ -338,5 +359,26 @@ impl Handle {
 impl fmt::Debug for Handle {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_struct("Handle").field("components", &self.shared.lock().slots.len()).finish()
+    }
+}
+
+/// A promise that more may come from outside, from [`Handle::hold`].
+#[must_use = "the run may end as soon as it is dropped"]
+pub struct Hold {
+    shared: Arc<Shared>,
+}
+
+impl Drop for Hold {
+    fn drop(&mut self) {
+        let mut engine = self.shared.lock();
+        engine.injections.holds -= 1;
+        engine.end_if_done(self.shared.clock.now());
+        self.shared.release(engine);
+    }
+}
+
+impl fmt::Debug for Hold {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("Hold")
     }
 }

@@ -9,6 +9,7 @@ use saoms_api::{
 };
 
 use super::body::Part;
+use super::inject::{OUTSIDE, OUTSIDE_NAME};
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::journal::Stamp;
@@ -150,7 +151,10 @@ impl Host for ComponentHost<'_> {
     }
 
     fn name_of(&self, sender: u32) -> Option<&str> {
-        self.shared.names.get(sender).map(AsRef::as_ref)
+        match sender {
+            OUTSIDE => Some(OUTSIDE_NAME),
+            _ => self.shared.names.get(sender).map(AsRef::as_ref),
+        }
     }
 
     fn now(&self) -> Time {

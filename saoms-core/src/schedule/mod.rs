@@ -17,6 +17,7 @@ mod ending;
 mod engine;
 mod fleet;
 mod host;
+mod inject;
 mod lifecycle;
 mod names;
 mod overrun;
@@ -34,7 +35,8 @@ mod tests;
 mod trace;
 
 pub use change::{ChangeError, Changed};
-pub use fleet::{Fleet, Handle, UnknownComponent};
+pub use fleet::{Fleet, Handle, Hold, UnknownComponent};
+pub use inject::{Content, InjectError, Injection};
 pub use realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
 pub use start::StartError;

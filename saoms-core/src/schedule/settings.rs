@@ -1,5 +1,7 @@
 use std::time::Duration;
 
+use crate::fault::Faults;
+
 /// How a fleet runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
@@ -25,6 +27,8 @@ pub struct Settings {
     /// How many records of the journal stay in memory, shared out evenly among the components; each keeps its newest 128 at least. What is
     /// older is overwritten, and counted.
     pub journal: usize,
+    /// Faults that are put into the run on purpose.
+    pub faults: Faults,
 }
 
 /// Which time a fleet runs in.
@@ -49,6 +53,7 @@ impl Default for Settings {
             grace: Duration::from_secs(2),
             virtual_watchdog: Duration::from_secs(10),
             journal: 65_536,
+            faults: Faults::default(),
         }
     }
 }

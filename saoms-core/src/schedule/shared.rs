@@ -44,7 +44,7 @@ pub(super) struct Shared {
     /// The run has ended.
     pub(super) ended: AtomicBool,
     /// Records of the journal.
-    pub(super) records: AtomicU64,
+    pub(super) records: Arc<AtomicU64>,
     executions: Arc<AtomicU64>,
     /// How many threads have freed the engine and not told yet what was new.
     telling: AtomicUsize,
@@ -61,6 +61,7 @@ impl Shared {
         if interest.journal {
             engine.records = Some(Arc::new(RecordQueue::new(clock.is_virtual())));
         }
+        let records = Arc::clone(&engine.record_ids);
         Shared {
             executions: Arc::clone(&engine.executions),
             engine: Mutex::new(engine),
@@ -79,7 +80,7 @@ impl Shared {
             work: Condvar::new(),
             stop: AtomicBool::new(false),
             ended: AtomicBool::new(false),
-            records: AtomicU64::new(0),
+            records,
             telling: AtomicUsize::new(0),
             closing: AtomicBool::new(false),
         }

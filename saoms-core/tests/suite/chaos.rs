@@ -3,6 +3,8 @@
 use std::time::Duration;
 
 use proptest::prelude::*;
+use saoms_api::Time;
+use saoms_core::fault::{Faults, MessageFault, MessageFaultKind, TaskFault, TaskFaultKind};
 use saoms_core::schedule::Settings;
 
 use crate::fleet::{run, simulated};
@@ -21,8 +23,6 @@ fn command() -> impl Strategy<Value = String> {
         Just("schedule-for 7"),
         Just("unschedule"),
         Just("running"),
-        Just("fail on purpose"),
-        Just("panic on purpose"),
         Just("open"),
         Just("count luggage.delivered 1"),
         Just("hear"),
@@ -78,9 +78,53 @@ fn fleet() -> impl Strategy<Value = String> {
     })
 }
 
+fn milliseconds(time: u64) -> Time {
+    Time::from_nanos(time * 1_000_000)
+}
+
+prop_compose! {
+    fn task_fault()(component in 0..6_u32, at in 0..150_u64, kind in 0..3) -> TaskFault {
+        let kind = match kind {
+            0 => TaskFaultKind::Fails,
+            1 => TaskFaultKind::Panics,
+            _ => TaskFaultKind::Stalls(Duration::from_millis(2)),
+        };
+        TaskFault { component: format!("C{component}"), at: milliseconds(at), kind }
+    }
+}
+
+prop_compose! {
+    fn message_fault()(
+        topic in prop_oneof![Just("TALK"), Just("TABLE"), Just("OWN")],
+        from in 0..100_u64,
+        length in 0..50_u64,
+        kind in prop_oneof![
+            Just(MessageFaultKind::Lost),
+            (0..40_u64).prop_map(|time| MessageFaultKind::Late(Duration::from_millis(time))),
+            Just(MessageFaultKind::Duplicated),
+        ],
+    ) -> MessageFault {
+        MessageFault {
+            topic: topic.to_owned(),
+            from: milliseconds(from),
+            until: milliseconds(from + length),
+            kind,
+        }
+    }
+}
+
+prop_compose! {
+    fn faults()(
+        messages in prop::collection::vec(message_fault(), 0..4),
+        tasks in prop::collection::vec(task_fault(), 0..4),
+    ) -> Faults {
+        Faults { messages, tasks }
+    }
+}
+
 /// What a run leaves behind, but for the places of panics in the source.
-fn run_once(fleet: &str) -> (String, String) {
-    let (report, diary) = run(fleet, simulated(150));
+fn run_once(fleet: &str, faults: &Faults) -> (String, String) {
+    let (report, diary) = run(fleet, Settings { faults: faults.clone(), ..simulated(150) });
     (serde_json::to_string_pretty(&report).unwrap(), diary.all_lines())
 }
 
@@ -88,8 +132,8 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_fleet_runs_to_an_end_and_twice_the_same(fleet in fleet()) {
-        prop_assert_eq!(run_once(&fleet), run_once(&fleet));
+    fn any_fleet_runs_to_an_end_and_twice_the_same(fleet in fleet(), faults in faults()) {
+        prop_assert_eq!(run_once(&fleet, &faults), run_once(&fleet, &faults));
     }
 }
 
@@ -97,8 +141,9 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 16, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_fleet_runs_to_an_end_in_real_time(fleet in fleet()) {
-        let settings = Settings { limit: Some(Duration::from_millis(60)), grace: Duration::from_secs(20), ..Settings::default() };
+    fn any_fleet_runs_to_an_end_in_real_time(fleet in fleet(), faults in faults()) {
+        let limit = Some(Duration::from_millis(60));
+        let settings = Settings { limit, grace: Duration::from_secs(20), faults, ..Settings::default() };
         let (report, _) = run(&fleet, settings);
         let left_behind = |reason: &&String| reason.contains("did not end");
         prop_assert_eq!(report.outcome.reasons.iter().find(left_behind), None);
@@ -110,7 +155,7 @@ proptest! {
 #[test]
 fn the_last_event_is_told_however_often_a_fleet_ends() {
     for run in 0..300 {
-        let (_, told) = run_once("C0 actor period=15");
+        let (_, told) = run_once("C0 actor period=15", &Faults::default());
         assert!(told.contains("has shut down"), "run {run}: {told}");
     }
 }

@@ -30,6 +30,8 @@ use serde_json::Value;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schema {
     name: String,
+    /// The field that is the key of a state topic.
+    key: Option<String>,
     fields: Vec<Field>,
 }
 
@@ -101,7 +103,14 @@ impl Schema {
         &self.name
     }
 
-    /// Whether these bytes are such a message.
+    /// The key under which a state topic keeps a message that is given as JSON.
+    pub fn key(&self, message: &Value) -> Option<u64> {
+        let value = message.get(self.key.as_ref()?)?;
+        // A negative number has its place too.
+        value.as_u64().or_else(|| value.as_i64().map(|number| number as u64))
+    }
+
+    /// True if these bytes are such a message.
     ///
     /// # Errors
     /// What is wrong, and at which byte.
@@ -116,6 +125,7 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
     #[derive(Deserialize)]
     struct Shape {
         name: String,
+        key: Option<String>,
         fields: Vec<FieldShape>,
     }
     #[derive(Deserialize)]
@@ -135,7 +145,7 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
         })?;
         Ok(Field { name: field.name, kind })
     });
-    Ok(Schema { fields: fields.collect::<Result<_, _>>()?, name: shape.name })
+    Ok(Schema { fields: fields.collect::<Result<_, _>>()?, key: shape.key, name: shape.name })
 }
 
 fn kind(value: &Value, deepest: usize) -> Result<Type, SchemaError> {

@@ -20,7 +20,10 @@ const ORDERS: &[(&str, &[&str])] = &[
             "check",
         ],
     ),
-    ("saoms-core", &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "schedule"]),
+    (
+        "saoms-core",
+        &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"],
+    ),
 ];
 
 fn root() -> &'static Path {

@@ -1,0 +1,240 @@
+//! Messages from outside the fleet.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+use saoms_api::{Cause, Header, SharedMessage, Time, nearest};
+use saoms_lang::schema::Schema;
+use serde_json::Value;
+
+use super::engine::{Engine, Phase};
+use super::shared::Shared;
+use crate::bus::TopicId;
+use crate::journal::Entry;
+use crate::observe::{News, Sent};
+
+/// The number of the sender of messages from outside.
+pub(super) const OUTSIDE: u32 = u32::MAX;
+/// The name of that sender, which no component can have.
+pub(super) const OUTSIDE_NAME: &str = "(outside)";
+/// How many of the longest periods of the fleet pass after an injection until the run may end because no work is left: a message needs one to be
+/// read, and what its reader sends needs another one.
+const SETTLING: u64 = 3;
+
+/// A message for a topic of a running fleet, from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Injection {
+    /// The topic, by the name that it has after renaming.
+    pub topic: String,
+    /// The message.
+    pub content: Content,
+    /// When it takes effect, in the time of the run; `None`, or a time that is over, is the next instant.
+    pub at: Option<Time>,
+    /// What it means, for the journal.
+    pub text: String,
+}
+
+/// The content of a message from outside, which is checked against the schema of the topic.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// Its fields, as JSON.
+    Fields(Value),
+    /// Its CDR form (see [`saoms_api::cdr`]).
+    Bytes(Vec<u8>),
+}
+
+/// Why a message from outside was not taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum InjectError {
+    /// The fleet has no such topic.
+    UnknownTopic {
+        /// The name that was given.
+        topic: String,
+        /// The nearest one, if one is near.
+        nearest: Option<String>,
+        /// All topics of the fleet.
+        known: Vec<String>,
+    },
+    /// It is no message of the topic.
+    Content {
+        /// The topic.
+        topic: String,
+        /// The name of its messages.
+        message: String,
+        /// What was found, and what was expected.
+        error: String,
+    },
+    /// The run ends.
+    Ending,
+}
+
+impl fmt::Display for InjectError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            InjectError::UnknownTopic { topic, nearest: Some(near), .. } => {
+                write!(formatter, "the fleet has no topic `{topic}`; did you mean `{near}`?")
+            }
+            InjectError::UnknownTopic { topic, known, .. } if known.is_empty() => {
+                write!(formatter, "the fleet has no topic `{topic}`, and no other one")
+            }
+            InjectError::UnknownTopic { topic, known, .. } => {
+                write!(formatter, "the fleet has no topic `{topic}`; its topics are: {}", known.join(", "))
+            }
+            InjectError::Content { topic, message, error } => {
+                write!(formatter, "topic `{topic}`: this is no message `{message}`: {error}")
+            }
+            InjectError::Ending => formatter.write_str("the run ends"),
+        }
+    }
+}
+
+impl std::error::Error for InjectError {}
+
+/// Messages that wait for their time, in the order in which they take effect: those from outside, and those that a fault holds up.
+#[derive(Default)]
+pub(super) struct Injections {
+    waiting: BTreeMap<(u64, u64), Due>,
+    count: u64,
+    /// Programs that may inject more, so that the run goes on although no work is left.
+    pub(super) holds: usize,
+}
+
+enum Due {
+    Message {
+        topic: TopicId,
+        bytes: Vec<u8>,
+        key: Option<u64>,
+        text: String,
+    },
+    /// A message that a fault holds up.
+    Late {
+        topic: TopicId,
+        message: SharedMessage,
+    },
+    /// What was injected has reached everybody by now.
+    Settled,
+}
+
+impl Injections {
+    #[inline]
+    pub(super) fn earliest(&self) -> Option<u64> {
+        self.waiting.first_key_value().map(|((when, _), _)| *when)
+    }
+
+    /// True if the run may end because no work is left.
+    pub(super) fn are_over(&self) -> bool {
+        self.holds == 0 && self.waiting.is_empty()
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.waiting.clear();
+    }
+
+    pub(super) fn hold_up(&mut self, when: u64, topic: TopicId, message: SharedMessage) {
+        self.add(when, Due::Late { topic, message });
+    }
+
+    fn add(&mut self, when: u64, due: Due) {
+        self.count += 1;
+        self.waiting.insert((when, self.count), due);
+    }
+}
+
+/// Takes a message from outside.
+pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), InjectError> {
+    let Injection { topic, content, at, text } = injection;
+    let (id, schema) = {
+        let engine = shared.lock();
+        if matches!(engine.phase, Phase::Stopping | Phase::Ended) {
+            return Err(InjectError::Ending);
+        }
+        let Some(id) = engine.bus.find(&topic) else {
+            let known: Vec<String> = engine.bus.names().map(str::to_owned).collect();
+            let nearest = nearest(&topic, known.iter().map(String::as_str)).map(str::to_owned);
+            return Err(InjectError::UnknownTopic { topic, nearest, known });
+        };
+        (id, engine.bus.schema(id).to_owned())
+    };
+    let refused = |message: &str, error: String| InjectError::Content {
+        topic: topic.clone(),
+        message: message.to_owned(),
+        error,
+    };
+    let schema = Schema::parse(&schema).map_err(|error| refused("", error.to_string()))?;
+    let (bytes, key) = match content {
+        Content::Fields(fields) => {
+            let bytes = schema.encode(&fields).map_err(|error| refused(schema.name(), error.to_string()))?;
+            (bytes, schema.key(&fields))
+        }
+        Content::Bytes(bytes) => {
+            let fields = schema.decode(&bytes).map_err(|error| refused(schema.name(), error.to_string()))?;
+            (bytes, schema.key(&fields))
+        }
+    };
+    let mut engine = shared.lock();
+    let when = at.map_or(0, Time::as_nanos).max(shared.clock.now());
+    engine.injections.add(when, Due::Message { topic: id, bytes, key, text });
+    engine.wake |= when < engine.roles.asleep_until;
+    shared.release(engine);
+    Ok(())
+}
+
+impl Engine {
+    /// Lets the messages that are due take effect.
+    #[cold]
+    pub(super) fn deliver_injections(&mut self, now: u64) {
+        let mut delivered = false;
+        while let Some(entry) = self.injections.waiting.first_entry().filter(|entry| entry.key().0 <= now) {
+            let when = entry.key().0;
+            match entry.remove() {
+                Due::Message { topic, bytes, key, text } => {
+                    // In real time the timer may be late; the message is of the time when it was due.
+                    self.deliver_injection(when, topic, bytes, key, text);
+                    delivered = true;
+                }
+                Due::Late { topic, message } => self.bus.publish(topic, message),
+                Due::Settled => self.end_if_done(now),
+            }
+        }
+        if delivered {
+            let periods = self.slots.iter().filter(|slot| slot.is_member()).map(|slot| slot.policy.period);
+            let settled = now.saturating_add(periods.max().unwrap_or(0).saturating_mul(SETTLING));
+            self.injections.add(settled, Due::Settled);
+        }
+    }
+
+    fn deliver_injection(
+        &mut self,
+        time: u64,
+        topic: TopicId,
+        bytes: Vec<u8>,
+        key: Option<u64>,
+        text: String,
+    ) {
+        let name = Arc::clone(self.bus.name(topic));
+        let cause = self.record_outside(time, text);
+        let header = Header { sender: OUTSIDE, sent: Time::from_nanos(time), cause };
+        let message = SharedMessage::from_bytes(header, key, bytes);
+        if let Some(trace) = &mut self.trace {
+            trace.message(time, OUTSIDE, self.bus.name_hash(topic), &message);
+        }
+        if let Some(observers) = self.bus.observers(topic) {
+            let component = Arc::from(OUTSIDE_NAME);
+            let sent = Sent { topic: name, component, message: message.clone() };
+            self.news.push(News::Sent(sent, Arc::clone(observers)));
+        }
+        self.bus.publish(topic, message);
+    }
+
+    fn record_outside(&mut self, time: u64, text: String) -> Cause {
+        // Components draw the numbers of their records from the same counter.
+        let id = Cause(self.record_ids.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
+        let entry = Entry::from_outside(id, Time::from_nanos(time), OUTSIDE_NAME, text);
+        if let Some(records) = &self.records {
+            records.put_outside(entry.clone());
+        }
+        self.outside.push(entry, self.journal_capacity);
+        id
+    }
+}
