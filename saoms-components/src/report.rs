@@ -1,6 +1,66 @@
-//! The texts of reports.
+//! The counts of the fleet in reports, and their summary.
+
+use saoms_api::extension::{Counts, RunSummary, submit};
+
+submit! {
+    RunSummary {
+        counts: &[
+            "luggage.requested",
+            "luggage.delivered",
+            "luggage.open",
+            "luggage.ignored",
+            "collisions.vertex",
+            "collisions.swap",
+            "stranded",
+        ],
+        result,
+        progress,
+        voters: "a world and an environment with a scenario",
+    }
+}
+
+/// `1 of 1 pieces of luggage delivered, no collision, 0 stranded`; nothing where no luggage was requested.
+fn result(count: &Counts<'_>) -> Option<String> {
+    let delivered = progress(count)?;
+    let collisions = match count("collisions.vertex") + count("collisions.swap") {
+        0 => "no collision".to_owned(),
+        several => counted(usize::try_from(several).unwrap_or_default(), "collision"),
+    };
+    Some(format!("{delivered}, {collisions}, {} stranded", count("stranded")))
+}
+
+/// `1 of 1 pieces of luggage delivered`; nothing where no luggage was requested.
+fn progress(count: &Counts<'_>) -> Option<String> {
+    let requested = count("luggage.requested");
+    (requested > 0)
+        .then(|| format!("{} of {requested} pieces of luggage delivered", count("luggage.delivered")))
+}
 
 /// `1 collision`, `2 collisions`.
 pub(crate) fn counted(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_result_tells_deliveries_collisions_and_stranded_robots() {
+        let counts = |requested: i64, swaps: i64| {
+            move |path: &str| match path {
+                "luggage.requested" => requested,
+                "luggage.delivered" => 3,
+                "collisions.swap" => swaps,
+                "stranded" => 2,
+                _ => 0,
+            }
+        };
+        let text = |requested, swaps| result(&counts(requested, swaps));
+        assert_eq!(text(0, 1), None);
+        assert_eq!(text(4, 0).unwrap(), "3 of 4 pieces of luggage delivered, no collision, 2 stranded");
+        assert_eq!(text(4, 1).unwrap(), "3 of 4 pieces of luggage delivered, 1 collision, 2 stranded");
+        assert_eq!(text(4, 5).unwrap(), "3 of 4 pieces of luggage delivered, 5 collisions, 2 stranded");
+        assert_eq!(progress(&counts(4, 0)).unwrap(), "3 of 4 pieces of luggage delivered");
+    }
 }

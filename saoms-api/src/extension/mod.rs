@@ -2,6 +2,7 @@
 //!
 //! A crate knows its domain; the program does not. The crate registers with [`submit!`] what only it can tell, and the program shows it:
 //!
+//! - [`RunSummary`]: the counts of a report and their meaning, in reports and on the console,
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
 //! - [`PropertyLanguage`]: the language of a property's text, in editors.
 //!
@@ -9,9 +10,11 @@
 
 mod language;
 mod picture;
+mod summary;
 
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
 pub use language::{Completion, CompletionKind, PropertyLanguage, PropertyText};
 pub use picture::{PictureRegistration, RunPicture};
+pub use summary::{Counts, RunSummary};

@@ -161,14 +161,12 @@ pub struct Sent {
 }
 
 /// The progress of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
     /// The time of the run.
     pub time: Time,
     /// Executions of all components so far.
     pub periods: u64,
-    /// `luggage.requested` of the report so far.
-    pub requested: i64,
-    /// `luggage.delivered` of the report so far.
-    pub delivered: i64,
+    /// What the counts of the report so far come to, in a few words each ([`RunSummary::progress`](saoms_api::extension::RunSummary)).
+    pub summaries: Vec<String>,
 }

@@ -4,9 +4,9 @@ use serde_json::{Map, Value};
 use super::LatenessSummary;
 use crate::journal::Journal;
 
-/// What happened in a run, as `saoms run --report` writes it.
+/// The report of a run, as `saoms run --report` writes it.
 ///
-/// Sections that components contribute stand beside the fields below; `luggage`, `collisions` and `stranded` are always there.
+/// Sections that components contribute stand beside the fields below.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunReport {
     /// The seed of all chance.
@@ -30,6 +30,16 @@ pub struct RunReport {
     /// A digest of everything that happened, 16 hexadecimal digits: equal for equal runs, on every machine. `null` in real time, where no
     /// two runs are equal.
     pub trace_hash: Option<String>,
+}
+
+impl RunReport {
+    /// The whole number at a dotted path of the sections, such as `map.blocks`; 0 where there is none.
+    pub fn count(&self, path: &str) -> i64 {
+        let mut names = path.split('.');
+        let section = names.next().and_then(|name| self.sections.get(name));
+        let value = names.fold(section, |value, name| value.and_then(|value| value.get(name)));
+        value.and_then(Value::as_i64).unwrap_or_default()
+    }
 }
 
 /// One component in a [`RunReport`].

@@ -1,10 +1,11 @@
 use std::collections::BTreeMap;
 
 use saoms_api::ReportValue;
+use saoms_api::extension::RunSummary;
 use serde_json::{Map, Value};
 
-/// The parts of a report that components contribute: values and counts under dotted paths such as `luggage.delivered`.
-#[derive(Clone, Debug, Default)]
+/// The parts of a report that components contribute: values and counts under dotted paths such as `map.blocks`.
+#[derive(Clone, Debug)]
 pub struct Sections {
     entries: BTreeMap<String, Entry>,
 }
@@ -15,30 +16,20 @@ enum Entry {
     Value(ReportValue),
 }
 
-/// What every report shows, counted or not.
-const STANDARD: [&str; 7] = [
-    "luggage.requested",
-    "luggage.delivered",
-    "luggage.open",
-    "luggage.ignored",
-    "collisions.vertex",
-    "collisions.swap",
-    "stranded",
-];
-
 /// The fields of a report that are not for components to write.
 const RESERVED: [&str; 8] =
     ["seed", "time_s", "periods", "components", "journal", "votes", "outcome", "trace_hash"];
 
 impl Sections {
-    /// Whether a path would write over what the program itself reports.
+    /// True if a path would write over what the program itself reports.
     pub fn is_reserved(path: &str) -> bool {
         RESERVED.contains(&path.split_once('.').map_or(path, |(first, _)| first))
     }
 
-    /// The standard sections, all at zero.
-    pub fn standard() -> Sections {
-        Sections { entries: STANDARD.iter().map(|path| ((*path).to_owned(), Entry::Count(0))).collect() }
+    /// The counts that every report has, all at zero.
+    pub fn with_registered_counts() -> Sections {
+        let counts = RunSummary::linked().into_iter().flat_map(|summary| summary.counts);
+        Sections { entries: counts.map(|path| ((*path).to_owned(), Entry::Count(0))).collect() }
     }
 
     /// Sets a value; the last one counts.

@@ -1,4 +1,5 @@
 use saoms_api::ReportValue;
+use saoms_api::extension::{RunSummary, submit};
 use serde_json::json;
 
 use super::{Lateness, Sections};
@@ -47,24 +48,32 @@ fn merged_histograms_count_together() {
     assert_eq!(one.summary(), both.summary());
 }
 
+submit! {
+    RunSummary {
+        counts: &["parcels.requested", "parcels.delivered", "lost"],
+        result: |_| None,
+        progress: |_| None,
+        voters: "a depot",
+    }
+}
+
 #[test]
 fn sections_nest_by_dots() {
-    let mut sections = Sections::standard();
-    sections.add("luggage.delivered", 2);
-    sections.add("luggage.delivered", 1);
+    let mut sections = Sections::with_registered_counts();
+    sections.add("parcels.delivered", 2);
+    sections.add("parcels.delivered", 1);
     sections.set("map.blocks", ReportValue::Integer(121));
     sections.set("map", ReportValue::Text("airport".to_owned()));
-    sections.set("stranded", ReportValue::Integer(1));
-    sections.add("stranded", 1);
+    sections.set("lost", ReportValue::Integer(1));
+    sections.add("lost", 1);
     assert_eq!(
         serde_json::Value::Object(sections.to_json()),
         json!({
-            "luggage": {"requested": 0, "delivered": 3, "open": 0, "ignored": 0},
-            "collisions": {"vertex": 0, "swap": 0},
-            "stranded": 2,
+            "parcels": {"requested": 0, "delivered": 3},
+            "lost": 2,
             "map": {"value": "airport", "blocks": 121},
         })
     );
-    assert_eq!(sections.integer("luggage.delivered"), Some(3));
+    assert_eq!(sections.integer("parcels.delivered"), Some(3));
     assert_eq!(sections.integer("map"), None);
 }

@@ -3,6 +3,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use saoms_api::Time;
+use saoms_api::extension::RunSummary;
 
 use super::clock::Clock;
 use super::engine::Engine;
@@ -65,7 +66,7 @@ impl Shared {
         Shared {
             executions: Arc::clone(&engine.executions),
             engine: Mutex::new(engine),
-            sections: Mutex::new(Sections::standard()),
+            sections: Mutex::new(Sections::with_registered_counts()),
             names: Names::default(),
             changes: Mutex::default(),
             returned: Condvar::new(),
@@ -166,13 +167,9 @@ impl Shared {
         let time = Time::from_nanos(self.clock.now());
         let periods = self.executions.load(Ordering::Relaxed);
         let sections = self.sections();
-        let integer = |path| sections.integer(path).unwrap_or(0);
-        Progress {
-            time,
-            periods,
-            requested: integer("luggage.requested"),
-            delivered: integer("luggage.delivered"),
-        }
+        let count = |path: &str| sections.integer(path).unwrap_or(0);
+        let summaries = RunSummary::linked().into_iter().filter_map(|summary| (summary.progress)(&count));
+        Progress { time, periods, summaries: summaries.collect() }
     }
 }
 

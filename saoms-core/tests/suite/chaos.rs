@@ -24,7 +24,7 @@ fn command() -> impl Strategy<Value = String> {
         Just("unschedule"),
         Just("running"),
         Just("open"),
-        Just("count luggage.delivered 1"),
+        Just("count parcels.delivered 1"),
         Just("hear"),
         Just("spin 2"),
     ];

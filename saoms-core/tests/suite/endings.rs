@@ -1,3 +1,4 @@
+use saoms_api::extension::{RunSummary, submit};
 use saoms_core::report::Status;
 use serde_json::json;
 
@@ -120,11 +121,20 @@ fn a_component_that_does_not_return_ends_a_virtual_run_and_is_named() {
     );
 }
 
+submit! {
+    RunSummary {
+        counts: &["parcels.requested", "parcels.delivered", "lost"],
+        result: |_| None,
+        progress: |count| Some(format!("{} delivered", count("parcels.delivered"))),
+        voters: "a depot",
+    }
+}
+
 #[test]
 fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
     let (report, diary) = run(
-        "A actor period=10 each=[count luggage.delivered 2; count mine.number 1; report map.size 11; 0: count seed 5; 0: report outcome.x 5]
-         B actor period=10 each=[count luggage.delivered -1; report map.size 12; done]",
+        "A actor period=10 each=[count parcels.delivered 2; count mine.number 1; report map.size 11; 0: count seed 5; 0: report outcome.x 5]
+         B actor period=10 each=[count parcels.delivered -1; report map.size 12; done]",
         simulated(1000),
     );
     assert_eq!(
@@ -138,7 +148,7 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
         json,
         json!({
             "seed": 7, "time_s": 0.0, "periods": 2,
-            "luggage": {"requested": 0, "delivered": 1, "open": 0, "ignored": 0}, "collisions": {"vertex": 0, "swap": 0}, "stranded": 0,
+            "parcels": {"requested": 0, "delivered": 1}, "lost": 0,
             "mine": {"number": 1}, "map": {"size": 12},
             "components": [
                 {"name": "A", "id": "A", "class": "actor", "executions": 1, "missed": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},
@@ -153,6 +163,10 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
         })
     );
     assert_eq!(serde_json::from_value::<saoms_core::report::RunReport>(json).unwrap(), report);
+    assert_eq!(
+        (report.count("parcels.delivered"), report.count("lost"), report.count("map.colour")),
+        (1, 0, 0)
+    );
 }
 
 #[test]

@@ -93,12 +93,9 @@ impl Observer for Console {
 
     fn progress(&self, progress: &Progress) {
         if let Some(bar) = &self.bar {
-            let Progress { time, periods, requested, delivered } = progress;
-            let luggage = match requested {
-                0 => String::new(),
-                _ => format!(" · {delivered} of {requested} pieces of luggage delivered"),
-            };
-            bar.set_message(format!("{time} · {periods} executions{luggage}"));
+            let Progress { time, periods, summaries } = progress;
+            let summaries: String = summaries.iter().map(|summary| format!(" · {summary}")).collect();
+            bar.set_message(format!("{time} · {periods} executions{summaries}"));
             bar.tick();
         }
     }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use saoms_api::extension::RunSummary;
 use saoms_core::journal::Journal;
 use saoms_core::report::{ComponentReport, RunReport, Status};
-use serde_json::Value;
 
 use crate::output::counted;
 
@@ -36,15 +36,10 @@ pub(crate) fn outcome(report: &RunReport) -> String {
         Status::Interrupted => "interrupted",
     };
     let mut text = format!("{how} after {:.3} s", report.time_s);
-    if number(report, "/luggage/requested") > 0 {
-        let _ = write!(
-            text,
-            ": {} of {} pieces of luggage delivered, {}, {} stranded",
-            number(report, "/luggage/delivered"),
-            number(report, "/luggage/requested"),
-            collisions(report),
-            number(report, "/stranded"),
-        );
+    let count = |path: &str| report.count(path);
+    let results = RunSummary::linked().into_iter().filter_map(|summary| (summary.result)(&count));
+    for (place, result) in results.enumerate() {
+        let _ = write!(text, "{} {result}", if place == 0 { ":" } else { ";" });
     }
     text
 }
@@ -91,21 +86,6 @@ fn troubles(components: &[ComponentReport]) -> String {
         let _ = writeln!(text, "and {more} more: see --report");
     }
     text
-}
-
-fn collisions(report: &RunReport) -> String {
-    match number(report, "/collisions/vertex") + number(report, "/collisions/swap") {
-        0 => "no collision".to_owned(),
-        several => counted(usize::try_from(several).unwrap_or_default(), "collision"),
-    }
-}
-
-/// A whole number of a section; 0 where there is none.
-fn number(report: &RunReport, pointer: &str) -> i64 {
-    let mut parts = pointer.split('/').skip(1);
-    let section = parts.next().and_then(|name| report.sections.get(name));
-    let value = parts.fold(section, |value, name| value.and_then(|value| value.get(name)));
-    value.and_then(Value::as_i64).unwrap_or_default()
 }
 
 fn table(components: &[ComponentReport]) -> String {

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use saoms_api::Level;
+use saoms_api::extension::RunSummary;
 
 use super::super::ending::Cause;
 use super::super::engine::{Engine, Next, Phase};
@@ -52,12 +53,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 if now >= endless && engine.pause == NEVER {
                     endless = NEVER;
                     if engine.votes.voters == 0 {
-                        shared.note(
-                            Level::Warning,
-                            "no component says when its work is done, so virtual time goes on until Ctrl-C: \
-                             give the run an end with `--for`, or a world and an environment with a scenario"
-                                .to_owned(),
-                        );
+                        shared.note(Level::Warning, endless_warning());
                     }
                 }
             }
@@ -102,4 +98,14 @@ fn sleep<'a>(
     let mut engine = shared.lock();
     engine.roles.asleep_until = 0;
     engine
+}
+
+/// The warning about a run that nothing ends.
+fn endless_warning() -> String {
+    let voters: String =
+        RunSummary::linked().iter().map(|summary| format!(", or {}", summary.voters)).collect();
+    format!(
+        "no component says when its work is done, so virtual time goes on until Ctrl-C: \
+         give the run an end with `--for`{voters}"
+    )
 }
