@@ -12,13 +12,13 @@ const SHOWN: usize = 40;
 const LAST: usize = 8;
 
 /// What was done, what led to it, and what was known.
-pub(super) fn human(robot: &str, asked: Option<Time>, why: &Why<'_>, document: &Document) -> String {
-    let Some(time) = why.time else { return nothing(robot, asked, document) };
+pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, document: &Document) -> String {
+    let Some(time) = why.time else { return nothing(component, asked, document) };
     let mut text = match asked.filter(|asked| *asked != time) {
         Some(asked) => {
-            format!("What {robot} did last up to {asked}, at {time}, and what led to it:\n")
+            format!("What {component} did last up to {asked}, at {time}, and what led to it:\n")
         }
-        None => format!("What {robot} did at {time}, and what led to it:\n"),
+        None => format!("What {component} did at {time}, and what led to it:\n"),
     };
     for (place, chain) in why.chains.iter().enumerate() {
         text.push('\n');
@@ -44,14 +44,16 @@ pub(super) fn human(robot: &str, asked: Option<Time>, why: &Why<'_>, document: &
     text
 }
 
-fn nothing(robot: &str, asked: Option<Time>, document: &Document) -> String {
-    let own = document.journal.of(robot);
+fn nothing(component: &str, asked: Option<Time>, document: &Document) -> String {
+    let own = document.journal.of(component);
     match (asked, own.first()) {
         (Some(asked), Some(first)) => {
-            format!("{robot} had done nothing by {asked}: its journal begins at {}\n", first.time())
+            format!("{component} had done nothing by {asked}: its journal begins at {}\n", first.time())
         }
         _ => {
-            format!("{robot} wrote nothing to the journal in this run: no loop of it found a reason to act\n")
+            format!(
+                "{component} wrote nothing to the journal in this run: no loop of it found a reason to act\n"
+            )
         }
     }
 }

@@ -27,7 +27,8 @@ Exit codes:
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct WhyArguments {
     /// The robot, or any other component: its path, an ending of its path that no other has, or its ID
-    pub(crate) robot: String,
+    #[arg(value_name = "ROBOT")]
+    pub(crate) component: String,
 
     /// Ask what it did last up to this time of the run, and not up to its end (a bare number is milliseconds; units us, ms, s, min, h)
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
@@ -69,7 +70,7 @@ struct Answer {
 fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
     let path = arguments.report.as_path();
     let document = document(path)?;
-    let robot = find(&document.components, &arguments.robot)?;
+    let component = find(&document.components, &arguments.component)?;
     let at = arguments.at.map(|at| Time::START + at);
     if let (Some(asked), Some(at), Some(end)) = (arguments.at, at, document.end)
         && at > end
@@ -77,8 +78,8 @@ fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
         let asked = format_duration(asked);
         return Err(format!("the run had ended at {end}, before {asked}: ask for a time up to then"));
     }
-    let why = document.journal.why(&robot.name, at).map_err(|error| {
-        format!("what led to what `{}` did cannot be told: {error}. {}", robot.name, advice(&document))
+    let why = document.journal.why(&component.name, at).map_err(|error| {
+        format!("what led to what `{}` did cannot be told: {error}. {}", component.name, advice(&document))
     })?;
     let missing = why.chains.iter().find_map(|chain| chain.missing);
     let lost = missing.map(|missing| {
@@ -86,8 +87,8 @@ fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
         format!("record {}, which led to this, was {how}. {}", missing.0, advice(&document))
     });
     let text = match arguments.format {
-        Format::Human => answer::human(&robot.name, at, &why, &document),
-        Format::Json => machine(&robot.name, at, &why),
+        Format::Human => answer::human(&component.name, at, &why, &document),
+        Format::Json => machine(&component.name, at, &why),
     };
     Ok(Answer { text, lost })
 }
@@ -124,32 +125,32 @@ fn document(path: &Path) -> Result<Document, String> {
 }
 
 /// The component that is meant: by its path, its ID, or an ending of its path that no other has.
-fn find<'a>(components: &'a [Named], robot: &str) -> Result<&'a Named, String> {
-    let is_id = |one: &Named| one.id.as_deref() == Some(robot);
-    if let Some(found) = components.iter().find(|one| one.name == robot) {
+fn find<'a>(components: &'a [Named], component: &str) -> Result<&'a Named, String> {
+    let is_id = |one: &Named| one.id.as_deref() == Some(component);
+    if let Some(found) = components.iter().find(|one| one.name == component) {
         return Ok(found);
     }
     let ids: Vec<&Named> = components.iter().filter(|one| is_id(one)).collect();
-    let found = if ids.is_empty() && !robot.is_empty() {
-        components.iter().filter(|one| one.name.ends_with(robot)).collect()
+    let found = if ids.is_empty() && !component.is_empty() {
+        components.iter().filter(|one| one.name.ends_with(component)).collect()
     } else {
         ids
     };
     match found[..] {
         [one] => Ok(one),
-        [] => Err(unknown(components, robot)),
+        [] => Err(unknown(components, component)),
         ref several => {
             let names: Vec<String> = several.iter().map(|one| format!("`{}`", one.name)).collect();
-            Err(format!("`{robot}` can be any of {}: say more of its path", names.join(", ")))
+            Err(format!("`{component}` can be any of {}: say more of its path", names.join(", ")))
         }
     }
 }
 
-fn unknown(components: &[Named], robot: &str) -> String {
+fn unknown(components: &[Named], component: &str) -> String {
     let names = components.iter().map(|one| one.name.as_str());
     let ids = components.iter().filter_map(|one| one.id.as_deref());
     let endings = components.iter().filter_map(|one| one.name.rsplit('/').next());
-    let like = nearest_few(robot, names.clone().chain(ids).chain(endings), 3);
+    let like = nearest_few(component, names.clone().chain(ids).chain(endings), 3);
     let quoted =
         |names: Vec<&str>| names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let help = match like[..] {
@@ -160,13 +161,13 @@ fn unknown(components: &[Named], robot: &str) -> String {
         [] => format!("its components are {}", quoted(names.collect())),
         _ => format!("did you mean {}?", quoted(like)),
     };
-    format!("the fleet of this run had no component `{robot}`: {help}")
+    format!("the fleet of this run had no component `{component}`: {help}")
 }
 
-fn machine(robot: &str, at: Option<Time>, why: &Why<'_>) -> String {
+fn machine(component: &str, at: Option<Time>, why: &Why<'_>) -> String {
     let asked = at.map(Time::as_secs_f64);
     let json = json!({
-        "component": robot,
+        "component": component,
         "asked_s": asked,
         "time_s": why.time.map(Time::as_secs_f64),
         "chains": why.chains,

@@ -137,3 +137,50 @@ fn the_checker_knows_no_clock_no_thread_and_no_network() {
         }
     }
 }
+
+/// Words of the domain of the components that ship: the program knows them only through what `saoms-components` registers.
+const DOMAIN: &[&str] =
+    &["luggage", "collision", "stranded", "robot", "airport", "charg", "battery", "healer", "scenario"];
+
+/// Examples in messages and helps, and names of the contract, that may say such a word.
+const EXAMPLES: &[&str] = &[
+    "`hall/Robot001`",
+    "`robots > 10",
+    "unibg.robotics.tca",
+    "value_name = \"ROBOT\"",
+    "that the robot did nothing",
+    "no such robot",
+];
+
+/// A line of code without comments and without the examples.
+fn without_examples(line: &str) -> String {
+    let code = line.split("//").next().unwrap_or_default();
+    EXAMPLES.iter().fold(code.to_owned(), |code, example| code.replace(example, ""))
+}
+
+#[test]
+fn only_the_components_know_their_domain() {
+    // Templates of plugins are for makers of robots.
+    let templates = root().join("src/command/new");
+    let is_test = |file: &Path| file.iter().any(|part| part == "tests" || part == "tests.rs");
+    let mut wrong = Vec::new();
+    for source in ["saoms-lang/src", "saoms-core/src", "saoms-tools/src", "src"] {
+        let files = rust_files(&root().join(source));
+        for file in files.iter().filter(|file| !file.starts_with(&templates) && !is_test(file)) {
+            let text = fs::read_to_string(file).unwrap();
+            let tests = ["#[cfg(test)]\nmod tests {", "#[cfg(test)]\n#[test]", "\n#[test]"];
+            let code =
+                tests.iter().fold(text.as_str(), |code, start| code.split(start).next().unwrap_or(code));
+            for (number, line) in code.lines().enumerate() {
+                let line = without_examples(line).to_lowercase();
+                wrong.extend(
+                    DOMAIN
+                        .iter()
+                        .filter(|word| line.contains(**word))
+                        .map(|word| format!("{}:{}: `{word}` is of the domain", file.display(), number + 1)),
+                );
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
