@@ -122,11 +122,7 @@ codes! {
     BINDING_MISMATCH = "S2053" Warning "binding-mismatch": "A reference and the service that it is wired to have no kind of binding in common.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways that exclude each other.";
     MUST_SUPPLY_DIFFERS = "S2055" Warning "must-supply-differs": "A component says of a property that it need not be supplied, and it has to be.";
-    UNKNOWN_DECLARATION = "S2056" Warning "unknown-declaration": "A type, an element, a part of WSDL or an intent is named that no file of the contribution declares, although one declares others of its namespace.";
-    DECLARATION_REPEATED = "S2057" Error "declaration-repeated" ("ASM10001"): "Two intents, policy sets, types of bindings or types of implementations have one name. In SCA 1.0 files a warning.";
-    POLICIES = "S2058" Error "policies": "What `definitions.xml` says of an intent or a policy set contradicts itself. In SCA 1.0 files a warning.";
     EXCHANGE = "S2059" Warning "exchange": "A contribution exports a namespace of which it has nothing, or imports one that those around it do not export.";
-    INTENTS_EXCLUDED = "S2060" Error "intents-excluded" ("ASM60010"): "Intents are required together of which one excludes the other.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::Loader;
 use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
-use crate::model::{Multiplicity, OutsideKind, OutsideName, Policy, SAOMS_NAMESPACE, Version};
+use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Span, Text};
 use crate::xml::{Attribute, Element, escaped};
 
@@ -307,24 +307,6 @@ impl Loader<'_> {
             words.shrink_to_fit();
         }
         words
-    }
-
-    /// `requires` and `policySets`.
-    pub(super) fn policy(&mut self, element: Element<'_>) -> Policy {
-        let (requires, policy_sets) = (self.list(element, "requires"), self.list(element, "policySets"));
-        let both = [(OutsideKind::Intent, &requires), (OutsideKind::PolicySet, &policy_sets)];
-        for (kind, names) in both {
-            names.iter().for_each(|name| self.outside(element, name, kind));
-        }
-        Policy::new(requires, policy_sets)
-    }
-
-    /// Remembers the name of something that another file may declare.
-    pub(super) fn outside(&mut self, element: Element<'_>, name: &Text, kind: OutsideKind) {
-        if !OutsideKind::OF_WSDL.contains(&kind) {
-            self.prefixed_name(name);
-        }
-        self.outside.push(OutsideName { name: name.clone(), element: element.id(), kind });
     }
 
     pub(super) fn value_fault(&mut self, attribute: Attribute<'_>, message: String, meant: Option<&str>) {

@@ -4,7 +4,7 @@ use smol_str::SmolStr;
 
 use super::Loader;
 use super::attributes::is_attribute_as_element;
-use super::vocabulary::{self, Kind, OWN_ELEMENTS, SEVERITY};
+use super::vocabulary::{self, EXTENSIONS, INTENTS, Kind, OPERATION, OWN_ELEMENTS, POLICY_SET, SEVERITY};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
@@ -158,6 +158,17 @@ impl Loader<'_> {
             None => one.help(holds()),
         });
         slip.filter(|_| word.is_none())
+    }
+
+    /// Checks an element of SCA that the model does not keep: its version, and the names in it.
+    pub(super) fn beside(&mut self, element: Element<'_>) {
+        self.of_version(element);
+        let kinds = [&INTENTS, &POLICY_SET, &EXTENSIONS];
+        if let Some(kind) = kinds.into_iter().find(|kind| kind.name == element.local_name()) {
+            self.parts_of(element, kind);
+        } else if element.local_name() == OPERATION.name {
+            self.leaf(element, &OPERATION);
+        }
     }
 
     /// Checks the children of an element none of whose children the model holds.

@@ -28,9 +28,7 @@ impl Loader<'_> {
             condition: self.own(element, "if"),
             replicas,
             autowire: self.boolean(element, "autowire"),
-            constraining_type: self.optional(element, "constrainingType"),
             loops: Vec::new(),
-            policy: self.policy(element),
         };
         let mut component = Component {
             origin: Origin::of(element),
@@ -161,15 +159,12 @@ impl Loader<'_> {
                 );
                 return is_read.then(|| self.implementation(element, family, meant))?;
             }
-            _ => {
-                self.extension(element, family);
-                ImplementationKind::Other {
-                    kind: variant(element, "implementation."),
-                    is_sca: family == Family::Sca,
-                }
-            }
+            _ => ImplementationKind::Other {
+                kind: variant(element, "implementation."),
+                is_sca: family == Family::Sca,
+            },
         };
-        Some(Implementation { origin: Origin::of(element), kind, policy: self.policy(element) })
+        Some(Implementation { origin: Origin::of(element), kind })
     }
 
     /// Checks attributes, text and children of an element that the model keeps without its children.

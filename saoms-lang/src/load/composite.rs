@@ -26,7 +26,6 @@ impl Loader<'_> {
             target_namespace: self.target_namespace(root),
             local: self.boolean(root, "local"),
             autowire: self.boolean(root, "autowire"),
-            constraining_type: self.optional(root, "constrainingType"),
             includes: Vec::new(),
             properties: Vec::new(),
             services: Vec::new(),
@@ -34,8 +33,6 @@ impl Loader<'_> {
             components: Vec::new(),
             wires: Vec::new(),
             severities: Vec::new(),
-            outside: Vec::new(),
-            policy: self.policy(root),
             name,
         };
         for child in root.children() {
@@ -43,7 +40,6 @@ impl Loader<'_> {
             self.part(child, family, name, &mut composite);
         }
         composite.severities = std::mem::take(&mut self.severities);
-        composite.outside = std::mem::take(&mut self.outside);
         composite
     }
 

@@ -109,7 +109,6 @@ impl Loader<'_> {
             }
         }
         contract.bindings.shrink_to_fit();
-        contract.policy = self.policy(element);
         boxed(contract)
     }
 
@@ -123,69 +122,36 @@ impl Loader<'_> {
         if let Some(first) = &contract.interface {
             return self.repeated(element, first.origin.tag, parent, "interface");
         }
-        let mut names = ("interface", "callbackInterface");
-        let mut required = false;
         let (_, name) = self.meaning(element);
-        let kind = match (family, name) {
-            (Family::Sca, "interface.java") => {
-                self.parts_of(element, &INTERFACE_JAVA);
-                required = true;
-                InterfaceKind::Java
-            }
-            (Family::Sca | Family::Own, "interface.rust") => {
-                self.parts_of(element, &INTERFACE_RUST);
-                required = true;
-                InterfaceKind::Rust
-            }
-            (Family::Sca, "interface.wsdl") => {
-                self.parts_of(element, &INTERFACE_WSDL);
-                self.extension(element, family);
-                required = true;
-                InterfaceKind::Wsdl
-            }
-            (Family::Sca, "interface.c" | "interface.cpp") => {
-                names = ("header", "callbackHeader");
-                if name == "interface.c" { InterfaceKind::C } else { InterfaceKind::Cpp }
-            }
-            (Family::Sca, "interface.partnerLinkType") => InterfaceKind::PartnerLinkType,
-            _ => InterfaceKind::Other,
+        let (kind, of) = match (family, name) {
+            (Family::Sca, "interface.java") => (InterfaceKind::Java, Some(&INTERFACE_JAVA)),
+            (Family::Sca | Family::Own, "interface.rust") => (InterfaceKind::Rust, Some(&INTERFACE_RUST)),
+            (Family::Sca, "interface.wsdl") => (InterfaceKind::Sca, Some(&INTERFACE_WSDL)),
+            (Family::Sca, _) => (InterfaceKind::Sca, None),
+            _ => (InterfaceKind::Other, None),
         };
-        contract.interface = Some(Interface {
-            origin: Origin::of(element),
-            kind,
-            interface: if required {
-                self.required(element, names.0)
-            } else {
-                self.optional(element, names.0)
-            },
-            callback_interface: if required && element.attribute(names.1).is_some() {
-                self.required(element, names.1)
-            } else {
-                self.optional(element, names.1)
-            },
-            remotable: if family != Family::Foreign { self.boolean(element, "remotable") } else { None },
-            policy: self.policy(element),
-        });
+        let interface = match of {
+            Some(of) => {
+                self.parts_of(element, of);
+                self.required(element, "interface")
+            }
+            None => self.optional(element, "interface"),
+        };
+        contract.interface = Some(Interface { origin: Origin::of(element), kind, interface });
     }
 
     fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {
         // What other bindings hold is theirs.
         if self.meaning(element) == (Family::Sca, BINDING_SCA.name) {
             self.parts_of(element, &BINDING_SCA);
-        } else {
-            self.extension(element, family);
         }
         let name = self.optional(element, "name");
-        if let (Some(name), Some(attribute)) = (&name, element.attribute("name")) {
-            self.binding_name(name, attribute);
-        }
         Binding {
             origin: Origin::of(element),
             kind: variant(element, "binding."),
             is_sca: family == Family::Sca,
             name: name.map(Box::new),
             uri: self.optional(element, "uri"),
-            policy: self.policy(element),
         }
     }
 
@@ -210,7 +176,6 @@ impl Loader<'_> {
                 _ => _ = self.unexpected(child, &CALLBACK, family),
             }
         }
-        let (name, policy) = (self.optional(element, "name"), self.policy(element));
-        Callback { origin: Origin::of(element), name, bindings, policy }
+        Callback { origin: Origin::of(element), bindings }
     }
 }

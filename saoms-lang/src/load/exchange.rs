@@ -6,14 +6,12 @@ use std::path::Path;
 
 use super::description::{Description, Entry};
 use super::finder::Finder;
-use super::head;
 use super::imports::Imports;
 use super::shelf::is_of_definitions;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
-use crate::source::OpenTexts;
 
 /// The endings of files that hold no names that others could import, or of which they are known.
-const USUAL: &[&str] = &["composite", "componentType", "xsd", "wsdl", "csv", "txt", "md", "properties"];
+const USUAL: &[&str] = &["composite", "componentType", "csv", "txt", "md", "properties"];
 /// Files of a contribution that are looked at.
 const MOST_ENTRIES: usize = 10_000;
 
@@ -24,16 +22,14 @@ impl Finder {
         &mut self,
         description: &Description,
         root: &Path,
-        (max_size, open): (u64, &OpenTexts),
+        max_size: u64,
         diagnostics: &mut Diagnostics,
     ) {
         if description.exports.is_empty() && description.imports.is_empty() {
             return;
         }
         let composites = self.shelf.namespaces(root);
-        let declaring = self.shelf.declaring_in(root);
-        let mut own = composites.clone();
-        own.extend(declaring.iter().filter_map(|path| head::target(path, open)));
+        let own = composites;
         let named = |entries: &[Entry]| -> BTreeSet<String> {
             entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
         };
@@ -41,7 +37,7 @@ impl Finder {
         for entry in &description.exports {
             let Some(namespace) = entry.namespace() else { continue };
             // What is imported can be given on.
-            if composites.is_empty() || own.contains(namespace) || imported.contains(namespace) {
+            if own.is_empty() || own.contains(namespace) || imported.contains(namespace) {
                 continue;
             }
             let is_near = nearest(namespace, own.iter().map(String::as_str)).is_some();

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::declared::Declared;
 use super::imports::Imports;
 use super::shelf::Shelf;
 use super::{component_type, load_file, read};
@@ -24,7 +23,6 @@ const SHOWN: usize = 3;
 pub struct Finder {
     pub(super) shelf: Shelf,
     pub(super) imports: Imports,
-    pub(super) declared: Declared,
     /// The contributions around others, of whose descriptions nothing is told.
     pub(super) around: Option<Imports>,
     /// How many right names are still looked at for wrong ones.
@@ -48,7 +46,6 @@ impl Finder {
         Self {
             shelf: Shelf::new(open),
             imports: Imports::default(),
-            declared: Declared::default(),
             around: None,
             candidates: Candidates::default(),
             explained: MOST_EXPLAINED,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::description::{Deployable, Description};
 use super::finder::Finder;
 use super::shelf::{DEPLOYABLES, Shelf, describes};
-use super::{load_file, read};
+use super::{definitions, load_file, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::{Composite, Contribution, Link};
 use crate::source::{Sources, Span};
@@ -58,14 +58,11 @@ impl Finder {
             let description = Description::of(&root, max_size, sources, diagnostics);
             let contribution = Files::read(files, max_size, sources, diagnostics);
             contribution.repeated(describes(&root), max_size, sources, diagnostics);
-            let definitions = self.shelf.definitions(&root);
-            // Without a description nobody says that they belong together.
-            let together = if describes(&root) { definitions.len().max(1) } else { 1 };
-            for files in definitions.chunks(together) {
-                has_definitions |= self.declared.definitions(files, max_size, sources, diagnostics);
+            for path in self.shelf.definitions(&root) {
+                has_definitions |= definitions::check(&path, false, max_size, sources, diagnostics);
             }
             if let Some(description) = &description {
-                self.exchange(description, &root, (max_size, sources.open()), diagnostics);
+                self.exchange(description, &root, max_size, diagnostics);
             }
             let deployables = description.iter().flat_map(|description| &description.deployables);
             let mut deployed: Vec<Option<PathBuf>> =
@@ -92,7 +89,7 @@ impl Finder {
     ) {
         self.shelf.turn_to_folder();
         let description = Description::read(path.to_owned(), max_size, sources, diagnostics);
-        self.exchange(&description, root, (max_size, sources.open()), diagnostics);
+        self.exchange(&description, root, max_size, diagnostics);
         let (files, _) = self.shelf.contribution(root);
         let contribution = Files::read(files, max_size, sources, &mut Diagnostics::new());
         for deployable in &description.deployables {

@@ -49,11 +49,6 @@ pub(super) fn root(path: &Path, open: &OpenTexts) -> Option<(String, Option<Stri
     })
 }
 
-/// The target namespace that the first tag of a file says.
-pub(super) fn target(path: &Path, open: &OpenTexts) -> Option<String> {
-    first_tag(path, open, |tag| value(tag, "targetNamespace"))
-}
-
 fn value(tag: &BytesStart<'_>, name: &str) -> Option<String> {
     let found = tag.try_get_attribute(name).ok().flatten()?;
     quick_xml::escape::unescape(&found.value).ok().map(|text| text.trim().to_owned())

@@ -10,23 +10,18 @@ mod component;
 mod component_type;
 mod composite;
 mod contract;
-mod declared;
-mod declaring;
 mod definitions;
 mod description;
 mod encoding;
 mod exchange;
-mod extension;
 mod finder;
 mod folder;
 mod head;
 mod imports;
-mod intents;
 mod looping;
 mod missing;
 mod named;
 mod near;
-mod policy;
 mod property;
 mod read;
 mod root;
@@ -57,7 +52,7 @@ use tangle::Swallowed;
 pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::model::{Composite, OutsideName, SeverityRule, Version};
+use crate::model::{Composite, SeverityRule, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
 
@@ -168,8 +163,6 @@ struct Loader<'d> {
     newer: Vec<&'static str>,
     /// What is said about severities.
     severities: Vec<SeverityRule>,
-    /// The names of what other files declare.
-    outside: Vec<OutsideName>,
     /// Why its tags do not fit, where they do not.
     tangle: Option<xml::Tangle>,
     swallowed: Option<Swallowed>,
@@ -185,7 +178,6 @@ impl<'d> Loader<'d> {
             is_replicated: false,
             newer: Vec::new(),
             severities: Vec::new(),
-            outside: Vec::new(),
             tangle: None,
             swallowed: None,
         }

@@ -78,7 +78,7 @@ impl Finder {
                 })
                 .collect();
             let described = described(composite);
-            if wanted.is_empty() && described.is_empty() && composite.outside.is_empty()
+            if wanted.is_empty() && described.is_empty()
                 || !(path.is_file()
                     || sources.open().get(&path).is_some()
                     || path == Path::new(STANDARD_INPUT))
@@ -86,7 +86,6 @@ impl Finder {
                 continue;
             }
             let folder = path.parent().unwrap_or(Path::new(""));
-            self.declared.check(composite, (folder, max_size), &mut self.shelf, sources, diagnostics);
             let root = self.shelf.root(folder);
             let mut files = HashMap::new();
             for Described { written, paths, package, is_needed } in described {

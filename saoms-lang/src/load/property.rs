@@ -4,7 +4,7 @@ use super::children::Family;
 use super::vocabulary::{COMPONENT, COMPOSITE, Kind, OWN_ELEMENTS};
 use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::model::{Origin, OutsideKind, Part, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
+use crate::model::{Origin, Part, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
 use crate::xml::{Element, ElementId};
 
@@ -61,13 +61,6 @@ impl Loader<'_> {
         // A property of a composite has none: one is reported, and not read.
         let has_file = kind.attributes.iter().any(|known| known.name == "file");
         let (r#type, of) = (self.optional(element, "type"), self.optional(element, "element"));
-        // Types of XML Schema, as most are, are known.
-        if let Some(name) = r#type.as_ref().filter(|name| !name.starts_with("xs")) {
-            self.outside(element, name, OutsideKind::Type);
-        }
-        if let Some(name) = &of {
-            self.outside(element, name, OutsideKind::Element);
-        }
         PropertyDetails {
             inside,
             r#type,

@@ -1,6 +1,6 @@
 //! Finding composites in folders by their names, without reading more than is needed.
 
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, FileType};
 use std::path::{Path, PathBuf};
@@ -42,8 +42,6 @@ pub(super) struct Shelf {
     /// The composites of contributions by the names of their files; none of a folder that nobody describes as one.
     files: HashMap<PathBuf, HashMap<OsString, Vec<PathBuf>>>,
     roots: HashMap<PathBuf, PathBuf>,
-    /// The files of contributions that may declare what composites name.
-    pub(super) declaring: HashMap<PathBuf, Rc<[PathBuf]>>,
     /// What was looked for, from which folder: names are used again and again.
     found: HashMap<Wanted, Option<PathBuf>>,
     /// Of contributions that were looked through, the files called as composites that are none as far as could be read: the first of each name.
@@ -64,9 +62,9 @@ type Wanted = (PathBuf, Option<Vec<String>>, String);
 #[derive(Debug, Default)]
 pub(super) struct Listing {
     composites: Vec<PathBuf>,
-    pub(super) folders: Vec<PathBuf>,
-    /// Schemas, WSDL and definitions of policies.
-    pub(super) declaring: Vec<PathBuf>,
+    folders: Vec<PathBuf>,
+    /// Definitions of policies.
+    definitions: Vec<PathBuf>,
 }
 
 /// A way through the folders of a contribution, the upper ones first, that goes on where it stopped.
@@ -105,7 +103,6 @@ impl Shelf {
             seen: HashMap::new(),
             files: HashMap::new(),
             roots: HashMap::new(),
-            declaring: HashMap::new(),
             found: HashMap::new(),
             unread: HashMap::new(),
             left: MOST_ENTRIES,
@@ -314,6 +311,26 @@ impl Shelf {
         (composites, others)
     }
 
+    /// The files of definitions in a contribution, sorted.
+    pub(super) fn definitions(&mut self, root: &Path) -> Vec<PathBuf> {
+        let (mut all, mut waiting) = (Vec::new(), vec![root.to_owned()]);
+        while let Some(next) = waiting.pop() {
+            if next == root || !describes(&next) {
+                let listing = self.listing(&next);
+                all.extend_from_slice(&listing.definitions);
+                waiting.extend_from_slice(&listing.folders);
+            }
+        }
+        all.sort_unstable();
+        all
+    }
+
+    /// The namespaces of the composites in a contribution.
+    pub(super) fn namespaces(&mut self, root: &Path) -> BTreeSet<String> {
+        let composites = self.contribution(root).0.into_iter();
+        composites.filter_map(|path| Some(self.head(&path).as_ref()?.namespace.clone())).collect()
+    }
+
     /// Whether every file was looked at.
     pub(super) fn is_complete(&self) -> bool {
         !self.is_cut
@@ -351,7 +368,7 @@ impl Shelf {
                 Ok(kind) if name.ends_with(".composite") && may_be_read(kind, &path) => {
                     listing.composites.push(path);
                 }
-                Ok(kind) if is_declaring(&name) && may_be_read(kind, &path) => listing.declaring.push(path),
+                Ok(kind) if name == DEFINITIONS && may_be_read(kind, &path) => listing.definitions.push(path),
                 _ => {}
             }
         }
@@ -446,11 +463,6 @@ pub(super) fn root(folder: &Path) -> PathBuf {
     // As the user wrote it, where that goes up far enough.
     let written = folder.ancestors().nth(above).filter(|written| above == 0 || written.file_name().is_some());
     written.or(absolute.ancestors().nth(above)).unwrap_or(folder).to_owned()
-}
-
-/// Whether a file of this name may declare what composites name.
-fn is_declaring(name: &str) -> bool {
-    name.ends_with(".wsdl") || name.ends_with(".xsd") || name == DEFINITIONS
 }
 
 /// Whether a file is called as those of definitions are.

@@ -5,12 +5,12 @@ use std::path::Path;
 use super::definitions;
 use super::finder::Finder;
 use super::head;
-use super::shelf::{describes, is_of_definitions};
+use super::shelf::is_of_definitions;
 use super::vocabulary::{CONTRIBUTION, DEFINITIONS};
 use super::{load_component_type, read};
 use crate::diagnostic::Diagnostics;
 use crate::model::{ComponentType, Version};
-use crate::source::{Sources, identity};
+use crate::source::Sources;
 
 /// A file beside composites.
 #[derive(Debug)]
@@ -38,10 +38,7 @@ impl Finder {
         let is_of_sca = namespace.is_some_and(|namespace| Version::from_namespace(&namespace).is_some());
         let folder = path.parent().unwrap_or(Path::new(""));
         if name == DEFINITIONS.name && (is_of_sca || is_of_definitions(path)) {
-            let root = self.shelf.root(folder);
-            let mut others = if describes(&root) { self.shelf.definitions(&root) } else { Vec::new() };
-            others.retain(|other| identity(other) != identity(path));
-            definitions::check_one(path, &others, max_size, sources, diagnostics);
+            definitions::check(path, true, max_size, sources, diagnostics);
         } else if name == CONTRIBUTION.name {
             let above = folder.parent().filter(|_| folder.ends_with("META-INF"));
             self.describe(path, above.unwrap_or(folder), max_size, sources, diagnostics);

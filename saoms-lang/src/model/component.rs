@@ -3,7 +3,7 @@
 use smol_str::SmolStr;
 
 use super::origin::parts;
-use super::{Loop, Origin, Policy, Property, Reference, Replicas, Service};
+use super::{Loop, Origin, Property, Reference, Replicas, Service};
 use crate::source::{Located, Text};
 
 /// A component: a configured use of an implementation.
@@ -36,12 +36,8 @@ pub struct ComponentDetails {
     pub replicas: Option<Replicas>,
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
-    /// `constrainingType` (1.0).
-    pub constraining_type: Option<Text>,
     /// What it says about its loops, in order.
     pub loops: Vec<Loop>,
-    /// Intents and policy sets.
-    pub policy: Policy,
 }
 
 impl Component {
@@ -65,19 +61,9 @@ impl Component {
         self.details.as_ref()?.autowire
     }
 
-    /// `constrainingType` (1.0).
-    pub fn constraining_type(&self) -> Option<&Text> {
-        self.details.as_ref()?.constraining_type.as_ref()
-    }
-
     /// What it says about its loops, in order.
     pub fn loops(&self) -> &[Loop] {
         self.details.as_ref().map_or(&[], |details| &details.loops)
-    }
-
-    /// Intents and policy sets.
-    pub fn policy(&self) -> &Policy {
-        self.details.as_ref().map_or(&Policy::NONE, |details| &details.policy)
     }
 
     /// The first property of this name.
@@ -111,8 +97,6 @@ pub struct Implementation {
     pub origin: Origin,
     /// Which kind, with what it names.
     pub kind: ImplementationKind,
-    /// Intents and policy sets.
-    pub policy: Policy,
 }
 
 /// A kind of implementation with what it names. `None` where the file leaves out a required attribute.

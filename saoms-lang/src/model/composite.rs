@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::origin::parts;
-use super::{Component, Origin, Policy, Property, Reference, Service, SeverityRule, Version};
+use super::{Component, Origin, Property, Reference, Service, SeverityRule, Version};
 use crate::source::{FileId, Located, Text};
-use crate::xml::{Document, ElementId};
+use crate::xml::Document;
 
 /// A composite: components, what they are wired to, and what of them is promoted.
 #[derive(Clone, Debug)]
@@ -24,8 +24,6 @@ pub struct Composite {
     pub local: Option<Located<bool>>,
     /// `autowire`
     pub autowire: Option<Located<bool>>,
-    /// `constrainingType` (1.0)
-    pub constraining_type: Option<Text>,
     /// Its includes in order.
     pub includes: Vec<Include>,
     /// Its properties in order.
@@ -40,61 +38,6 @@ pub struct Composite {
     pub wires: Vec<Wire>,
     /// What it says about severities, in order, that in its elements included.
     pub severities: Vec<SeverityRule>,
-    /// Intents and policy sets.
-    pub policy: Policy,
-    /// The names in it of what other files declare, in order.
-    pub outside: Vec<OutsideName>,
-}
-
-/// The name of something that another file declares.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OutsideName {
-    /// The name: a QName, or a URI of a part of a WSDL document.
-    pub name: Text,
-    /// The element that has it.
-    pub element: ElementId,
-    /// What it is the name of.
-    pub kind: OutsideKind,
-}
-
-/// What other files declare.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum OutsideKind {
-    /// An intent, in `definitions.xml`.
-    Intent,
-    /// A policy set, in `definitions.xml`.
-    PolicySet,
-    /// A type, in a schema.
-    Type,
-    /// A global element, in a schema.
-    Element,
-    /// An interface, in WSDL.
-    Wsdl,
-    /// A binding, in WSDL.
-    WsdlBinding,
-    /// A service, in WSDL.
-    WsdlService,
-    /// A port of a service, in WSDL: `Service/Port`.
-    WsdlPort,
-}
-
-impl OutsideKind {
-    /// Those in WSDL.
-    pub const OF_WSDL: [Self; 4] = [Self::Wsdl, Self::WsdlBinding, Self::WsdlService, Self::WsdlPort];
-
-    /// What it is, in words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Intent => "intent",
-            Self::PolicySet => "policy set",
-            Self::Type => "type",
-            Self::Element => "element",
-            Self::Wsdl => "interface of WSDL",
-            Self::WsdlBinding => "binding of WSDL",
-            Self::WsdlService => "service of WSDL",
-            Self::WsdlPort => "port of WSDL",
-        }
-    }
 }
 
 /// An inclusion of all that another composite holds.

@@ -2,8 +2,8 @@
 
 use smol_str::SmolStr;
 
+use super::Origin;
 use super::origin::parts;
-use super::{Origin, Policy};
 use crate::source::{Located, Text};
 
 /// A service: of a component, or of a composite, which promotes one of a component.
@@ -15,7 +15,7 @@ pub struct Service {
     pub name: Text,
     /// `promote`, of a composite's service: `component` or `component/service`.
     pub promote: Option<Box<Text>>,
-    /// What it holds, and its intents; the methods give it.
+    /// The contract, which the methods give.
     pub contract: Option<Box<Contract>>,
 }
 
@@ -28,13 +28,13 @@ pub struct Reference {
     pub name: Text,
     /// `target`: each URI, `component`, `component/service` or `component/service/binding`, with its own place.
     pub targets: Vec<Text>,
-    /// What few references have; the methods give it.
+    /// Rarely needed fields, which the methods give.
     pub details: Option<Box<ReferenceDetails>>,
-    /// What it holds, and its intents; the methods give it.
+    /// The contract, which the methods give.
     pub contract: Option<Box<Contract>>,
 }
 
-/// What services and references hold alike, and most do not.
+/// Interface, bindings and callback of a service or a reference: rarely given, boxed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contract {
     /// Its interface.
@@ -43,8 +43,6 @@ pub struct Contract {
     pub bindings: Vec<Binding>,
     /// Its callback.
     pub callback: Option<Callback>,
-    /// Intents and policy sets.
-    pub policy: Policy,
 }
 
 macro_rules! contract {
@@ -64,17 +62,12 @@ macro_rules! contract {
             pub fn callback(&self) -> Option<&Callback> {
                 self.contract.as_ref()?.callback.as_ref()
             }
-
-            /// Intents and policy sets.
-            pub fn policy(&self) -> &Policy {
-                self.contract.as_ref().map_or(&Policy::NONE, |contract| &contract.policy)
-            }
         })*
     };
 }
 contract!(Service, Reference);
 
-/// What few references have.
+/// Rarely needed fields, boxed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReferenceDetails {
     /// `promote`, of a composite's reference: each URI with its own place.
@@ -171,14 +164,8 @@ pub struct Interface {
     pub origin: Origin,
     /// Which kind of interface.
     pub kind: InterfaceKind,
-    /// `interface` (`header` of C and C++): the name of the interface in its language.
+    /// `interface`: the name of the interface in its language.
     pub interface: Option<Text>,
-    /// `callbackInterface` (`callbackHeader` of C and C++).
-    pub callback_interface: Option<Text>,
-    /// `remotable` (1.1).
-    pub remotable: Option<Located<bool>>,
-    /// Intents and policy sets.
-    pub policy: Policy,
 }
 
 /// A kind of interface.
@@ -188,15 +175,9 @@ pub enum InterfaceKind {
     Java,
     /// `interface.rust`, in the SCA namespace or in that of SAOMS.
     Rust,
-    /// `interface.wsdl`
-    Wsdl,
-    /// `interface.c`
-    C,
-    /// `interface.cpp`
-    Cpp,
-    /// `interface.partnerLinkType`
-    PartnerLinkType,
-    /// Another, whose element says which.
+    /// Another one of SCA.
+    Sca,
+    /// One of another namespace.
     Other,
 }
 
@@ -213,8 +194,6 @@ pub struct Binding {
     pub name: Option<Box<Text>>,
     /// `uri`.
     pub uri: Option<Text>,
-    /// Intents and policy sets.
-    pub policy: Policy,
 }
 
 /// The callback of a service or a reference.
@@ -222,12 +201,8 @@ pub struct Binding {
 pub struct Callback {
     /// Where it comes from.
     pub origin: Origin,
-    /// `name`.
-    pub name: Option<Text>,
     /// Its bindings in order.
     pub bindings: Vec<Binding>,
-    /// Intents and policy sets.
-    pub policy: Policy,
 }
 
 parts!(Service, Reference, Interface, Binding, Callback);

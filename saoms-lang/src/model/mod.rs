@@ -12,7 +12,6 @@ mod contract;
 mod contribution;
 mod looping;
 mod origin;
-mod policy;
 mod property;
 mod replicas;
 mod severity;
@@ -20,14 +19,13 @@ mod version;
 
 pub use component::{Component, ComponentDetails, Implementation, ImplementationKind};
 pub use component_type::ComponentType;
-pub use composite::{Composite, Include, OutsideKind, OutsideName, Wire, WireDetails};
+pub use composite::{Composite, Include, Wire, WireDetails};
 pub use contract::{
     Binding, Callback, Contract, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
 };
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
 pub use looping::Loop;
 pub use origin::{Origin, Part};
-pub use policy::Policy;
 pub use property::{Property, PropertyDetails, PropertyValue, ValueDocument};
 pub use replicas::{Replicas, Row, Table};
 pub use severity::SeverityRule;

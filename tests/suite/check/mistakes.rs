@@ -123,7 +123,7 @@ fn in_composites_of_composites() {
 }
 
 #[test]
-fn in_policies_beside_a_composite() {
+fn in_a_composite_with_policies() {
     let files = files!("guarded": "guarded.composite" "definitions.xml");
     let mistakes = include_str!("../../mistakes/guarded/mistakes.txt");
     hold(&files, mistakes, &expect_file!["../../mistakes/guarded/mistakes.txt"]);

@@ -344,10 +344,6 @@ fn a_value_in_a_component_type_is_one_and_written_once() {
         Run.componentType:3:45-46 error S3012: the property `c` is given a value in two ways
           Run.componentType:3:42-43 the other one
           help: keep one of them
-        Run.componentType:5:2-10 error S1008: `requires` needs the attribute `intents`
-          help: add `intents="..."` to it
-        Run.componentType:5:35-54 error S1008: `policySetAttachment` needs the attribute `name`
-          help: add `name="..."` to it
         Run.componentType:5:85-92 error S1005: `service` cannot stand in `extensions`
           help: `extensions` holds no elements of SCA
     "#]]

@@ -1,13 +1,11 @@
 //! The loader over real files, broken files, and beside another XML parser.
 
 mod corpus;
-mod declared;
 mod definitions;
 mod exchange;
 mod files;
 mod folders;
 mod imports;
-mod intents;
 mod named;
 mod oracle;
 mod places;

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use saoms_lang::diagnostic::{Diagnostics, codes, human, json};
 use saoms_lang::load::load_file;
 use saoms_lang::model::{
-    Binding, Callback, Composite, ImplementationKind, Interface, Part, Policy, Property, Reference, Service,
+    Binding, Callback, Composite, ImplementationKind, Interface, Part, Property, Reference, Service,
 };
 use saoms_lang::source::{Location, Sources, Span, Text};
 use saoms_lang::xml;
@@ -86,8 +86,6 @@ fn places(text: &str) -> HashSet<Span> {
 fn texts(composite: &Composite) -> Vec<&Text> {
     let mut all = vec![&composite.name];
     all.extend(&composite.target_namespace);
-    all.extend(composite.constraining_type.as_ref());
-    policy(&composite.policy, &mut all);
     for include in &composite.includes {
         all.push(&include.name);
         all.extend(&include.uri);
@@ -100,10 +98,7 @@ fn texts(composite: &Composite) -> Vec<&Text> {
     composite.references.iter().for_each(|one| reference(one, &mut all));
     for component in &composite.components {
         all.push(&component.name);
-        all.extend(component.constraining_type());
-        policy(component.policy(), &mut all);
         if let Some(implementation) = &component.implementation {
-            policy(&implementation.policy, &mut all);
             match &implementation.kind {
                 ImplementationKind::Java { class } => all.extend(class),
                 ImplementationKind::Composite { name } => all.extend(name),
@@ -122,10 +117,6 @@ fn texts(composite: &Composite) -> Vec<&Text> {
     all
 }
 
-fn policy<'a>(policy: &'a Policy, all: &mut Vec<&'a Text>) {
-    all.extend(policy.requires().iter().chain(policy.policy_sets()));
-}
-
 fn property<'a>(property: &'a Property, all: &mut Vec<&'a Text>) {
     all.push(&property.name);
     all.extend(property.value());
@@ -140,14 +131,12 @@ fn property<'a>(property: &'a Property, all: &mut Vec<&'a Text>) {
 fn service<'a>(service: &'a Service, all: &mut Vec<&'a Text>) {
     all.push(&service.name);
     all.extend(service.promote.as_deref());
-    policy(service.policy(), all);
     contract(service.interface(), service.bindings(), service.callback(), all);
 }
 
 fn reference<'a>(reference: &'a Reference, all: &mut Vec<&'a Text>) {
     all.push(&reference.name);
     all.extend(reference.targets.iter().chain(reference.promote()));
-    policy(reference.policy(), all);
     contract(reference.interface(), reference.bindings(), reference.callback(), all);
 }
 
@@ -158,13 +147,11 @@ fn contract<'a>(
     all: &mut Vec<&'a Text>,
 ) {
     if let Some(interface) = interface {
-        all.extend(interface.interface.iter().chain(&interface.callback_interface));
-        policy(&interface.policy, all);
+        all.extend(&interface.interface);
     }
     for binding in bindings.iter().chain(callback.iter().flat_map(|callback| &callback.bindings)) {
         all.extend(binding.name.as_deref());
         all.extend(&binding.uri);
-        policy(&binding.policy, all);
     }
 }
 

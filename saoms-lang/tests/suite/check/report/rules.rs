@@ -47,7 +47,7 @@ The XML schemas of both versions (ASM13001) are followed, but for what other pro
 - a composite's reference of 1.1 without `multiplicity`, which the schema requires, takes one target (`1..1`), as in 1.0;
 - what cannot be a name of XML is told as a warning (S1011) where it starts wrong, or has a colon or a blank in it; other characters are let pass in names of parts, and names of classes and interfaces
   are those of their languages;
-- of bindings and implementations that are not described by the core, such as those for JMS, EJB or BPEL, attributes that are required or have a fixed set of values are checked, and nothing else.
+- bindings, implementations and policies that are not described by the core, such as those for JMS, EJB or BPEL, are taken as they are.
 
 `--assume-classes` is for composites of other programs, which may come with more than can be seen. It makes warnings of composites (S2030, S2031),
 files of values (S0001) and values of composite properties (S2025) that are not there.

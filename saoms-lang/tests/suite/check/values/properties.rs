@@ -69,8 +69,6 @@ fn what_cannot_run_says_so() {
           help: name the file of the composite beside this one
         3:22-41 error S3002: `implementation.bpel` cannot run here
           help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
-        3:51-52 error S1011: `p` names no process: it has no namespace
-          help: write `prefix:Process`, with a prefix that is bound to its namespace
         4:71-80 error S3015: the library `libgps.so` was not looked for
         5:16-21 error S2030: there is no composite `other` in the namespace `urn:t`
           help: name the file of the composite beside this one
