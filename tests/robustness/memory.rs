@@ -15,6 +15,7 @@ use saoms_lang::registry::Registry;
 use saoms_lang::source::Sources;
 use saoms_tools::graph::{Diagram, Picture, dot, mermaid, svg};
 
+use crate::below;
 use crate::targets::memory::{peak, within};
 
 thread_local! {
@@ -65,20 +66,6 @@ fn files() -> Vec<PathBuf> {
         paths.extend(below(&collection).into_iter().step_by(20));
     }
     paths
-}
-
-fn below(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        match path.extension() {
-            _ if path.is_dir() => found.extend(below(&path)),
-            Some(extension) if extension == "composite" => found.push(path),
-            _ => {}
-        }
-    }
-    found.sort();
-    found
 }
 
 #[test]

@@ -10,3 +10,4 @@ mod lsp;
 mod plugins;
 mod project;
 mod scenarios;
+mod support;

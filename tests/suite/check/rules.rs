@@ -4,15 +4,12 @@
 //! `UPDATE_EXPECT=1 cargo test --test suite rules` writes the part anew, and what the examples say of themselves.
 
 use std::fmt::Write as _;
-use std::path::Path;
 use std::{env, fs};
 
 use saoms_lang::registry::Registry;
 use saoms_testkit::{Fleet, expect_diagnostics};
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+use crate::support::root;
 
 #[test]
 fn every_rule_is_documented_with_an_example() {

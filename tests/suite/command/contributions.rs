@@ -1,21 +1,15 @@
 //! Folders and standard input in place of files.
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
+use crate::support::{answer, saoms_with};
+
 /// Runs `saoms` in the folder.
 fn saoms(folder: &Path, arguments: &[&str], input: &str) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
-    let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = pipes.args(arguments).current_dir(folder).spawn().unwrap();
-    // A command that reads no input closes it.
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
-    let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
-    (status.code().unwrap(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
+    answer(&saoms_with(folder, arguments, input.as_bytes()))
 }
 
 fn composite(name: &str, inside: &str) -> String {

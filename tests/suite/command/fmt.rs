@@ -1,26 +1,19 @@
 //! `saoms fmt` as a user meets it: real files, standard input, exit codes.
 
 use std::fs;
-use std::io::Write;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use tempfile::{TempDir, tempdir};
+
+use crate::support::{answer, root, saoms_with};
 
 const WRONG_LAYOUT: &str = "<a><!-- why -->\n<b  c='1' d='' ></b></a>";
 const RIGHT_LAYOUT: &str = "<a> <!-- why -->\n  <b c=\"1\" d=\"\"/>\n</a>\n";
 
-/// Runs `saoms fmt`: exit code, standard output and standard error.
+/// Runs `saoms fmt` in a folder.
 fn fmt(folder: &Path, arguments: &[&str], input: &[u8]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
-    command.arg("fmt").args(arguments).current_dir(folder);
-    let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = pipes.spawn().unwrap();
-    child.stdin.take().unwrap().write_all(input).unwrap();
-    let output = child.wait_with_output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    answer(&saoms_with(folder, &[&["fmt"], arguments].concat(), input))
 }
 
 fn folder(files: &[(&str, &str)]) -> TempDir {
@@ -121,7 +114,7 @@ fn what_is_no_xml_stays_and_the_others_are_formatted() {
 /// The composites of the manual stand as they are printed there, some in a layout of their own.
 #[test]
 fn shipped_composites_are_formatted() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root();
     let paths = fs::read_dir(root.join("composites")).unwrap().map(|entry| entry.unwrap().path());
     let composites = paths.filter(|path| path.extension().is_some_and(|ending| ending == "composite"));
     let paths: Vec<_> = composites.map(|path| path.display().to_string()).collect();

@@ -2,17 +2,14 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use tempfile::tempdir;
 
-/// Runs `saoms graph` in the project's folder: exit code, standard output and standard error.
+use crate::support::{answer, saoms};
+
+/// Runs `saoms graph` in the folder of the repository.
 fn graph(arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
-    command.arg("graph").args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
-    let output = command.output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    answer(&saoms(&[&["graph"], arguments].concat()))
 }
 
 fn written(folder: &Path, name: &str, arguments: &[&str]) -> String {
@@ -115,10 +112,7 @@ fn topics_of_loops_are_drawn_as_the_wiring_report_has_them() {
         .map(|line| line.split("label=\"").nth(1).unwrap().split('"').next().unwrap())
         .collect();
     drawn.sort_unstable();
-    let report = Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(["check", "--wiring", "--format", "json", "--set", "own=POSTOPIC,OTHER", path])
-        .output()
-        .unwrap();
+    let report = saoms(&["check", "--wiring", "--format", "json", "--set", "own=POSTOPIC,OTHER", path]);
     let report: serde_json::Value = serde_json::from_slice(&report.stdout).unwrap();
     let topics = report["wiring"]["topics"].as_array().unwrap();
     let reported: Vec<&str> = topics.iter().map(|topic| topic["name"].as_str().unwrap()).collect();

@@ -1,16 +1,10 @@
 //! What `saoms new` makes builds, passes its own tests, and runs.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 use std::{env, fs};
 
-fn saoms(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_saoms")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn text(output: &Output) -> String {
-    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
-}
+use crate::support::{root, saoms_in, text};
 
 /// Where this test was built: what the made crates depend on is built there already.
 fn target() -> PathBuf {
@@ -21,11 +15,11 @@ fn target() -> PathBuf {
 fn made_tested_and_run(kind: &str, expected: &str) {
     let folder = tempfile::tempdir().unwrap();
     let name = format!("made-{kind}");
-    let made = saoms(folder.path(), &["new", "plugin", &name, "--kind", kind]);
+    let made = saoms_in(folder.path(), &["new", "plugin", &name, "--kind", kind]);
     assert!(made.status.success(), "{}", text(&made));
     let plugin = folder.path().join(&name);
     // The same versions as here, so that nothing has to be fetched.
-    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.lock"), plugin.join("Cargo.lock")).unwrap();
+    fs::copy(root().join("Cargo.lock"), plugin.join("Cargo.lock")).unwrap();
     for command in ["test", "build"] {
         let cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
             .args([command, "--offline", "--target-dir"])
@@ -37,11 +31,12 @@ fn made_tested_and_run(kind: &str, expected: &str) {
     }
     let library = target().join(format!("debug/libmade_{kind}.so"));
     let library = library.to_str().unwrap();
-    let run = saoms(&plugin, &["run", "fleet.composite", "--virtual", "--for", "60s", "--plugin", library]);
+    let run =
+        saoms_in(&plugin, &["run", "fleet.composite", "--virtual", "--for", "60s", "--plugin", library]);
     assert!(run.status.success() && text(&run).contains(expected), "{}", text(&run));
-    let listed = saoms(&plugin, &["components", "--plugin", library]);
+    let listed = saoms_in(&plugin, &["components", "--plugin", library]);
     assert!(text(&listed).contains(&format!("made_{kind}.Made")), "{}", text(&listed));
-    assert!(saoms(&plugin, &["schema", "-o", "schema", "--plugin", library]).status.success());
+    assert!(saoms_in(&plugin, &["schema", "-o", "schema", "--plugin", library]).status.success());
     let schema = fs::read_to_string(plugin.join("schema/saoms.xsd")).unwrap();
     assert!(schema.contains(&format!("value=\"made_{kind}.Made")), "{schema}");
 }
@@ -64,20 +59,20 @@ fn a_made_loop_builds_and_runs() {
 #[test]
 fn a_made_composite_runs() {
     let folder = tempfile::tempdir().unwrap();
-    let made = saoms(folder.path(), &["new", "composite", "my-hall"]);
+    let made = saoms_in(folder.path(), &["new", "composite", "my-hall"]);
     assert!(made.status.success(), "{}", text(&made));
-    let run = saoms(folder.path(), &["run", "my-hall.composite", "--virtual"]);
+    let run = saoms_in(folder.path(), &["run", "my-hall.composite", "--virtual"]);
     assert!(run.status.success() && text(&run).contains("deposited luggage 1 at (3,10)"), "{}", text(&run));
     // The line for CI of docs/severities.md.
     let check = ["check", "--wiring", "--severity", "S4010=error", "my-hall.composite"];
-    let checked = saoms(folder.path(), &check);
+    let checked = saoms_in(folder.path(), &check);
     assert!(checked.status.success(), "{}", text(&checked));
     // Who gives a topic another name means a reader.
     let path = folder.path().join("my-hall.composite");
     let composite = fs::read_to_string(&path).unwrap();
     let renamed = "<property name=\"topicRename\">COLLISIONTOPIC,crashes</property></component>";
     fs::write(&path, composite.replace("</component>", renamed)).unwrap();
-    let checked = text(&saoms(folder.path(), &check));
+    let checked = text(&saoms_in(folder.path(), &check));
     assert!(checked.contains("topic `crashes`, which nobody reads"), "{checked}");
 }
 
@@ -85,12 +80,12 @@ fn a_made_composite_runs() {
 fn nothing_that_is_there_is_touched() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("hall.composite"), "mine").unwrap();
-    let made = saoms(folder.path(), &["new", "composite", "hall"]);
+    let made = saoms_in(folder.path(), &["new", "composite", "hall"]);
     assert_eq!(made.status.code(), Some(2));
     assert!(text(&made).contains("is there already: nothing was made"), "{}", text(&made));
     fs::create_dir(folder.path().join("robot")).unwrap();
     fs::write(folder.path().join("robot/README.md"), "mine").unwrap();
-    let made = saoms(folder.path(), &["new", "plugin", "robot"]);
+    let made = saoms_in(folder.path(), &["new", "plugin", "robot"]);
     assert_eq!(made.status.code(), Some(2));
     assert!(!folder.path().join("robot/Cargo.toml").exists());
 }
@@ -105,7 +100,7 @@ fn wrong_names_and_sources_are_told() {
         (&["new", "plugin", "robot", "--api", "nowhere"], "expected a folder with `saoms-api` in it"),
         (&["new", "composite", "2 halls"], "it becomes the name of the composite"),
     ] {
-        let made = saoms(folder.path(), arguments);
+        let made = saoms_in(folder.path(), arguments);
         assert_eq!(made.status.code(), Some(2), "{}", text(&made));
         assert!(text(&made).contains(expected), "{}", text(&made));
     }

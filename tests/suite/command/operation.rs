@@ -1,64 +1,53 @@
 //! Fleets in few lines as their operator has them: values from outside, tables, the wiring report, severities.
 
 use std::fs;
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn saoms(arguments: &[&str], environment: &[(&str, &str)]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(arguments)
-        .envs(environment.iter().copied())
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap()
-}
-
-/// Standard output and standard error.
-fn text(output: &Output) -> (String, String) {
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (text(&output.stdout), text(&output.stderr))
-}
+use crate::support::{command, saoms, stderr, stdout};
 
 const HANGAR: &str = "composites/hangar.composite";
 
 #[test]
 fn the_command_line_counts_before_the_environment_and_that_before_the_file() {
     let components = |arguments: &[&str], environment: &[(&str, &str)]| {
-        let output = saoms(&[&["check", HANGAR], arguments].concat(), environment);
-        text(&output).0.split(' ').next().unwrap().parse::<u32>().unwrap()
+        let output = command(&[&["check", HANGAR], arguments].concat())
+            .envs(environment.iter().copied())
+            .output()
+            .unwrap();
+        stdout(&output).split(' ').next().unwrap().parse::<u32>().unwrap()
     };
     assert_eq!(components(&[], &[]), 44);
     assert_eq!(components(&[], &[("HANGAR_ROBOTS", "20")]), 24);
     assert_eq!(components(&["--set", "robots=14"], &[("HANGAR_ROBOTS", "20")]), 18);
     assert_eq!(components(&["--set", "landings=false"], &[]), 43);
-    let output = saoms(&["check", HANGAR], &[("HANGAR_ROBOTS", "twenty")]);
-    let (_, shown) = text(&output);
+    let output = command(&["check", HANGAR]).env("HANGAR_ROBOTS", "twenty").output().unwrap();
+    let shown = stderr(&output);
     assert_eq!(output.status.code(), Some(2));
     assert!(
         shown.contains("1 | HANGAR_ROBOTS=twenty") && shown.matches("error[S2042").count() == 1,
         "{shown}"
     );
-    let (_, shown) = text(&saoms(&["check", HANGAR, "--set", "robot=3"], &[]));
+    let shown = stderr(&saoms(&["check", HANGAR, "--set", "robot=3"]));
     assert!(shown.contains("replace `robot` with `robots`"), "{shown}");
 }
 
 #[test]
 fn the_wiring_report_says_who_talks_to_whom() {
-    let (shown, _) = text(&saoms(&["check", "--wiring", HANGAR], &[]));
+    let shown = stdout(&saoms(&["check", "--wiring", HANGAR]));
     let robots = "40 of saoms.Robot every 500ms: Robot01 to Robot40";
     assert!(shown.contains(&format!("POSTOPIC  state topic of Position, 80 messages/s at one an execution\n  published by {robots}\n  read by {robots}\n")), "{shown}");
     assert!(shown.ends_with("44 components: 0 errors, 0 warnings\n"), "{shown}");
-    let (shown, _) = text(&saoms(&["check", "--wiring", "--format", "json", HANGAR], &[]));
+    let shown = stdout(&saoms(&["check", "--wiring", "--format", "json", HANGAR]));
     let value: Value = serde_json::from_str(&shown).unwrap();
     let topics = value["wiring"]["topics"].as_array().unwrap();
     let topic = topics.iter().find(|topic| topic["name"] == "POSTOPIC").unwrap();
     assert_eq!(topic["writers"][0]["components"].as_array().unwrap().len(), 40);
     assert_eq!(topic["writers"][0]["period_us"], 500_000);
-    let (shown, _) = text(&saoms(&["check", "--wiring", "--format", "sarif", HANGAR], &[]));
+    let shown = stdout(&saoms(&["check", "--wiring", "--format", "sarif", HANGAR]));
     let value: Value = serde_json::from_str(&shown).unwrap();
     assert_eq!(value["runs"][0]["properties"]["wiring"]["topics"].as_array().unwrap().len(), topics.len());
-    assert!(text(&saoms(&["check", HANGAR], &[])).1.is_empty(), "notes come with the report alone");
+    assert!(stderr(&saoms(&["check", HANGAR])).is_empty(), "notes come with the report alone");
 }
 
 /// As many robots as are asked for, on a charger each.
@@ -78,11 +67,11 @@ fn robots(folder: &std::path::Path) -> String {
 fn a_thousand_robots_are_too_many_for_the_queues_that_forty_fit_into() {
     let folder = tempfile::tempdir().unwrap();
     let path = robots(folder.path());
-    let output = saoms(&["check", "--wiring", &path], &[]);
-    let (_, shown) = text(&output);
+    let output = saoms(&["check", "--wiring", &path]);
+    let shown = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{shown}");
     assert!(shown.contains("note[S4013]") && shown.contains("of topic `ELMSTOPIC`"), "{shown}");
-    let (_, shown) = text(&saoms(&["check", "--wiring", &path, "--set", "robots=40"], &[]));
+    let shown = stderr(&saoms(&["check", "--wiring", &path, "--set", "robots=40"]));
     assert!(!shown.contains("S4013"), "{shown}");
 }
 
@@ -90,13 +79,13 @@ fn a_thousand_robots_are_too_many_for_the_queues_that_forty_fit_into() {
 fn severities_of_the_command_line_decide_the_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let path = robots(folder.path());
-    let check = |more: &[&str]| saoms(&[&["check", "--wiring", &path], more].concat(), &[]);
+    let check = |more: &[&str]| saoms(&[&["check", "--wiring", &path], more].concat());
     assert_eq!(check(&["--severity", "S4013=error"]).status.code(), Some(2));
     let codes = ["S4010=allow", "S4011=allow", "S4013=allow", "S4014=allow"];
     let options: Vec<&str> = codes.iter().flat_map(|code| ["--severity", code]).collect();
     let allowed = check(&options);
-    assert_eq!((allowed.status.code(), text(&allowed).1), (Some(0), String::new()));
-    let run = saoms(&["run", &path, "--virtual", "--severity", "S3001=alow"], &[]);
+    assert_eq!((allowed.status.code(), stderr(&allowed)), (Some(0), String::new()));
+    let run = saoms(&["run", &path, "--virtual", "--severity", "S3001=alow"]);
     assert_eq!(run.status.code(), Some(2));
-    assert!(text(&run).1.contains("replace it with `allow`"), "{}", text(&run).1);
+    assert!(stderr(&run).contains("replace it with `allow`"), "{}", stderr(&run));
 }

@@ -3,7 +3,7 @@
 //! `UPDATE_EXPECT=1 cargo test --test suite schema` writes the folder anew.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use std::{env, fs};
 
 use roxmltree::Document;
@@ -12,15 +12,15 @@ use saoms_components as _;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::registry::Registry;
 
+use crate::support::{root, saoms};
+
 const XSD: &str = "http://www.w3.org/2001/XMLSchema";
 /// Packages of classes and loops that are linked into these tests, but not into the command.
 const TESTS_ALONE: [&str; 7] = ["test.", "expand.", "hello.", "camera.", "flights.", "drive.", "saver."];
 const FILES: [&str; 5] = ["sca-1.1.xsd", "sca-1.1-draft.xsd", "sca-1.0.xsd", "saoms.xsd", "catalog.xml"];
 
 fn schema(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
-    command.args(["schema", "-o"]).arg(folder).args(arguments);
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap()
+    saoms(&[&["schema", "-o", folder.to_str().unwrap()], arguments].concat())
 }
 
 fn written(arguments: &[&str]) -> Vec<String> {
@@ -35,7 +35,7 @@ fn written(arguments: &[&str]) -> Vec<String> {
 
 #[test]
 fn the_folder_schema_is_what_the_command_writes() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("schema");
+    let folder = root().join("schema");
     for (file, text) in FILES.into_iter().zip(written(&[])) {
         let path = folder.join(file);
         if env::var_os("UPDATE_EXPECT").is_some() {

@@ -2,41 +2,12 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
+use std::process::Stdio;
 
 use serde_json::Value;
 
-/// Runs `saoms` in the project's folder.
-fn saoms(arguments: &[&str]) -> Output {
-    command(arguments).output().unwrap()
-}
-
-fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
-    command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
-    command
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-/// A folder of its own for the files of one test.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
+use crate::support::{code, command, empty_folder, saoms, stderr, stdout};
 
 fn file(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> String {
     let path = folder.join(name);
@@ -78,7 +49,7 @@ const ONE_ROBOT: &str = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" 
 
 #[test]
 fn the_airport_delivers_everything_and_ends_by_itself() {
-    let folder = folder("airport");
+    let folder = empty_folder("airport");
     let report = folder.join("report.json");
     let arguments = [
         "run",
@@ -161,7 +132,7 @@ fn the_manuals_files_check_and_run_as_they_are() {
 
 #[test]
 fn ctrl_c_ends_through_shutdown_and_still_reports() {
-    let folder = folder("interrupt");
+    let folder = empty_folder("interrupt");
     let fleet = file(&folder, "one.composite", ONE_ROBOT);
     let (report, picture) = (folder.join("report.json"), folder.join("paths.svg"));
     let mut child = command(&["run", &fleet, "--console", "classic"])
@@ -190,7 +161,7 @@ fn ctrl_c_ends_through_shutdown_and_still_reports() {
 /// Five hours west of Greenwich, or as the manual's figures have it.
 #[test]
 fn the_classic_console_shows_local_time_or_that_of_the_figures() {
-    let fleet = file(&folder("date"), "one.composite", ONE_ROBOT);
+    let fleet = file(&empty_folder("date"), "one.composite", ONE_ROBOT);
     let first = |arguments: &[&str]| {
         let arguments = [&["run", &fleet, "--for", "50ms", "--console", "classic"], arguments].concat();
         let shown = stdout(&command(&arguments).env("TZ", "EST5").output().unwrap());
@@ -211,7 +182,7 @@ fn the_classic_console_shows_local_time_or_that_of_the_figures() {
 /// Nobody reads what the fleet says, so that it cannot end by itself once it was asked to.
 #[test]
 fn a_second_ctrl_c_ends_at_once() {
-    let fleet = file(&folder("twice"), "one.composite", ONE_ROBOT);
+    let fleet = file(&empty_folder("twice"), "one.composite", ONE_ROBOT);
     let mut child = command(&["run", &fleet, "--virtual", "--console", "classic"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -236,7 +207,7 @@ fn a_second_ctrl_c_ends_at_once() {
 
 #[test]
 fn virtual_time_that_nothing_ends_says_so() {
-    let fleet = file(&folder("endless"), "one.composite", ONE_ROBOT);
+    let fleet = file(&empty_folder("endless"), "one.composite", ONE_ROBOT);
     let mut child = command(&["run", &fleet, "--virtual"]).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let told = lines.any(|line| line.unwrap().contains("virtual time goes on until Ctrl-C"));
@@ -251,7 +222,7 @@ fn virtual_time_that_nothing_ends_says_so() {
 /// Each text is wrong in one way; the diagnostic has to name the place and the thing.
 #[test]
 fn wrong_input_is_told_at_its_place_and_starts_nothing() {
-    let folder = folder("wrong");
+    let folder = empty_folder("wrong");
     let change = |from: &str, to: &str| {
         assert!(ONE_ROBOT.contains(from));
         ONE_ROBOT.replacen(from, to, 1)
@@ -302,7 +273,7 @@ fn wrong_input_is_told_at_its_place_and_starts_nothing() {
 
 #[test]
 fn wrong_files_are_told_apart() {
-    let folder = folder("files");
+    let folder = empty_folder("files");
     file(&folder, "airport.composite", ONE_ROBOT);
     let cases = [
         (folder.join("airpot.composite").to_str().unwrap().to_owned(), "airport.composite"),
@@ -360,7 +331,7 @@ fn a_report_that_cannot_be_written_is_told_before_the_run_and_fails_it_after() {
 
 #[test]
 fn a_refused_run_leaves_no_files_and_keeps_those_that_are_there() {
-    let folder = folder("refused");
+    let folder = empty_folder("refused");
     let (report, kept, link) =
         (folder.join("report.json"), folder.join("kept.svg"), folder.join("link.json"));
     fs::write(&kept, "of an earlier run").unwrap();
@@ -430,7 +401,7 @@ fn two_robots_with_one_number_do_not_start() {
         robot("A7"),
         robot("B7")
     );
-    let path = file(&folder("twins"), "twins.composite", fleet);
+    let path = file(&empty_folder("twins"), "twins.composite", fleet);
     let output = saoms(&["run", &path, "--virtual", "--for", "1s"]);
     assert_eq!(code(&output), 2, "{}", stdout(&output));
     assert!(stderr(&output).contains("robots `A7` and `B7` both have the number 7"), "{}", stderr(&output));
@@ -439,7 +410,7 @@ fn two_robots_with_one_number_do_not_start() {
 #[test]
 fn check_gives_code_scanning_a_log() {
     let text = ONE_ROBOT.replacen("name=\"period\"", "name=\"perod\"", 1);
-    let path = file(&folder("sarif"), "one.composite", text);
+    let path = file(&empty_folder("sarif"), "one.composite", text);
     let output = saoms(&["check", &path, "--format", "sarif"]);
     assert_eq!((code(&output), stderr(&output)), (2, String::new()));
     let log: Value = serde_json::from_str(&stdout(&output)).unwrap();

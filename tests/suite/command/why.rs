@@ -2,46 +2,39 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn saoms(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_saoms")).args(arguments).current_dir(folder).output().unwrap()
-}
+use crate::support::{command, root, saoms_in, stdout};
 
 /// A folder with the composites, and report and journal of the hall.
 fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("why").join(test);
     fs::create_dir_all(folder.join("composites")).unwrap();
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("composites/hall.composite");
+    let shipped = root().join("composites/hall.composite");
     fs::copy(shipped, folder.join("composites/hall.composite")).unwrap();
     let run = ["run", "composites/hall.composite", "--virtual", "--quiet", "--report", "report.json"];
-    let output = saoms(&folder, &[&run[..], &["--journal", "journal.jsonl"]].concat());
+    let output = saoms_in(&folder, &[&run[..], &["--journal", "journal.jsonl"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     folder
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
 }
 
 /// What is told when it cannot be answered.
 #[track_caller]
 fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = saoms(folder, &[&["why"], arguments].concat());
+    let output = saoms_in(folder, &[&["why"], arguments].concat());
     assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
     String::from_utf8(output.stderr).unwrap()
 }
 
 #[test]
 fn the_example_of_the_documentation_is_real() {
-    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/journal.md")).unwrap();
+    let page = fs::read_to_string(root().join("docs/journal.md")).unwrap();
     let block = page.split("```console\n").nth(1).unwrap().split("```").next().unwrap();
     let (command, expected) = block.split_once("report.json\nWhat ").unwrap();
     let command = command.rsplit_once("$ saoms ").unwrap().1;
     let arguments: Vec<&str> = command.split_whitespace().chain(["report.json"]).collect();
-    let output = saoms(&folder("docs"), &arguments);
+    let output = saoms_in(&folder("docs"), &arguments);
     assert_eq!(stdout(&output), format!("What {expected}"));
     assert_eq!(output.status.code(), Some(0));
 }
@@ -50,24 +43,23 @@ fn the_example_of_the_documentation_is_real() {
 fn report_and_file_and_standard_input_give_the_same_answer() {
     let folder = folder("same");
     for at in ["1s", "1100", "2.5s"] {
-        let of = |file: &str| stdout(&saoms(&folder, &["why", "Robot7", "--at", at, "--report", file]));
+        let of = |file: &str| stdout(&saoms_in(&folder, &["why", "Robot7", "--at", at, "--report", file]));
         let answer = of("report.json");
         assert!(answer.contains("Robot7"), "{answer}");
         assert_eq!(of("journal.jsonl"), answer);
     }
-    let output = Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(["why", "Robot7", "--journal", "-"])
+    let output = command(&["why", "Robot7", "--journal", "-"])
         .stdin(fs::File::open(folder.join("journal.jsonl")).unwrap())
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert_eq!(stdout(&output), stdout(&saoms(&folder, &["why", "Robot7", "--report", "report.json"])));
+    assert_eq!(stdout(&output), stdout(&saoms_in(&folder, &["why", "Robot7", "--report", "report.json"])));
 }
 
 #[test]
 fn json_holds_the_chain_back_to_its_root() {
     let arguments = ["why", "Robot7", "--at", "1s", "--report", "report.json", "--format", "json"];
-    let answer: Value = serde_json::from_str(&stdout(&saoms(&folder("json"), &arguments))).unwrap();
+    let answer: Value = serde_json::from_str(&stdout(&saoms_in(&folder("json"), &arguments))).unwrap();
     assert_eq!(answer["component"], "Robot7");
     assert_eq!(answer["time_s"], 1.0);
     let reasons = answer["chains"][0]["reasons"].as_array().unwrap();
@@ -81,7 +73,7 @@ fn json_holds_the_chain_back_to_its_root() {
 #[test]
 fn what_several_reasons_have_in_common_is_told_once() {
     let answer =
-        stdout(&saoms(&folder("once"), &["why", "Robot7", "--at", "1100", "--report", "report.json"]));
+        stdout(&saoms_in(&folder("once"), &["why", "Robot7", "--at", "1100", "--report", "report.json"]));
     let root = "luggage 1 waits at (3,1) to be brought to (3,10)";
     assert_eq!(answer.matches(root).count(), 1, "{answer}");
     assert!(answer.contains("     ... and so on as above ...\n"), "{answer}");
@@ -117,7 +109,7 @@ fn wrong_questions_are_told() {
 
 #[test]
 fn a_component_that_did_nothing_is_an_answer() {
-    let output = saoms(&folder("nothing"), &["why", "Master", "--report", "report.json"]);
+    let output = saoms_in(&folder("nothing"), &["why", "Master", "--report", "report.json"]);
     assert_eq!(output.status.code(), Some(0));
     assert!(stdout(&output).starts_with("Master wrote nothing to the journal in this run"));
 }
@@ -131,7 +123,7 @@ fn what_was_overwritten_is_said() {
     let root = entries.iter().find(|entry| entry["component"] == "Environment").unwrap()["id"].clone();
     entries.retain(|entry| entry["component"] != "Environment");
     fs::write(folder.join("part.json"), value.to_string()).unwrap();
-    let output = saoms(&folder, &["why", "Robot7", "--at", "1s", "--report", "part.json"]);
+    let output = saoms_in(&folder, &["why", "Robot7", "--at", "1s", "--report", "part.json"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stdout(&output).contains("... what led to this is not in the journal any more ..."));
     let told = String::from_utf8(output.stderr).unwrap();
@@ -161,7 +153,7 @@ fn the_journal_needs_a_file_of_its_own() {
             "--journal",
             journal,
         ];
-        let output = saoms(&folder, &run);
+        let output = saoms_in(&folder, &run);
         assert_eq!(output.status.code(), Some(2));
         let told = String::from_utf8(output.stderr).unwrap();
         assert!(told.contains(mentions) && told.contains("nothing was started"), "{told}");

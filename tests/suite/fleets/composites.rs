@@ -1,27 +1,16 @@
 //! Every shipped composite: checks without errors, says what it shows, and runs.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use saoms_core::report::Status;
 use saoms_testkit::{Fleet, expect_diagnostics};
 
-fn composites(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        match path.extension() {
-            _ if path.is_dir() => found.extend(composites(&path)),
-            Some(extension) if extension == "composite" => found.push(path),
-            _ => {}
-        }
-    }
-    found
-}
+use crate::support::{composites, root};
 
 fn shipped() -> Vec<PathBuf> {
-    let found = composites(&Path::new(env!("CARGO_MANIFEST_DIR")).join("composites"));
+    let found = composites(&root().join("composites"));
     assert!(found.len() >= 4, "{found:?}");
     found
 }

@@ -1,13 +1,14 @@
 //! What `saoms expand` leaves of a fleet runs as the fleet did.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use saoms_api::{Class, Component, Context, Failure, interface};
 use saoms_core::report::RunReport;
 use saoms_testkit::Fleet;
+
+use crate::support::{composites, root, saoms, saoms_in};
 
 /// Everything that a run does, as far as it is told: the digest of all effects, and the counts of every component.
 fn facts(report: &RunReport) -> (Option<String>, Vec<(String, u64)>) {
@@ -24,29 +25,16 @@ fn runs_the_same(fleet: &Fleet) {
     assert_eq!(facts(&before), facts(&after), "{text}");
 }
 
-fn composites(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        match path.extension() {
-            _ if path.is_dir() => found.extend(composites(&path)),
-            Some(extension) if extension == "composite" => found.push(path),
-            _ => {}
-        }
-    }
-    found
-}
-
 #[test]
 fn shipped_fleets_run_the_same_when_they_are_expanded() {
-    for path in composites(&Path::new(env!("CARGO_MANIFEST_DIR")).join("composites")) {
+    for path in composites(&root().join("composites")) {
         runs_the_same(&Fleet::of_file(&path));
     }
 }
 
 #[test]
 fn a_fleet_comes_to_what_it_came_to() {
-    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fleets");
+    let tests = root().join("tests/fleets");
     let pair = Fleet::of_file(tests.join("pair.composite")).set("period", "50");
     pair.expect_expanded(tests.join("pair.expanded"));
 }
@@ -158,13 +146,6 @@ fn composites_in_composites_run_and_call_all_targets_of_a_reference() {
 
 #[test]
 fn the_command_writes_a_composite_that_checks() {
-    let saoms = |arguments: &[&str]| {
-        Command::new(env!("CARGO_BIN_EXE_saoms"))
-            .args(arguments)
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .output()
-            .unwrap()
-    };
     let output = saoms(&["expand", "composites/airport.composite", "--set", "period=20"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let folder = tempfile::tempdir().unwrap();
@@ -208,8 +189,7 @@ fn composites_of_another_contribution_are_found_from_every_folder() {
         ("fleet", "part/fleet.composite"),
         ("fleet/part", "fleet.composite"),
     ] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
-        let output = command.args(["expand", path]).current_dir(folder.path().join(inside)).output().unwrap();
+        let output = saoms_in(&folder.path().join(inside), &["expand", path]);
         let text = String::from_utf8_lossy(&output.stdout);
         assert!(text.contains("name=\"m\""), "{path}: {}", String::from_utf8_lossy(&output.stderr));
     }

@@ -1,17 +1,18 @@
 //! Small fleets in virtual time: what every run of them has to keep, whatever the seed, the periods and the delays.
 
 use std::fs;
-use std::path::Path;
 use std::time::Duration;
 
 use saoms_core::report::{RunReport, Status};
 use saoms_testkit::Fleet;
 use serde_json::{Value, json};
 
+use crate::support::root;
+
 const HOUR: Duration = Duration::from_secs(3600);
 
 fn pair() -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fleets/pair.composite")).unwrap()
+    fs::read_to_string(root().join("tests/fleets/pair.composite")).unwrap()
 }
 
 /// The same composite with another text in place of one that it has.
@@ -50,7 +51,7 @@ fn two_robots_deliver_everything_with_every_seed_period_and_delay() {
 
 #[test]
 fn the_airport_delivers_everything_with_every_seed() {
-    let airport = Path::new(env!("CARGO_MANIFEST_DIR")).join("composites/airport.composite");
+    let airport = root().join("composites/airport.composite");
     for seed in 0..10 {
         assert_delivered(&Fleet::of_file(&airport).run(seed, HOUR), 14, &format!("seed {seed}"));
     }
@@ -153,8 +154,7 @@ fn a_wrong_scenario_is_found_before_anything_runs() {
 
 #[test]
 fn the_navigator_drives_the_robot_of_figure_3_2_home() {
-    let path =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("composites/manual/robotenvironment-wired.composite");
+    let path = root().join("composites/manual/robotenvironment-wired.composite");
     let report = Fleet::of_file(path).run(1, HOUR);
     assert_eq!(report.outcome.status, Status::Done);
     // Four sides of two metres, a metre in each period from the start on.

@@ -1,6 +1,5 @@
 //! Robots that are replaced while their fleet runs, as `saoms run --reload` does when a library with one of their loops is built anew.
 
-use std::path::Path;
 use std::time::Duration;
 
 use saoms_api::Time;
@@ -14,8 +13,10 @@ use saoms_lang::model::Contribution;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::Sources;
 
+use crate::support::root;
+
 fn assembly(composite: &str) -> Assembly {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("composites").join(composite);
+    let path = root().join("composites").join(composite);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
     let composite = load_file(file, &sources, &mut diagnostics).unwrap();

@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use serde_json::{Value, json};
 
@@ -68,11 +67,7 @@ type Found = Vec<(String, String, [usize; 4], String)>;
 
 /// What `saoms check` finds in a file of a folder.
 fn checked(folder: &Path, file: &str) -> Found {
-    let output = Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(["check", "--format", "json", "."])
-        .current_dir(folder)
-        .output()
-        .unwrap();
+    let output = crate::support::saoms_in(folder, &["check", "--format", "json", "."]);
     let all: Value = serde_json::from_slice(&output.stdout).unwrap();
     let all = all["diagnostics"].as_array().unwrap().iter();
     let mut found: Found = all

@@ -12,9 +12,7 @@ use saoms_testkit::{Bench, comply_as};
 use serde_json::Value;
 use tempfile::TempDir;
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+use crate::support::{self, root, text};
 
 /// The built robot, in a folder that goes with this process.
 static LIBRARY: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
@@ -44,18 +42,9 @@ fn library() -> &'static Path {
     &LIBRARY.1
 }
 
+/// Runs `saoms` with the library.
 fn saoms(arguments: &[&str]) -> Output {
-    let plugin = ["--plugin", library().to_str().unwrap()];
-    Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(arguments)
-        .args(plugin)
-        .current_dir(root())
-        .output()
-        .unwrap()
-}
-
-fn text(output: &Output) -> String {
-    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+    support::saoms(&[arguments, &["--plugin", library().to_str().unwrap()]].concat())
 }
 
 /// What a run of the fleet came to.
@@ -116,7 +105,11 @@ fn it_hands_back_luggage_that_no_robot_is_left_for() {
     let (_, end) = rest.split_once("end\n").unwrap();
     fs::write(&composite, format!("{start}{scenario}{end}")).unwrap();
     let run = saoms(&["run", composite.to_str().unwrap(), "--virtual", "--for", "60s"]);
-    assert!(self::text(&run).contains("gives up luggage 1 from (3,3) to (5,5)"), "{}", self::text(&run));
+    assert!(
+        support::text(&run).contains("gives up luggage 1 from (3,3) to (5,5)"),
+        "{}",
+        support::text(&run)
+    );
 }
 
 #[test]
@@ -127,7 +120,7 @@ fn wrong_values_are_shown_in_the_composite() {
     fs::write(&composite, text.replace("name=\"right\" value=\"8\"", "name=\"right\" value=\"1\"")).unwrap();
     let checked = saoms(&["check", composite.to_str().unwrap()]);
     assert_eq!(checked.status.code(), Some(2));
-    let shown = self::text(&checked);
+    let shown = support::text(&checked);
     assert!(shown.contains("right of `left`") && shown.contains("name=\"right\" value=\"1\""), "{shown}");
 }
 

@@ -2,8 +2,7 @@
 
 use std::env;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
 use std::time::Duration;
 
 // Linked, too: for the runs that the loaded ones are held to.
@@ -15,23 +14,13 @@ use saoms_hello as _;
 use saoms_testkit::{Fleet, Run};
 use serde_json::Value;
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+use crate::support::{root, saoms, text};
 
 /// The library of an example, which cargo built beside this test.
 fn library(package: &str) -> PathBuf {
     let library = env::current_exe().unwrap().with_file_name(format!("lib{package}.so"));
     assert!(library.exists(), "{} is not there: cargo builds it for this test", library.display());
     library
-}
-
-fn saoms(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_saoms")).args(arguments).current_dir(root()).output().unwrap()
-}
-
-fn text(output: &Output) -> String {
-    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
 /// Runs the fleet of an example with its code loaded from the library, and linked in. The two runs have to be the same, event for event; what is

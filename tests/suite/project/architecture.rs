@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::root;
+
 /// The crates with an order of modules: each module may use those before it, none after it.
 const ORDERS: &[(&str, &[&str])] = &[
     (
@@ -25,10 +27,6 @@ const ORDERS: &[(&str, &[&str])] = &[
         &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"],
     ),
 ];
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();

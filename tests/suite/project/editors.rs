@@ -1,13 +1,14 @@
 //! What is shipped for editors: the files are well-formed, and the commands that they start exist.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 
 use serde_json::Value;
 
+use crate::support::{project, root, saoms, stdout};
+
 fn extension() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("editors/vscode")
+    root().join("editors/vscode")
 }
 
 fn json(name: &str) -> Value {
@@ -45,9 +46,9 @@ fn what_the_extension_starts_and_offers_exists() {
     // The words in quotes that the program is started with.
     let line = code.split("return { command:").nth(1).unwrap().split("};").next().unwrap();
     assert!(line.contains("\"lsp\""), "{line}");
-    let help = Command::new(env!("CARGO_BIN_EXE_saoms")).args(["lsp", "--help"]).output().unwrap();
+    let help = saoms(&["lsp", "--help"]);
     assert!(help.status.success());
-    let help = String::from_utf8(help.stdout).unwrap();
+    let help = stdout(&help);
     let options: Vec<&str> = code.split('"').filter(|part| part.starts_with("--")).collect();
     assert_eq!(options, ["--plugin", "--assume-classes"]);
     for option in options {
@@ -57,7 +58,7 @@ fn what_the_extension_starts_and_offers_exists() {
 
 #[test]
 fn the_guide_starts_the_same_server() {
-    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/editors.md")).unwrap();
+    let guide = project("docs/editors.md");
     for editor in ["cmd = { \"saoms\", \"lsp\" }", "command = \"saoms\"\nargs = [\"lsp\"]"] {
         assert!(guide.contains(editor), "{editor}");
     }

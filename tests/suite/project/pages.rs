@@ -2,8 +2,7 @@
 //! what is printed there is printed.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 
 use saoms_components as _;
 use saoms_lang::check::{Options, check};
@@ -13,11 +12,9 @@ use saoms_lang::model::Contribution;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::Sources;
 
-const NAMESPACE: &str = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
+use crate::support::{root, saoms, stdout};
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+const NAMESPACE: &str = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
 
 /// The pages, each with its text. Those of the diagnostics and rules are made by other tests.
 fn pages() -> Vec<(PathBuf, String)> {
@@ -118,13 +115,6 @@ fn scenarios_are_right() {
     }
 }
 
-fn saoms(arguments: &[&str]) -> (String, String) {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_saoms")).args(arguments).current_dir(root()).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (text(output.stdout), text(output.stderr))
-}
-
 #[test]
 fn commands_have_the_options_that_pages_give_them() {
     let mut count = 0;
@@ -135,7 +125,7 @@ fn commands_have_the_options_that_pages_give_them() {
             let Some(arguments) = line.strip_prefix("saoms ") else { continue };
             let words: Vec<&str> = arguments.split_whitespace().collect();
             let named = if words[0] == "new" { 2 } else { 1 };
-            let (help, _) = saoms(&[&words[..named], &["--help"]].concat());
+            let help = stdout(&saoms(&[&words[..named], &["--help"]].concat()));
             for option in words.iter().filter(|word| word.starts_with("--")) {
                 let option = option.split('=').next().unwrap();
                 assert!(help.contains(option), "{}: `{line}` has no {option}", path.display());
@@ -160,6 +150,6 @@ fn the_diagnostic_of_many_replicas_is_real() {
 #[test]
 fn the_wiring_report_is_real() {
     let (_, page) = pages().into_iter().find(|(path, _)| path.ends_with("wiring.md")).unwrap();
-    let (report, _) = saoms(&["check", "--wiring", "composites/hangar.composite"]);
+    let report = stdout(&saoms(&["check", "--wiring", "composites/hangar.composite"]));
     assert!(report.contains(blocks(&page, "text")[0]), "{report}");
 }

@@ -2,11 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
-fn project(path: &str) -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
-}
+use crate::support::{code, project, saoms, saoms_in, stderr, stdout};
 
 /// Without the digest of the trace, which changes with each word that a loop writes to the journal.
 fn without_trace(text: &str) -> &str {
@@ -33,12 +30,8 @@ fn the_composite_of_the_readme_ships() {
 fn the_run_of_the_readme_is_real() {
     let expected = block("console", "$ saoms run composites/hall.composite --virtual\n");
     let (_, expected) = expected.split_once('\n').unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(["run", "composites/hall.composite", "--virtual"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap();
-    assert_eq!(without_trace(expected), without_trace(&String::from_utf8(output.stdout).unwrap()));
+    let output = saoms(&["run", "composites/hall.composite", "--virtual"]);
+    assert_eq!(without_trace(expected), without_trace(&stdout(&output)));
 }
 
 #[test]
@@ -51,11 +44,7 @@ fn the_mistake_of_the_readme_is_real() {
     let (before, robot) = shipped.split_at(shipped.find("Robot7").unwrap());
     let wrong = format!("{before}{}", robot.replacen("\"period\"", "\"perid\"", 1));
     fs::write(folder.join("hall.composite"), wrong).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(["run", "composites/hall.composite"])
-        .current_dir(folder.parent().unwrap())
-        .output()
-        .unwrap();
-    assert_eq!(expected, String::from_utf8(output.stderr).unwrap());
-    assert_eq!(output.status.code(), Some(2));
+    let output = saoms_in(folder.parent().unwrap(), &["run", "composites/hall.composite"]);
+    assert_eq!(expected, stderr(&output));
+    assert_eq!(code(&output), 2);
 }

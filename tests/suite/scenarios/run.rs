@@ -1,6 +1,5 @@
 //! A run of a composite, and the facts in what its robots said.
 
-use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -8,6 +7,8 @@ use saoms_api::Time;
 use saoms_core::observe::{Event, Interest, Observer, Occurrence};
 use saoms_core::report::RunReport;
 use saoms_testkit::Fleet;
+
+use crate::support::root;
 
 /// A run that is over.
 pub(crate) struct Run {
@@ -58,7 +59,7 @@ pub(crate) struct Execution<'a> {
 impl Run {
     /// Runs a shipped composite in virtual time.
     pub(crate) fn of(composite: &str, limit: u64) -> Run {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("composites").join(composite);
+        let path = root().join("composites").join(composite);
         Run::with(&Fleet::of_file(path), limit)
     }
 

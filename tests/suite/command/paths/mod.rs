@@ -4,27 +4,12 @@ mod picture;
 
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use roxmltree::Document;
 
 use picture::{Block, Picture};
 
-fn saoms(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap()
-}
-
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("paths").join(test);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
+use crate::support::{empty_folder, project, saoms};
 
 /// More time than any run here needs: one that does not end by itself ends then.
 const ENOUGH: &str = "5min";
@@ -67,7 +52,7 @@ fn crowd(test: &str, robots: u32, (width, height): (u32, u32), robot: &str) -> S
     text += &component("Environment", "saoms.Environment", &scenario);
     text += &component("Master", "saoms.MasterEnvironment", "");
     text += "</composite>\n";
-    let path = folder(test).join("crowd.composite");
+    let path = empty_folder(&format!("paths/{test}")).join("crowd.composite");
     fs::write(&path, text).unwrap();
     path.to_str().unwrap().to_owned()
 }
@@ -135,12 +120,11 @@ fn the_second_scenario_shows_what_the_manual_tells_of_it() {
 
 #[test]
 fn a_fleet_without_a_world_is_drawn_on_the_area_that_it_used() {
-    let airport =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("composites/hall.composite")).unwrap();
+    let airport = project("composites/hall.composite");
     let (before, after) = airport.split_once("  <component name=\"World\">").unwrap();
     let (_, after) = after.split_once("</component>\n").unwrap();
     let composite = format!("{before}{after}").replace("<reference name=\"world\" target=\"World\"/>", "");
-    let path = folder("no_world").join("hall.composite");
+    let path = empty_folder("paths/no_world").join("hall.composite");
     fs::write(&path, composite).unwrap();
     let text = drawn(path.to_str().unwrap(), ENOUGH);
     let document = Document::parse(&text).unwrap();
@@ -247,9 +231,9 @@ fn a_fleet_without_robots_says_that_there_is_nothing_to_draw() {
 #[test]
 fn the_picture_of_the_readme_is_real() {
     let text = drawn("composites/scenario2.composite", ENOUGH);
-    let kept = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenario2.svg")).unwrap();
+    let kept = project("docs/scenario2.svg");
     assert!(text == kept, "docs/scenario2.svg is not what the command draws: run it again");
-    let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
+    let readme = project("README.md");
     assert!(readme.contains("saoms run composites/scenario2.composite --virtual --paths docs/scenario2.svg"));
     assert!(readme.contains("(docs/scenario2.svg)"));
 }
