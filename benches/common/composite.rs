@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::time::Duration;
 
-use saoms_api::format_duration;
+use saoms_api::host::format_duration;
 use serde::{Deserialize, Serialize};
 
 /// The text of a composite, component by component.

@@ -56,7 +56,7 @@ pub(crate) fn run(plan: &Plan, settings: Settings) -> Outcome<()> {
             period: plan.size.period,
             delay: plan.lead() + plan.size.delay(index),
         };
-        composite.add(&task, &[("first", &saoms_api::format_duration(task.delay))]);
+        composite.add(&task, &[("first", &saoms_api::host::format_duration(task.delay))]);
     }
     let fleet = deploy::start(deploy::checked(composite.finish())?.assembly, settings)?;
     let start = *START.get_or_init(|| start_of(&fleet));

@@ -11,7 +11,7 @@ use crate::{Bytes, ClassTable, LoopClassTable, RuleTable, VERSION};
 /// | `package`, `version` | those of the library, for people |
 /// | `panic` | `unwind`; a library whose panics abort is refused |
 /// | `entry` | the name of its function of type [`EntryPoint`] |
-/// | `classes` | the declarations of its classes, as `saoms-api/src/declaration` describes them |
+/// | `classes` | the declarations of its classes, as `saoms-api/src/host/declaration` describes them |
 /// | `loops` | those of its loops |
 /// | `rules` | its rules over whole fleets |
 ///

@@ -13,9 +13,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use saoms_api::boundary::class_table;
+use saoms_api::host::{DynComponent, Registration, SharedMessage};
 use saoms_api::{
-    Cause, Class, Component, Context, DynComponent, Failure, Header, Message, Publisher, Registration,
-    SharedMessage, Subscription, Time, Topic,
+    Cause, Class, Component, Context, Failure, Header, Message, Publisher, Subscription, Time, Topic,
 };
 use saoms_core::plugin::ImportedClass;
 

@@ -1,4 +1,5 @@
-use crate::{CallError, Context, Failure, Invocation, LoopRegistration, Properties, Saved};
+use crate::host::{Invocation, LoopRegistration};
+use crate::{CallError, Context, Failure, Properties, Saved};
 
 /// What an author writes: a component of a fleet.
 ///
@@ -148,14 +149,14 @@ pub trait Component: Send + Sized + 'static {
 /// | `name = "saoms.Robot"` | the name that composite files use |
 /// | `periodic` or `passive` | whether it is executed in each period; a passive one cannot subscribe |
 /// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
-/// | `service("move": Robot)` | a service with this [interface](crate::Interface), which the component implements |
+/// | `service("move": Robot)` | a service with this [interface](crate::host::Interface), which the component implements |
 /// | `reference("gps": Gps)`, `reference("gps": Gps, optional)`, `reference("gps": Gps, many)` | a service of another component that this one calls |
-/// | `knowledge = RobotKnowledge` | the [knowledge](crate::KnowledgeClass) that its loops work on |
+/// | `knowledge = RobotKnowledge` | the [knowledge](crate::host::KnowledgeClass) that its loops work on |
 /// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite says otherwise, in their order |
 /// | `loops(property = "policy", safe(A, B), classic(A, C))` | the same, one list for each value of a property |
 /// | `also("robot.Robot001", number = 1)` | a further name, with properties preset to literals |
 ///
-/// Linked classes register themselves: [`Registration::linked`](crate::Registration::linked) lists them.
+/// Linked classes register themselves: [`Registration::linked`](crate::host::Registration::linked) lists them.
 ///
 /// # Extending a class
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the topics, services, references,
@@ -229,7 +230,7 @@ pub trait Component: Send + Sized + 'static {
 /// }
 /// ```
 pub trait Class: Component {
-    /// Name, properties, topics, services and references as one JSON text; its shape is described in [`crate::declaration`].
+    /// Name, properties, topics, services and references as one JSON text; its shape is described in [`crate::host::declaration`].
     const DECLARATION: &'static str;
     /// The loops that the declaration names.
     const LOOPS: &'static [LoopRegistration] = &[];

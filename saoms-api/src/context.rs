@@ -2,9 +2,10 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::host::{Host, TARGET_SHIFT};
+use crate::host::{Phase, Reference, ServiceCall, SharedMessage};
 use crate::{
-    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Phase, Publisher, Record, Reference,
-    ReportValue, ServiceCall, SharedMessage, Subscription, Time, Topic, Value, Work,
+    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Publisher, Record, ReportValue,
+    Subscription, Time, Topic, Value, Work,
 };
 
 /// How much a log line matters.

@@ -1,6 +1,6 @@
 use crate::Value;
-use crate::cdr::{DecodeError, Reader, Writer};
-use crate::declaration::Text;
+use crate::host::cdr::{DecodeError, Reader, Writer};
+use crate::host::declaration::Text;
 
 /// What a message, a service argument, a reply or an entry of a knowledge can hold: `bool`, `i8` to `i64`, `u8` to `u64`, `f32`, `f64`,
 /// `String`, `Vec`s, `Option`s, other messages, and enumerations (`#[derive(Field)]` on an enum without data).

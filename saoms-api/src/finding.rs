@@ -1,7 +1,8 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::{Failure, Severity};
+use crate::Failure;
+use crate::rule::Severity;
 
 /// A place in a composite: a component, a property of it, or a part of what the property's text says.
 ///
@@ -15,7 +16,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// A component of a [`FleetView`](crate::FleetView), by its index: its name in the composite.
+    /// A component of a [`FleetView`](crate::rule::FleetView), by its index: its name in the composite.
     pub fn component(index: usize) -> Place {
         Place { component: Some(index), ..Place::default() }
     }

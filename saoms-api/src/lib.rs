@@ -55,7 +55,7 @@
 //! ```
 //!
 //! Nothing in this contract relies on sharing Rust types with a separately built library: declarations are text, messages
-//! and service calls have a declared schema and a byte form ([`cdr`]) beside the shared value used inside one build.
+//! and service calls have a declared schema and a byte form ([CDR](host::cdr)) beside the shared value used inside one build.
 
 // So that the macros' paths lead here from inside, too.
 extern crate self as saoms_api;
@@ -63,13 +63,9 @@ extern crate self as saoms_api;
 mod adaptation;
 #[doc(hidden)]
 pub mod boundary;
-pub mod cdr;
 mod chance;
 mod component;
-#[doc(hidden)]
-pub mod contain;
 mod context;
-pub mod declaration;
 pub mod extension;
 mod failure;
 mod field;
@@ -80,7 +76,7 @@ mod nearest;
 mod property;
 mod registration;
 mod report;
-mod rule;
+pub mod rule;
 mod saved;
 mod service;
 mod task;
@@ -88,30 +84,21 @@ mod time;
 mod topic;
 
 pub use adaptation::{
-    Cause, DynEntries, DynLoop, Effector, Entries, Entry, EntryDeclaration, Extras, Knowledge,
-    KnowledgeClass, Loop, LoopClass, LoopRegistration, Loops, NamedLoops, Phase, Record, Recordable,
-    Snapshot, Subject, Value,
+    Cause, Effector, Entries, Entry, Extras, Knowledge, Loop, LoopClass, Loops, Record, Recordable, Value,
 };
 pub use chance::Chance;
-pub use component::{Class, Component, DynComponent};
+pub use component::{Class, Component};
 pub use context::{Context, Level};
 pub use failure::{CallError, Failure};
-pub use field::{Arguments, Field};
+pub use field::Field;
 pub use finding::{Finding, Place};
-pub use message::{Header, Message, Messages, SharedMessage};
-pub use nearest::{nearest, nearest_equal, nearest_few};
-pub use property::{Properties, PropertyField, PropertyValue};
-pub use registration::Registration;
+pub use message::{Header, Message, Messages};
+pub use property::{Properties, PropertyField};
 pub use report::{ReportValue, Work};
-pub use rule::{ClassView, Code, ComponentView, Fact, FleetRule, FleetView, Severity};
 pub use saved::Saved;
-pub use service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
 pub use task::{TaskInterface, TaskInterfaceReference};
-pub use time::{Time, format_duration, parse_duration};
-pub use topic::{Publisher, Subscription, Topic, TopicDeclaration, TopicKind};
-
-/// The text of a property, or its name: one that is short, or shared, is copied without a copy of its letters.
-pub use smol_str::SmolStr;
+pub use time::Time;
+pub use topic::{Publisher, Subscription, Topic};
 
 pub use saoms_derive::{
     Class, Entries, Field, Knowledge, LoopClass, Message, Properties, PropertyField, interface,
@@ -122,8 +109,8 @@ pub use saoms_derive::{
 pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::boundary::{API, class_table, loop_class_table, rule_table};
-    pub use crate::contain::install_hook;
-    pub use crate::declaration::Text;
+    pub use crate::host::contain::install_hook;
+    pub use crate::host::declaration::Text;
     pub use crate::message::Key;
     pub use crate::property::{
         Preset, PropertyShape, Values, all_names, are_distinct, bounds_fit, chosen, complex, contains,

@@ -3,7 +3,7 @@ use std::fmt;
 use std::slice;
 use std::sync::{Arc, OnceLock};
 
-use crate::cdr;
+use crate::host::cdr;
 use crate::{Cause, Field, Time};
 
 /// What components send each other. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are numbers, `bool`, `String`,

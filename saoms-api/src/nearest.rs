@@ -7,7 +7,7 @@ const LONGEST: usize = 128;
 /// (one for each three characters of the name, at least one).
 ///
 /// ```
-/// use saoms_api::nearest;
+/// use saoms_api::rule::nearest;
 ///
 /// assert_eq!(nearest("peroid", ["delay", "period"]), Some("period"));
 /// assert_eq!(nearest("PERIOD", ["periods", "period"]), Some("period"));
@@ -21,7 +21,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 /// others; see [`nearest`].
 ///
 /// ```
-/// use saoms_api::nearest_equal;
+/// use saoms_api::host::nearest_equal;
 ///
 /// assert_eq!(nearest_equal("charge", ["chargeX", "chargeY", "colour"]), ["chargeX", "chargeY"]);
 /// assert!(nearest_equal("Robot9", ["Robot1", "Robot2", "Robot3", "Robot4"]).is_empty());

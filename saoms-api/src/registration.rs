@@ -1,4 +1,5 @@
-use crate::{Class, DynComponent, Failure, LoopRegistration, Properties, PropertyValue, SmolStr};
+use crate::host::{DynComponent, LoopRegistration, PropertyValue, SmolStr};
+use crate::{Class, Failure, Properties};
 
 /// Makes a component from the values of its properties.
 type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
@@ -22,7 +23,7 @@ impl Registration {
         }
     }
 
-    /// The class's declaration, in the shape of [`crate::declaration`].
+    /// The class's declaration, in the shape of [`crate::host::declaration`].
     pub const fn declaration(&self) -> &'static str {
         self.declaration
     }

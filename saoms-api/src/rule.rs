@@ -1,12 +1,17 @@
+//! Rules over a whole fleet, for authors of components: what no component can see alone.
+
 use std::any::{Any, TypeId};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use crate::property::values_of;
-use crate::{Class, Finding, Properties, PropertyValue, SmolStr};
+pub use crate::nearest::nearest;
 
-/// How bad it is.
+use crate::host::{PropertyValue, SmolStr};
+use crate::property::values_of;
+use crate::{Class, Finding, Properties};
+
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth knowing.
@@ -49,7 +54,8 @@ pub struct Code {
 /// rules are asked that can judge the others without it (see [`FleetRule::judges_parts`]).
 ///
 /// ```
-/// use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
+/// use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+/// use saoms_api::{Finding, Place};
 ///
 /// /// One clock is enough.
 /// fn one_clock(fleet: &FleetView<'_>) -> Vec<Finding> {
@@ -119,7 +125,7 @@ pub struct FleetView<'a> {
 /// What several rules of a crate want to know about a fleet, found out once by [`FleetView::fact`].
 ///
 /// ```
-/// use saoms_api::{Fact, FleetView};
+/// use saoms_api::rule::{Fact, FleetView};
 ///
 /// struct Clocks(Vec<usize>);
 ///

@@ -1,4 +1,4 @@
-use crate::cdr::{self, Writer};
+use crate::host::cdr::{self, Writer};
 use crate::{Failure, Field, Message};
 
 /// What a component goes on with in its successor, when its library was built anew: a message, or nothing. See [`Component::save`](crate::Component::save).

@@ -1,7 +1,8 @@
 use std::any::Any;
 
-use crate::cdr::{Reader, Writer};
-use crate::{Arguments, CallError, Component, Context, Failure, Field};
+use crate::host::Arguments;
+use crate::host::cdr::{Reader, Writer};
+use crate::{CallError, Component, Context, Failure, Field};
 
 /// A service interface: `#[interface(name = "...")]` on a trait makes `dyn Trait` one.
 ///

@@ -2,7 +2,7 @@ use std::fmt;
 use std::ops::{Add, Sub};
 use std::time::Duration;
 
-use crate::declaration::trim;
+use crate::host::declaration::trim;
 
 /// A point in the time of a run: nanoseconds since the run started.
 ///
@@ -64,10 +64,10 @@ impl fmt::Display for Time {
 ///
 /// ```
 /// use std::time::Duration;
-/// assert_eq!(saoms_api::parse_duration("500"), Ok(Duration::from_millis(500)));
-/// assert_eq!(saoms_api::parse_duration("100us"), Ok(Duration::from_micros(100)));
-/// assert_eq!(saoms_api::parse_duration("1.5 s"), Ok(Duration::from_millis(1500)));
-/// assert!(saoms_api::parse_duration("soon").is_err());
+/// assert_eq!(saoms_api::host::parse_duration("500"), Ok(Duration::from_millis(500)));
+/// assert_eq!(saoms_api::host::parse_duration("100us"), Ok(Duration::from_micros(100)));
+/// assert_eq!(saoms_api::host::parse_duration("1.5 s"), Ok(Duration::from_millis(1500)));
+/// assert!(saoms_api::host::parse_duration("soon").is_err());
 /// ```
 ///
 /// # Errors
@@ -164,9 +164,9 @@ const fn read_nanos(mut rest: &[u8]) -> Result<u64, WrongDuration> {
 ///
 /// ```
 /// use std::time::Duration;
-/// assert_eq!(saoms_api::format_duration(Duration::from_micros(100)), "100us");
-/// assert_eq!(saoms_api::format_duration(Duration::from_millis(1500)), "1500ms");
-/// assert_eq!(saoms_api::format_duration(Duration::from_secs(2)), "2s");
+/// assert_eq!(saoms_api::host::format_duration(Duration::from_micros(100)), "100us");
+/// assert_eq!(saoms_api::host::format_duration(Duration::from_millis(1500)), "1500ms");
+/// assert_eq!(saoms_api::host::format_duration(Duration::from_secs(2)), "2s");
 /// ```
 pub fn format_duration(duration: Duration) -> String {
     let nanos = duration.as_nanos();

@@ -8,9 +8,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
+use saoms_api::host::{DynLoop, PropertyValue, Registration};
 use saoms_api::{
-    Class, Component, Context, DynLoop, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
-    Properties, PropertyValue, Publisher, Record, Registration, Subscription, Time, Topic, record,
+    Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
+    Publisher, Record, Subscription, Time, Topic, record,
 };
 use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, TaskSettings};

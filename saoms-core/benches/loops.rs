@@ -8,9 +8,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
+use saoms_api::host::Registration;
 use saoms_api::{
     Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties,
-    Record, Registration, Time, record,
+    Record, Time, record,
 };
 use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskSettings};

@@ -88,7 +88,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
 
                 fn serve(
                     &mut self,
-                    invocation: &mut ::saoms_api::Invocation<'_>,
+                    invocation: &mut ::saoms_api::host::Invocation<'_>,
                     context: &mut ::saoms_api::Context<'_>,
                 ) -> ::core::result::Result<(), ::saoms_api::CallError> {
                     let _ = &context;
@@ -101,7 +101,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
 
             #(#presets)*
 
-            ::saoms_api::generated::inventory::submit! { ::saoms_api::Registration::of::<#ident>() }
+            ::saoms_api::generated::inventory::submit! { ::saoms_api::host::Registration::of::<#ident>() }
         };
     })
 }
@@ -217,7 +217,7 @@ impl Declared {
         if let Some(knowledge) = &self.knowledge {
             text.plain(",\"knowledge\":");
             text.json(
-                quote_spanned!(knowledge.span()=> <#knowledge as ::saoms_api::KnowledgeClass>::DECLARATION),
+                quote_spanned!(knowledge.span()=> <#knowledge as ::saoms_api::host::KnowledgeClass>::DECLARATION),
             );
         }
         if let Some(loops) = &self.loops {
@@ -255,7 +255,7 @@ impl Base {
     fn loops(&self) -> TokenStream {
         let of = &self.of;
         quote! {
-            const LOOPS: &'static [::saoms_api::LoopRegistration] = <#of as ::saoms_api::Class>::LOOPS;
+            const LOOPS: &'static [::saoms_api::host::LoopRegistration] = <#of as ::saoms_api::Class>::LOOPS;
         }
     }
 }

@@ -65,7 +65,7 @@ pub(crate) fn knowledge(input: &DeriveInput) -> Result<TokenStream> {
         #entries
 
         #[automatically_derived]
-        impl ::saoms_api::KnowledgeClass for #ident {
+        impl ::saoms_api::host::KnowledgeClass for #ident {
             const NAME: &'static str = #name;
             const DECLARATION: &'static str = #declaration;
         }
@@ -73,7 +73,7 @@ pub(crate) fn knowledge(input: &DeriveInput) -> Result<TokenStream> {
         #[automatically_derived]
         impl ::saoms_api::Knowledge for #ident {
             fn declaration(&self) -> &'static str {
-                <#ident as ::saoms_api::KnowledgeClass>::DECLARATION
+                <#ident as ::saoms_api::host::KnowledgeClass>::DECLARATION
             }
 
             fn extras(&self) -> &::saoms_api::Extras {
@@ -176,7 +176,7 @@ impl<'a> Entry<'a> {
             return quote_spanned!(of.span()=> <#of as ::saoms_api::Entries>::DECLARED);
         }
         let of = json::flat(&quote_spanned!(of.span()=> <#of as ::saoms_api::Field>::TYPE));
-        quote!(&[::saoms_api::EntryDeclaration { name: #name, of: #of, effector: #effector }])
+        quote!(&[::saoms_api::host::EntryDeclaration { name: #name, of: #of, effector: #effector }])
     }
 
     /// Its JSON object, or those of its own entries.
@@ -191,12 +191,12 @@ impl<'a> Entry<'a> {
         text.text(quote!(<#of as ::saoms_api::Field>::TYPE));
         text.text(quote! {
             if <#of as ::saoms_api::Field>::VALUE.is_empty() {
-                ::saoms_api::declaration::Text::EMPTY
+                ::saoms_api::host::declaration::Text::EMPTY
             } else {
-                ::saoms_api::declaration::Text::Joined(&[
-                    ::saoms_api::declaration::Text::Plain(",\"value\":\""),
-                    ::saoms_api::declaration::Text::Plain(<#of as ::saoms_api::Field>::VALUE),
-                    ::saoms_api::declaration::Text::Plain("\""),
+                ::saoms_api::host::declaration::Text::Joined(&[
+                    ::saoms_api::host::declaration::Text::Plain(",\"value\":\""),
+                    ::saoms_api::host::declaration::Text::Plain(<#of as ::saoms_api::Field>::VALUE),
+                    ::saoms_api::host::declaration::Text::Plain("\""),
                 ])
             }
         });
@@ -248,7 +248,7 @@ fn implementation(ident: &Ident, entries: &[Entry<'_>]) -> TokenStream {
     let get_bytes = each(&|Entry { field, place, .. }| {
         (
             quote!({
-                ::saoms_api::cdr::encode_into(&self.#field, bytes);
+                ::saoms_api::host::cdr::encode_into(&self.#field, bytes);
                 ::core::result::Result::Ok(())
             }),
             quote!(::saoms_api::Entries::get_bytes(&self.#field, entry - #place, bytes)),
@@ -273,14 +273,14 @@ fn implementation(ident: &Ident, entries: &[Entry<'_>]) -> TokenStream {
         const _: () = {
             #(#places)*
             const COUNT: usize = (#next) as usize;
-            const GROUPS: &[&[::saoms_api::EntryDeclaration]] = &[#(#groups),*];
-            const ALL: [::saoms_api::EntryDeclaration; COUNT] = ::saoms_api::generated::joined(GROUPS);
+            const GROUPS: &[&[::saoms_api::host::EntryDeclaration]] = &[#(#groups),*];
+            const ALL: [::saoms_api::host::EntryDeclaration; COUNT] = ::saoms_api::generated::joined(GROUPS);
             ::core::assert!(::saoms_api::generated::are_unique(&ALL), #message);
 
             #[automatically_derived]
             impl ::saoms_api::Entries for #ident {
-                const DECLARED: &'static [::saoms_api::EntryDeclaration] = &ALL;
-                const TEXT: ::saoms_api::declaration::Text = #text;
+                const DECLARED: &'static [::saoms_api::host::EntryDeclaration] = &ALL;
+                const TEXT: ::saoms_api::host::declaration::Text = #text;
 
                 fn get(&self, entry: u32) -> ::core::option::Option<::saoms_api::Value> {
                     match entry {

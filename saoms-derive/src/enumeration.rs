@@ -33,7 +33,7 @@ pub(crate) fn field(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream>
     Ok(quote! {
         #[automatically_derived]
         impl ::saoms_api::Field for #ident {
-            const TYPE: ::saoms_api::declaration::Text = #text;
+            const TYPE: ::saoms_api::host::declaration::Text = #text;
             const LEAST_SIZE: usize = <#representation as ::saoms_api::Field>::LEAST_SIZE;
             const VALUE: &'static str = "word";
 
@@ -51,7 +51,7 @@ pub(crate) fn field(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream>
                 }
             }
 
-            fn write(&self, writer: &mut ::saoms_api::cdr::Writer) {
+            fn write(&self, writer: &mut ::saoms_api::host::cdr::Writer) {
                 let number: #representation = match self {
                     #(#ident::#variants => #literals,)*
                 };
@@ -59,11 +59,11 @@ pub(crate) fn field(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream>
             }
 
             fn read(
-                reader: &mut ::saoms_api::cdr::Reader<'_>,
-            ) -> ::core::result::Result<Self, ::saoms_api::cdr::DecodeError> {
+                reader: &mut ::saoms_api::host::cdr::Reader<'_>,
+            ) -> ::core::result::Result<Self, ::saoms_api::host::cdr::DecodeError> {
                 match <#representation as ::saoms_api::Field>::read(reader)? {
                     #(#literals => ::core::result::Result::Ok(#ident::#variants),)*
-                    other => ::core::result::Result::Err(::saoms_api::cdr::DecodeError::new(
+                    other => ::core::result::Result::Err(::saoms_api::host::cdr::DecodeError::new(
                         ::std::format!("found {other}, expected {}", #expected),
                         reader.offset() - ::core::mem::size_of::<#representation>(),
                     )),
@@ -108,15 +108,15 @@ pub(crate) fn property_field(input: &DeriveInput) -> Result<TokenStream> {
     Ok(quote! {
         #[automatically_derived]
         impl ::saoms_api::PropertyField for #ident {
-            const TYPE: ::saoms_api::declaration::PropertyShape = {
-                use ::saoms_api::declaration::{PropertyKind, PropertyShape, Rule};
+            const TYPE: ::saoms_api::host::declaration::PropertyShape = {
+                use ::saoms_api::host::declaration::{PropertyKind, PropertyShape, Rule};
                 const ALLOWED: &[&str] = &[#(#allowed),*];
                 PropertyShape::scalar(Rule { allowed: ALLOWED, ..Rule::of(PropertyKind::Enumeration) })
                     .with_details(#details)
             };
 
             fn from_value(
-                value: &::saoms_api::PropertyValue,
+                value: &::saoms_api::host::PropertyValue,
             ) -> ::core::result::Result<Self, ::std::string::String> {
                 const ALLOWED: &[&str] = <#ident as ::saoms_api::PropertyField>::TYPE.rule.allowed;
                 match ::saoms_api::generated::chosen(value, ALLOWED)? {

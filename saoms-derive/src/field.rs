@@ -175,17 +175,17 @@ fn structure(
     quote! {
         #[automatically_derived]
         impl ::saoms_api::Field for #ident {
-            const TYPE: ::saoms_api::declaration::Text = #text;
+            const TYPE: ::saoms_api::host::declaration::Text = #text;
             const LEAST_SIZE: usize = #least;
             #value
 
-            fn write(&self, writer: &mut ::saoms_api::cdr::Writer) {
+            fn write(&self, writer: &mut ::saoms_api::host::cdr::Writer) {
                 #write
             }
 
             fn read(
-                reader: &mut ::saoms_api::cdr::Reader<'_>,
-            ) -> ::core::result::Result<Self, ::saoms_api::cdr::DecodeError> {
+                reader: &mut ::saoms_api::host::cdr::Reader<'_>,
+            ) -> ::core::result::Result<Self, ::saoms_api::host::cdr::DecodeError> {
                 #read
                 ::core::result::Result::Ok(#ident { #(#names: #locals),* })
             }

@@ -47,7 +47,7 @@ pub(crate) fn interface(arguments: TokenStream, item: &ItemTrait) -> Result<Toke
         #[allow(dead_code)]
         #item
 
-        impl ::saoms_api::Interface for dyn #ident {
+        impl ::saoms_api::host::Interface for dyn #ident {
             const NAME: &'static str = #name;
             const DECLARATION: &'static str = #declaration;
         }
@@ -56,7 +56,7 @@ pub(crate) fn interface(arguments: TokenStream, item: &ItemTrait) -> Result<Toke
             #[doc(hidden)]
             #visibility fn dispatch<C: ::saoms_api::Component + #ident>(
                 component: &mut C,
-                invocation: &mut ::saoms_api::Invocation<'_>,
+                invocation: &mut ::saoms_api::host::Invocation<'_>,
                 context: &mut ::saoms_api::Context<'_>,
             ) -> ::core::result::Result<(), ::saoms_api::CallError> {
                 match invocation.call.operation() {
@@ -91,7 +91,7 @@ fn reference(item: &ItemTrait, name: &str, operations: &[Operation<'_>]) -> Toke
             }
         }
 
-        impl ::saoms_api::Reference for #reference {
+        impl ::saoms_api::host::Reference for #reference {
             const INTERFACE: &'static str = #name;
 
             fn from_index(index: u32) -> Self {
@@ -221,7 +221,7 @@ impl<'a> Operation<'a> {
                 #own: #context,
                 #(#arguments),*
             ) -> ::core::result::Result<#reply, ::saoms_api::CallError> {
-                let mut #call = ::saoms_api::TypedCall::<#types, #reply>::new(#number, #names);
+                let mut #call = ::saoms_api::host::TypedCall::<#types, #reply>::new(#number, #names);
                 #own.call(self.index, &mut #call)?;
                 #call.into_reply()
             }

@@ -70,7 +70,7 @@ pub fn loop_class(input: TokenStream) -> TokenStream {
     finish(looping::loop_class(&parse_macro_input!(input as DeriveInput)))
 }
 
-/// See `saoms_api::Interface`.
+/// See `saoms_api::host::Interface`.
 #[proc_macro_attribute]
 pub fn interface(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let item = parse_macro_input!(item as ItemTrait);

@@ -36,12 +36,12 @@ pub(crate) fn loop_class(input: &DeriveInput) -> Result<TokenStream> {
     let declaration = json::flat(&declaration.into_text());
     let knowledge = match &declared.knowledge {
         Some(name) => quote!(::core::option::Option::Some(#name)),
-        None => quote!(<<#ident as ::saoms_api::Loop>::Knowledge as ::saoms_api::Subject>::NAME),
+        None => quote!(<<#ident as ::saoms_api::Loop>::Knowledge as ::saoms_api::host::Subject>::NAME),
     };
     let effects = &declared.effects;
     let entries = declared.entries.iter().map(|entries| {
         quote_spanned! {entries.span()=>
-            fn entries() -> ::core::option::Option<::std::boxed::Box<dyn ::saoms_api::DynEntries>> {
+            fn entries() -> ::core::option::Option<::std::boxed::Box<dyn ::saoms_api::host::DynEntries>> {
                 ::core::option::Option::Some(::std::boxed::Box::new(
                     <#entries as ::core::default::Default>::default(),
                 ))
@@ -62,7 +62,7 @@ pub(crate) fn loop_class(input: &DeriveInput) -> Result<TokenStream> {
                 #(#entries)*
             }
 
-            ::saoms_api::generated::inventory::submit! { ::saoms_api::LoopRegistration::of::<#ident>() }
+            ::saoms_api::generated::inventory::submit! { ::saoms_api::host::LoopRegistration::of::<#ident>() }
         };
     })
 }
@@ -88,7 +88,7 @@ impl Declared {
                     quote!(#name)
                 } else {
                     let path: Path = value.parse()?;
-                    quote_spanned!(path.span()=> <#path as ::saoms_api::KnowledgeClass>::NAME)
+                    quote_spanned!(path.span()=> <#path as ::saoms_api::host::KnowledgeClass>::NAME)
                 });
             }
             "senses" => names(meta, &mut self.senses)?,
@@ -131,11 +131,11 @@ impl Declared {
         text.string(&name.value());
         text.member("doc", doc);
         text.text(quote! {{
-            const PARTS: &[::saoms_api::declaration::Text] = &::saoms_api::generated::member(
+            const PARTS: &[::saoms_api::host::declaration::Text] = &::saoms_api::generated::member(
                 ",\"knowledge\":",
                 <#ident as ::saoms_api::LoopClass>::KNOWLEDGE,
             );
-            ::saoms_api::declaration::Text::Joined(PARTS)
+            ::saoms_api::host::declaration::Text::Joined(PARTS)
         }});
         parts::properties(&mut text, properties);
         for (member, names) in [("senses", &self.senses), ("effects", &self.effects)] {

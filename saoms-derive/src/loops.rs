@@ -98,17 +98,17 @@ impl DefaultLoops {
                 ::core::assert!(
                     ::saoms_api::generated::fits(
                         <#of as ::saoms_api::LoopClass>::KNOWLEDGE,
-                        <#knowledge as ::saoms_api::KnowledgeClass>::NAME,
+                        <#knowledge as ::saoms_api::host::KnowledgeClass>::NAME,
                     ),
                     #message,
                 );
             }
         });
         quote! {
-            const LOOPS: &'static [::saoms_api::LoopRegistration] = {
+            const LOOPS: &'static [::saoms_api::host::LoopRegistration] = {
                 #(#property)*
                 #(#fits)*
-                &[#(::saoms_api::LoopRegistration::of::<#loops>()),*]
+                &[#(::saoms_api::host::LoopRegistration::of::<#loops>()),*]
             };
         }
     }

@@ -46,7 +46,7 @@ pub(crate) fn topic(text: &mut Json, topic: &Path) {
     text.quoted(quote!(#topic.declaration().message));
     text.plain(",\"schema\":");
     text.json(quote!(#topic.schema()));
-    text.text(quote!(::saoms_api::declaration::optional_topic(#topic.is_optional())));
+    text.text(quote!(::saoms_api::host::declaration::optional_topic(#topic.is_optional())));
     text.plain("}");
 }
 
@@ -55,7 +55,9 @@ pub(crate) fn interface(text: &mut Json, name: &LitStr, interface: &Path) {
     text.plain("{\"name\":");
     text.string(&name.value());
     text.plain(",\"interface\":");
-    text.json(quote_spanned!(interface.span()=> <dyn #interface as ::saoms_api::Interface>::DECLARATION));
+    text.json(
+        quote_spanned!(interface.span()=> <dyn #interface as ::saoms_api::host::Interface>::DECLARATION),
+    );
 }
 
 /// The JSON object of a reference.

@@ -81,7 +81,7 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
             };
 
             fn from_values(
-                values: &[(::saoms_api::SmolStr, ::saoms_api::PropertyValue)],
+                values: &[(::saoms_api::host::SmolStr, ::saoms_api::host::PropertyValue)],
             ) -> ::core::result::Result<Self, ::saoms_api::Failure> {
                 fn make(
                     given: &mut ::saoms_api::generated::Values<'_>,
@@ -96,8 +96,8 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
 
         #[automatically_derived]
         impl ::saoms_api::PropertyField for #ident {
-            const TYPE: ::saoms_api::declaration::PropertyShape = {
-                use ::saoms_api::declaration::{PropertyKind, PropertyShape, Rule, Text};
+            const TYPE: ::saoms_api::host::declaration::PropertyShape = {
+                use ::saoms_api::host::declaration::{PropertyKind, PropertyShape, Rule, Text};
                 const PARTS: &[Text] = &[
                     Text::Plain(",\"properties\":"),
                     Text::Plain(<#ident as ::saoms_api::Properties>::DECLARATION),
@@ -106,7 +106,7 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
             };
 
             fn from_value(
-                value: &::saoms_api::PropertyValue,
+                value: &::saoms_api::host::PropertyValue,
             ) -> ::core::result::Result<Self, ::std::string::String> {
                 ::saoms_api::generated::complex(value)
             }
@@ -128,7 +128,7 @@ fn declaration(members: &[Member<'_>]) -> TokenStream {
             }
             Member::Flat(_, of) => {
                 let inner = quote_spanned!(of.span()=> <#of as ::saoms_api::Properties>::DECLARATION);
-                text.text(quote!(::saoms_api::declaration::Text::Joined(
+                text.text(quote!(::saoms_api::host::declaration::Text::Joined(
                     &::saoms_api::generated::continued(#inner)
                 )));
             }
@@ -137,8 +137,8 @@ fn declaration(members: &[Member<'_>]) -> TokenStream {
     let items = json::flat(&text.into_text());
     json::flat(&quote!({
         const ITEMS: &str = #items;
-        const PARTS: &[::saoms_api::declaration::Text] = &::saoms_api::generated::list(ITEMS);
-        ::saoms_api::declaration::Text::Joined(PARTS)
+        const PARTS: &[::saoms_api::host::declaration::Text] = &::saoms_api::generated::list(ITEMS);
+        ::saoms_api::host::declaration::Text::Joined(PARTS)
     }))
 }
 
@@ -287,7 +287,7 @@ impl<'a> Property<'a> {
                 "property `{name}` is not a string: `allowed` and `required_text` do not suit its type"
             );
             checks.push(quote_spanned! {self.field.span()=>
-                ::core::assert!(::core::matches!(RULE.kind, ::saoms_api::declaration::PropertyKind::String), #message);
+                ::core::assert!(::core::matches!(RULE.kind, ::saoms_api::host::declaration::PropertyKind::String), #message);
             });
         }
         if checks.is_empty() {
@@ -296,7 +296,7 @@ impl<'a> Property<'a> {
         let rule = self.rule();
         quote! {
             const _: () = {
-                const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
+                const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
                 #(#checks)*
             };
         }
@@ -328,7 +328,7 @@ impl<'a> Property<'a> {
             members.push(quote!(non_empty: true));
         }
         quote! {
-            ::saoms_api::declaration::Rule {
+            ::saoms_api::host::declaration::Rule {
                 #(#members,)*
                 ..<#of as ::saoms_api::PropertyField>::TYPE.rule
             }
@@ -352,9 +352,9 @@ impl<'a> Property<'a> {
         };
         quote! {
             #field: {
-                const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
-                const BOUNDS: ::core::option::Option<::saoms_api::declaration::PlainBounds> =
-                    ::saoms_api::declaration::PlainBounds::of(&RULE);
+                const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
+                const BOUNDS: ::core::option::Option<::saoms_api::host::declaration::PlainBounds> =
+                    ::saoms_api::host::declaration::PlainBounds::of(&RULE);
                 ::saoms_api::generated::property(given, #name, #default, (&RULE, BOUNDS))?
             }
         }
@@ -376,18 +376,18 @@ impl<'a> Property<'a> {
             (",\"exclusiveMax\":", quote!(exclusive_max)),
         ] {
             text.text(quote! {{
-                const RULE: ::saoms_api::declaration::Rule<'static> = #rule;
-                const PARTS: &[::saoms_api::declaration::Text] =
-                    &::saoms_api::declaration::PropertyShape::bound(RULE.kind, #label, RULE.#bound);
-                ::saoms_api::declaration::Text::Joined(PARTS)
+                const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
+                const PARTS: &[::saoms_api::host::declaration::Text] =
+                    &::saoms_api::host::declaration::PropertyShape::bound(RULE.kind, #label, RULE.#bound);
+                ::saoms_api::host::declaration::Text::Joined(PARTS)
             }});
         }
         let flag = |member: &str, condition: TokenStream| {
             quote! {
                 if #condition {
-                    ::saoms_api::declaration::Text::Plain(#member)
+                    ::saoms_api::host::declaration::Text::Plain(#member)
                 } else {
-                    ::saoms_api::declaration::Text::EMPTY
+                    ::saoms_api::host::declaration::Text::EMPTY
                 }
             }
         };

@@ -2,11 +2,11 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use saoms_api::contain::{contained, install_hook};
-use saoms_api::{
-    CallError, Cause, Class, Context, DynComponent, Failure, Header, Invocation, Message, PropertyValue,
-    Registration, ReportValue, ServiceCall, SharedMessage, SmolStr, Topic, Work,
+use saoms_api::host::contain::{contained, install_hook};
+use saoms_api::host::{
+    DynComponent, Invocation, PropertyValue, Registration, ServiceCall, SharedMessage, SmolStr,
 };
+use saoms_api::{CallError, Cause, Class, Context, Failure, Header, Message, ReportValue, Topic, Work};
 use saoms_core::plugin::Plugin;
 use saoms_lang::registry::{LoopClass, Registry};
 use saoms_lang::schema::Schema;

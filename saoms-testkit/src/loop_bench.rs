@@ -4,11 +4,9 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use saoms_api::contain::{contained, install_hook};
-use saoms_api::{
-    CallError, Context, DynComponent, Failure, Invocation, Knowledge, KnowledgeClass, LoopClass,
-    LoopRegistration, Loops, PropertyValue, Saved, SmolStr, Value,
-};
+use saoms_api::host::contain::{contained, install_hook};
+use saoms_api::host::{DynComponent, Invocation, KnowledgeClass, LoopRegistration, PropertyValue, SmolStr};
+use saoms_api::{CallError, Context, Failure, Knowledge, LoopClass, Loops, Saved, Value};
 use saoms_core::plugin::Plugin;
 use saoms_lang::registry::Registry;
 

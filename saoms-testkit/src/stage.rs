@@ -5,10 +5,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::host::{Host, LoopVisit};
-use saoms_api::{
-    CallError, Cause, Chance, Failure, Level, NamedLoops, Phase, PropertyValue, Record, ReportValue,
-    ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration, Value, Work,
+use saoms_api::host::{
+    NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
 };
+use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
 use saoms_lang::registry::{Class, LoopClass, Registry, TopicDeclaration as Declared};
 use saoms_lang::schema::Schema;
 
@@ -284,7 +284,7 @@ impl Host for Stage {
         }
     }
 
-    fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn saoms_api::DynLoop>, Failure> {
+    fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn saoms_api::host::DynLoop>, Failure> {
         self.loops.get(place as usize).ok_or("there are not so many loops")?.construct(&[])
     }
 

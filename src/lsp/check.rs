@@ -13,7 +13,7 @@ use saoms_lang::load::{Finder, MAX_SIZE};
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{OpenTexts, Sources, identity};
 
-use saoms_api::contain::contained;
+use saoms_api::host::contain::contained;
 use saoms_tools::editor::{Fleet, Scene, Workspace};
 
 use super::diagnostics::{Reported, reported};

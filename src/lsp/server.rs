@@ -14,7 +14,7 @@ use lsp_types::notification::{
     DidCloseTextDocument, DidOpenTextDocument, DidSaveTextDocument, Notification as _, PublishDiagnostics,
 };
 use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri, WorkspaceFolder};
-use saoms_api::contain::contained;
+use saoms_api::host::contain::contained;
 use saoms_tools::editor::{Scene, Workspace};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

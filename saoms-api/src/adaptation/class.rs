@@ -1,5 +1,6 @@
-use crate::declaration::Text;
-use crate::{DynEntries, DynLoop, Failure, Loop, Properties, PropertyValue, SmolStr};
+use crate::host::declaration::Text;
+use crate::host::{DynEntries, DynLoop, PropertyValue, SmolStr};
+use crate::{Failure, Loop, Properties};
 
 /// The declaration of a loop, which `#[derive(LoopClass)]` writes.
 ///
@@ -8,7 +9,7 @@ use crate::{DynEntries, DynLoop, Failure, Loop, Properties, PropertyValue, SmolS
 /// | attribute | meaning |
 /// | --- | --- |
 /// | `name = "saoms.CollisionMS"` | the name that composite files use; what follows the last dot names the loop within a component |
-/// | `knowledge = RobotKnowledge`, `knowledge = "saoms.Robot"` | the [knowledge](crate::KnowledgeClass) it works on; without it, any that has the entries |
+/// | `knowledge = RobotKnowledge`, `knowledge = "saoms.Robot"` | the [knowledge](crate::host::KnowledgeClass) it works on; without it, any that has the entries |
 /// | `senses("battery", "block")` | the entries it reads |
 /// | `effects("next")` | the entries it changes |
 /// | `entries(Saving)` | entries of its own, a struct that derives [`Entries`](crate::Entries) and `Default`; they are added to the knowledge |
@@ -72,7 +73,7 @@ use crate::{DynEntries, DynLoop, Failure, Loop, Properties, PropertyValue, SmolS
 pub trait LoopClass: Loop {
     /// The name that composite files use.
     const NAME: &'static str;
-    /// Everything that the loop declares, as JSON; its shape is described in [`crate::declaration`].
+    /// Everything that the loop declares, as JSON; its shape is described in [`crate::host::declaration`].
     const DECLARATION: &'static str;
     /// The knowledge it works on; `None` for any.
     const KNOWLEDGE: Option<&'static str>;
@@ -128,7 +129,7 @@ impl LoopRegistration {
         self.name
     }
 
-    /// The loop's declaration, in the shape of [`crate::declaration`].
+    /// The loop's declaration, in the shape of [`crate::host::declaration`].
     pub const fn declaration(&self) -> &'static str {
         self.declaration
     }

@@ -1,6 +1,5 @@
-use crate::{
-    Context, DynEntries, Failure, Knowledge, LoopClass, Phase, Properties, Recordable, Snapshot, Subject,
-};
+use crate::host::{DynEntries, Phase, Snapshot, Subject};
+use crate::{Context, Failure, Knowledge, LoopClass, Properties, Recordable};
 
 /// A MAPE-K loop: one concern of a component that adapts itself.
 ///

@@ -1,6 +1,6 @@
 use std::any::Any;
 
-use crate::declaration::Text;
+use crate::host::declaration::Text;
 use crate::{Failure, Value};
 
 /// Declared, typed entries: those of a component's knowledge, of a part of it, or those that a loop adds to it.
@@ -37,7 +37,7 @@ use crate::{Failure, Value};
 pub trait Entries: Send + Sized + 'static {
     /// The entries in order. An entry is known by its place in here.
     const DECLARED: &'static [EntryDeclaration];
-    /// Their JSON objects with commas between, in the shape of [`crate::declaration`].
+    /// Their JSON objects with commas between, in the shape of [`crate::host::declaration`].
     const TEXT: Text;
 
     /// The value of an entry; `None` for one that is no single value, or for none at all.
@@ -49,13 +49,13 @@ pub trait Entries: Send + Sized + 'static {
     /// There is no such entry, it is no single value, or its type is another.
     fn set(&mut self, entry: u32, value: Value) -> Result<(), Failure>;
 
-    /// Replaces `bytes` by an entry of any type as [CDR](crate::cdr).
+    /// Replaces `bytes` by an entry of any type as [CDR](crate::host::cdr).
     ///
     /// # Errors
     /// There is no such entry.
     fn get_bytes(&self, entry: u32, bytes: &mut Vec<u8>) -> Result<(), Failure>;
 
-    /// Sets an entry of any type from [CDR](crate::cdr).
+    /// Sets an entry of any type from [CDR](crate::host::cdr).
     ///
     /// # Errors
     /// There is no such entry, or these are not the bytes of one.
@@ -183,6 +183,7 @@ pub fn set_field<F: crate::Field>(field: &mut F, name: &str, value: Value) -> Re
 /// # Errors
 /// They are not those of a value of its type.
 pub fn decode_field<F: crate::Field>(field: &mut F, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-    *field = crate::cdr::decode(bytes).map_err(|error| Failure::new(format!("entry `{name}`: {error}")))?;
+    *field =
+        crate::host::cdr::decode(bytes).map_err(|error| Failure::new(format!("entry `{name}`: {error}")))?;
     Ok(())
 }

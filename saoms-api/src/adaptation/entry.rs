@@ -2,7 +2,9 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
 
-use crate::{Failure, Field, Knowledge, Value, cdr, nearest};
+use crate::host::cdr;
+use crate::rule::nearest;
+use crate::{Failure, Field, Knowledge, Value};
 
 /// An entry of a component's knowledge, to read it and to see whether it changed; from [`Entry::of`]. The default one belongs to no knowledge: reading it is a failure that says so.
 ///

@@ -1,7 +1,8 @@
 use std::any::Any;
 use std::fmt;
 
-use crate::{DynEntries, Entries, EntryDeclaration, Failure};
+use crate::host::{DynEntries, EntryDeclaration};
+use crate::{Entries, Failure};
 
 /// The entries that loops add to the knowledge of their component. A [`Knowledge`](crate::Knowledge) has one field of this type; those who
 /// reach entries by name see no difference.

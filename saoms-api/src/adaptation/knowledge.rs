@@ -1,7 +1,8 @@
 use std::any::Any;
 
 use super::entries::no_entry;
-use crate::{DynEntries, Effector, Entries, Entry, EntryDeclaration, Extras, Failure, Field, Value};
+use crate::host::{DynEntries, EntryDeclaration};
+use crate::{Effector, Entries, Entry, Extras, Failure, Field, Value};
 
 /// What a component knows, as entries that have a declared name and type.
 ///
@@ -40,7 +41,7 @@ use crate::{DynEntries, Effector, Entries, Entry, EntryDeclaration, Extras, Fail
 /// # Ok::<(), saoms_api::Failure>(())
 /// ```
 pub trait Knowledge: DynEntries {
-    /// Name and entries as JSON text; its shape is described in [`crate::declaration`]. What loops add is not in it.
+    /// Name and entries as JSON text; its shape is described in [`crate::host::declaration`]. What loops add is not in it.
     fn declaration(&self) -> &'static str;
 
     /// What loops added.
@@ -103,7 +104,7 @@ impl dyn Knowledge {
         }
     }
 
-    /// Replaces `bytes` by the entry at this place, as [CDR](crate::cdr).
+    /// Replaces `bytes` by the entry at this place, as [CDR](crate::host::cdr).
     ///
     /// # Errors
     /// There is no such entry.
@@ -117,7 +118,7 @@ impl dyn Knowledge {
         }
     }
 
-    /// Sets the entry at this place from [CDR](crate::cdr).
+    /// Sets the entry at this place from [CDR](crate::host::cdr).
     ///
     /// # Errors
     /// There is no such entry, or these are not the bytes of one.

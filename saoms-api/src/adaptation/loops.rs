@@ -1,7 +1,8 @@
 use std::fmt;
 
 use super::extras::Writable;
-use crate::{Context, DynLoop, EntryDeclaration, Failure, Knowledge, Snapshot};
+use crate::host::{DynLoop, EntryDeclaration, Snapshot};
+use crate::{Context, Failure, Knowledge};
 
 /// Loops with the names that composites use, in their order.
 pub type NamedLoops = Vec<(String, Box<dyn DynLoop>)>;

@@ -2,8 +2,9 @@ use std::ffi::c_void;
 
 use saoms_abi::{Bytes, ClassTable, ComponentTable, FindingSink, HostHandle, PropertyView, Sink, Status};
 
-use crate::contain::contained;
-use crate::{Class, Context, DynComponent, Failure, Invocation, Properties, Saved};
+use crate::host::contain::contained;
+use crate::host::{DynComponent, Invocation};
+use crate::{Class, Context, Failure, Properties, Saved};
 
 use super::context_state::ContextState;
 use super::convert::read_properties;

@@ -1,6 +1,7 @@
 use saoms_abi::{HostHandle, MessageView};
 
-use crate::{Cause, Context, Failure, Header, SharedMessage};
+use crate::host::SharedMessage;
+use crate::{Cause, Context, Failure, Header};
 
 use super::host::time;
 use super::remote_host::{RemoteHost, check_size};

@@ -2,7 +2,7 @@ use std::ffi::c_void;
 
 use saoms_abi::{FindingSink, ReadError, Sink, Status};
 
-use crate::contain::{contained, contained_or};
+use crate::host::contain::{contained, contained_or};
 use crate::{CallError, Failure};
 
 use super::convert::put_findings;

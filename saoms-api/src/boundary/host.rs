@@ -9,7 +9,8 @@ use saoms_abi::{
 };
 
 use crate::host::Host;
-use crate::{Cause, Failure, Header, Level, Phase, SharedMessage, Time, Work};
+use crate::host::{Phase, SharedMessage};
+use crate::{Cause, Failure, Header, Level, Time, Work};
 
 use super::convert::{PropertyViews, read_record, read_report, read_topic, read_value};
 use super::guard::{guarded, guarded_call, guarded_value};

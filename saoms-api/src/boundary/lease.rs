@@ -5,7 +5,8 @@ use std::{fmt, mem, ptr};
 use saoms_abi::{Bytes, EntriesHandle, FindingSink, HostHandle, Inbox, MessageView, Sink, Status};
 
 use crate::host::Host;
-use crate::{CallError, Context, Failure, Knowledge, SharedMessage};
+use crate::host::SharedMessage;
+use crate::{CallError, Context, Failure, Knowledge};
 
 use super::convert::Findings;
 use super::guard::{call_outcome, outcome};

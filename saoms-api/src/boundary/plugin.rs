@@ -1,7 +1,7 @@
 /// The version of this crate, for the metadata of a library.
 pub const API: &str = env!("CARGO_PKG_VERSION");
 
-/// Offers classes, loops and [rules over whole fleets](crate::FleetRule) in a library, to programs that load it.
+/// Offers classes, loops and [rules over whole fleets](crate::rule::FleetRule) in a library, to programs that load it.
 ///
 /// A crate that is built as a `cdylib` says once what it offers: `classes`, `loops` and `rules`, in this order, as far as it has them. The same crate can be linked into a program, too: its classes and loops are
 /// registered by their derives then, its rules by this, as by [`fleet_rules!`](crate::fleet_rules).

@@ -7,12 +7,13 @@ use saoms_abi::{
     Bytes, HostFunctions, HostHandle, LoopInstance, PropertyView, RecordView, Sink, Status, TopicView,
 };
 
-use crate::contain::contained;
 use crate::host::Host;
-use crate::{
-    CallError, Cause, Chance, DynLoop, Failure, Level, LoopRegistration, NamedLoops, Phase, PropertyValue,
-    Record, ReportValue, ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration, Value, Work,
+use crate::host::contain::contained;
+use crate::host::{
+    DynLoop, LoopRegistration, NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr,
+    TopicDeclaration,
 };
+use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
 
 use super::buffer::{Buffer, sink};
 use super::convert::{read_properties, topic_view, value_view, with_report_view};

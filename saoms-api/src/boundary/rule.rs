@@ -4,7 +4,9 @@ use std::time::Duration;
 
 use saoms_abi::{FindingSink, FleetList, MemberView, RuleTable, Sink, Status, TextList, list};
 
-use crate::{ClassView, ComponentView, Failure, FleetRule, FleetView, PropertyValue, SmolStr};
+use crate::Failure;
+use crate::host::{PropertyValue, SmolStr};
+use crate::rule::{ClassView, ComponentView, FleetRule, FleetView};
 
 use super::convert::{put_findings, read_properties};
 use super::guard::guarded;

@@ -2,7 +2,8 @@ use std::any::Any;
 
 use saoms_abi::Sink;
 
-use crate::{CallError, Operation, ServiceCall};
+use crate::CallError;
+use crate::host::{Operation, ServiceCall};
 
 /// A call that came across the boundary: its arguments and its reply are bytes.
 pub(super) struct BytesCall<'a> {

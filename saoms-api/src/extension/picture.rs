@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::{SharedMessage, TopicDeclaration};
+use crate::host::{SharedMessage, TopicDeclaration};
 
 /// A picture of a run, drawn from the messages of the fleet.
 pub trait RunPicture: Send {

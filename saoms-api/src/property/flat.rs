@@ -1,7 +1,7 @@
 //! Property structs in the place of a field of another one.
 
-use crate::declaration::Text;
-use crate::{PropertyValue, SmolStr};
+use crate::host::declaration::Text;
+use crate::host::{PropertyValue, SmolStr};
 
 /// How many names there are in all lists.
 pub const fn count(parts: &[&[&str]]) -> usize {

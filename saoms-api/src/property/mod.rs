@@ -10,7 +10,8 @@ pub use flat::{all_names, are_distinct, continued, count, list};
 pub use read::{Preset, Values, chosen, complex, flat, property, read};
 pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits, equal};
 
-use crate::{Failure, SmolStr};
+use crate::Failure;
+use crate::host::SmolStr;
 
 /// A value as the composite gives it, once `source` and `file` are resolved: as large as a [`SmolStr`], as nearly all values are texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,7 +109,7 @@ impl From<&str> for PropertyValue {
 /// }
 /// ```
 pub trait Properties: Sized {
-    /// The properties as a JSON array, in the shape of [`crate::declaration`].
+    /// The properties as a JSON array, in the shape of [`crate::host::declaration`].
     const DECLARATION: &'static str;
     /// Their names, in order.
     const NAMES: &'static [&'static str];

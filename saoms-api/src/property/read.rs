@@ -1,7 +1,8 @@
 use super::{PropertyField, equal, values_of};
-use crate::declaration::{PlainBounds, PropertyKind, Rule, Scalar, parse_scalar, trim};
+use crate::host::declaration::{PlainBounds, PropertyKind, Rule, Scalar, parse_scalar, trim};
+use crate::host::{PropertyValue, SmolStr};
 use crate::time::read_duration;
-use crate::{Failure, Finding, Place, Properties, PropertyValue, SmolStr};
+use crate::{Failure, Finding, Place, Properties};
 
 /// The default of a property: as text, and as the compiler reads it, which it cannot where this is text or a choice.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
-use crate::declaration::{PropertyKind, Rule, Scalar, Text};
+use crate::host::declaration::{PropertyKind, Rule, Scalar, Text};
+use crate::host::{PropertyValue, SmolStr};
 use crate::time::read_duration;
-use crate::{PropertyValue, SmolStr};
 
 /// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `SmolStr`, `Duration`, enums (derive it), other
 /// [`Properties`](crate::Properties) structs, `Option` of these (need not be given) and `Vec` of these (any number of values).

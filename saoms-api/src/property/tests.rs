@@ -1,6 +1,6 @@
 use super::shape::{bounds_fit, default_fits};
 use super::*;
-use crate::declaration::{PropertyKind, Rule, Scalar};
+use crate::host::declaration::{PropertyKind, Rule, Scalar};
 
 #[test]
 fn each_type_reads_its_text_and_no_other() {

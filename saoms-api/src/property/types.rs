@@ -1,8 +1,8 @@
 use std::time::Duration;
 
 use super::{PropertyField, PropertyShape};
-use crate::declaration::{PropertyKind, Rule, Scalar};
-use crate::{PropertyValue, SmolStr};
+use crate::host::declaration::{PropertyKind, Rule, Scalar};
+use crate::host::{PropertyValue, SmolStr};
 
 /// Reads a scalar through its rule.
 fn scalar(value: &PropertyValue, rule: &Rule<'_>) -> Result<Scalar, String> {

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-use saoms_api::{Message, cdr};
+use saoms_api::Message;
+use saoms_api::host::cdr;
 
 #[derive(Clone, Debug, PartialEq, Message)]
 struct Sample {

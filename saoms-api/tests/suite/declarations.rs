@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
+use saoms_api::host::{Interface, PropertyValue, Registration, SmolStr};
 use saoms_api::{
-    Class, Component, Context, Failure, Field, Interface, Message, Properties, PropertyField, PropertyValue,
-    Registration, SmolStr, Topic, interface,
+    Class, Component, Context, Failure, Field, Message, Properties, PropertyField, Topic, interface,
 };
 
 /// Where a robot is.

@@ -6,3 +6,4 @@ mod author;
 mod components;
 mod declarations;
 mod refused;
+mod view;

@@ -21,7 +21,7 @@ mod svg;
 use std::sync::Arc;
 
 use saoms_api::extension::{PictureRegistration, RunPicture, submit};
-use saoms_api::{SharedMessage, TopicDeclaration};
+use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 use recording::Recording;
 

@@ -8,7 +8,8 @@ use crate::messages::{
     AREA, COLLISION, Collision, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, LuggageStage, POSITION, Position,
     ROBOT_LIST, RobotList,
 };
-use saoms_api::{SharedMessage, Topic, TopicDeclaration};
+use saoms_api::Topic;
+use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 /// More legs than anybody could tell apart: beyond this number, only how often each block was entered is kept.
 const LEGS: usize = 20_000;

@@ -1,4 +1,5 @@
-use saoms_api::{Failure, Finding, Place, Properties, PropertyField, SmolStr};
+use saoms_api::host::SmolStr;
+use saoms_api::{Failure, Finding, Place, Properties, PropertyField};
 
 use crate::grid::Block;
 

@@ -1,6 +1,7 @@
 //! Chargers where no robot can be.
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+use saoms_api::Finding;
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::map::areas;
 use super::robots::{by_world, robots};

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+use saoms_api::Finding;
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::looks::Looks;
 use super::map::{Area, Luggage, area, luggage, rows};

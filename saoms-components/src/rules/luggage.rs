@@ -1,6 +1,7 @@
 //! Luggage from or to a block where no robot can be.
 
-use saoms_api::{Code, ComponentView, Finding, FleetRule, FleetView, Severity};
+use saoms_api::Finding;
+use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 
 use super::looks::Looks;
 use super::map::{Area, Luggage, area, luggage, rows};

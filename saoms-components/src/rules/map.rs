@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::time::Duration;
 
-use saoms_api::{Finding, FleetView, Place};
+use saoms_api::rule::FleetView;
+use saoms_api::{Finding, Place};
 
 use crate::environment::{Drawn, Environment, Happening, Scenario, Spot, Written};
 use crate::grid::{Block, Map};

@@ -1,6 +1,7 @@
 //! Two robots of one number.
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
 
 use super::robots::{Known, robots, sharing};
 

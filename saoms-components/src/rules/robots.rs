@@ -3,7 +3,8 @@
 use std::ops::Deref;
 use std::rc::Rc;
 
-use saoms_api::{Fact, FleetView, Place};
+use saoms_api::Place;
+use saoms_api::rule::{Fact, FleetView};
 
 use crate::grid::Block;
 use crate::messages::ROBOT_LIST;

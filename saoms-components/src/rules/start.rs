@@ -1,6 +1,7 @@
 //! Two robots on one block at the start.
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+use saoms_api::Finding;
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::robots::{robots, sharing};
 use crate::world::World;

@@ -3,7 +3,8 @@
 use std::cell::LazyCell;
 use std::collections::HashMap;
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity, nearest};
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
+use saoms_api::{Finding, Place};
 
 use super::looks::Looks;
 use super::robots::{Known, may_be_others, robots};

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
 
 use super::robots::{Known, may_be_others, publishes_beside_robots, robots};
 use crate::environment::{Environment, Happening, Scenario};

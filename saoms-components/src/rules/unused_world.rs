@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Place, Severity};
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
 
 use super::map::{Area, areas};
 use super::robots::{Known, by_world, may_be_others, robots};

@@ -6,11 +6,11 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::host::Host;
-use saoms_api::{
-    CallError, Cause, Chance, Class, Context, DynComponent, Failure, Invocation, Level, LoopRegistration,
-    NamedLoops, Phase, PropertyValue, Record, Registration, ReportValue, ServiceCall, SharedMessage, SmolStr,
-    Time, TopicDeclaration, TopicKind, Work,
+use saoms_api::host::{
+    DynComponent, Invocation, LoopRegistration, NamedLoops, Phase, PropertyValue, Registration, ServiceCall,
+    SharedMessage, SmolStr, TopicDeclaration, TopicKind,
 };
+use saoms_api::{CallError, Cause, Chance, Class, Context, Failure, Level, Record, ReportValue, Time, Work};
 
 /// A fleet in virtual time.
 pub(crate) struct Fleet {

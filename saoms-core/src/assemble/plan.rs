@@ -1,6 +1,6 @@
 use std::collections::HashMap;
 
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 
 use super::Members;
 use super::order::providers_first;

@@ -1,7 +1,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Failure, Properties, PropertyValue, Registration};
+use saoms_api::host::{PropertyValue, Registration};
+use saoms_api::{Class, Component, Failure, Properties};
 
 use super::{Difference, Plan, members};
 use saoms_lang::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};

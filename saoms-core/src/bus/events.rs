@@ -1,6 +1,6 @@
 use std::collections::VecDeque;
 
-use saoms_api::SharedMessage;
+use saoms_api::host::SharedMessage;
 
 /// What an event topic holds: each message once, until the slowest reader has it, and where each reader stands.
 ///

@@ -1,8 +1,8 @@
 //! Topics inside one process: typed, shared not copied, delivered without waiting.
 //!
 //! Publishing puts a message into its topic once, however many readers there are; a reader collects what is new to it when its own
-//! execution starts. A [state topic](saoms_api::TopicKind::State) keeps the newest message of each publisher and key, so that a reader that comes later
-//! gets the present state, and one that comes seldom gets each key once. An [event topic](saoms_api::TopicKind::Event) keeps each message until
+//! execution starts. A [state topic](saoms_api::host::TopicKind::State) keeps the newest message of each publisher and key, so that a reader that comes later
+//! gets the present state, and one that comes seldom gets each key once. An [event topic](saoms_api::host::TopicKind::Event) keeps each message until
 //! every reader has it; a reader that falls behind by more than its queue loses the oldest, and is told how many.
 //!
 //! A [`Bus`] has no lock of its own: it belongs to one scheduler, which delivers in batches. It knows neither clock nor components.
@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
-use saoms_api::{SharedMessage, TopicDeclaration};
+use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 use topic::{Reader, Topic};
 

@@ -1,6 +1,6 @@
 use std::collections::HashMap;
 
-use saoms_api::SharedMessage;
+use saoms_api::host::SharedMessage;
 
 use super::hash::KeyHashing;
 

@@ -2,7 +2,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use saoms_api::{Cause, Header, Message, SharedMessage, Time, Topic};
+use saoms_api::host::SharedMessage;
+use saoms_api::{Cause, Header, Message, Time, Topic};
 
 use super::{Bus, Subscription};
 
@@ -218,10 +219,11 @@ fn schemas_that_say_the_same_agree_however_they_are_written() {
     let mut bus = Bus::default();
     bus.publisher("T", &EVENT.declaration(), &who()).unwrap();
     let by_hand = r#"{ "fields": [ { "type": "uint32", "name": "value" } ], "name": "Plain" }"#;
-    let declared = saoms_api::TopicDeclaration { schema: by_hand, ..EVENT.declaration() };
+    let declared = saoms_api::host::TopicDeclaration { schema: by_hand, ..EVENT.declaration() };
     assert!(bus.subscribe("T", &declared, &who(), 1).is_ok());
     let other = by_hand.replace("uint32", "int32");
     assert!(
-        bus.subscribe("T", &saoms_api::TopicDeclaration { schema: &other, ..declared }, &who(), 1).is_err()
+        bus.subscribe("T", &saoms_api::host::TopicDeclaration { schema: &other, ..declared }, &who(), 1)
+            .is_err()
     );
 }

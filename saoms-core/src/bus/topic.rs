@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use saoms_api::{SharedMessage, TopicDeclaration, TopicKind};
+use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
 
 use super::Mismatch;
 use super::events::EventLog;

@@ -1,4 +1,5 @@
-use saoms_api::{Cause, Phase, Record, Time, Value};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Record, Time, Value};
 
 /// The place of what a component wrote outside its loops.
 pub(crate) const OUTSIDE: u16 = u16::MAX;

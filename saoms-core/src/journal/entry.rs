@@ -1,7 +1,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use saoms_api::{Cause, Phase, Record, Time};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Record, Time};
 use serde_json::{Map, Value};
 
 /// A record of the journal: what a component saw, decided or did.

@@ -1,4 +1,5 @@
-use saoms_api::{Phase, Record, Value};
+use saoms_api::host::Phase;
+use saoms_api::{Record, Value};
 
 use crate::hash::fold;
 

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use saoms_api::{Cause, Phase, Time};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Time};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};

@@ -1,6 +1,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use saoms_api::{Cause, Phase, Record, Value};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Record, Value};
 
 use super::batch::{Batch, Note, OUTSIDE};
 use super::fingerprint::fingerprint;

@@ -1,7 +1,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use saoms_api::Phase;
+use saoms_api::host::Phase;
 
 use super::batch::{Batch, Head, OUTSIDE};
 use super::recorder::{Notice, Recorder};

@@ -1,7 +1,8 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use saoms_api::{Phase, Time};
+use saoms_api::Time;
+use saoms_api::host::Phase;
 
 use super::Entry;
 

@@ -1,6 +1,7 @@
 use std::sync::atomic::AtomicU64;
 
-use saoms_api::{Cause, Phase, Time, Value, record};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Time, Value, record};
 
 use super::recorder::{Recorder, Stamp};
 use super::{Journal, ReadError, read};

@@ -1,7 +1,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use saoms_api::{Cause, Phase, Time};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Time};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 

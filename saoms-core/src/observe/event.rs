@@ -2,7 +2,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{Level, SharedMessage, Time};
+use saoms_api::host::SharedMessage;
+use saoms_api::{Level, Time};
 
 /// Something that happened in a fleet.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,7 +112,7 @@ impl fmt::Display for Occurrence {
                 write!(
                     formatter,
                     "failed and is restarted in {}: {message}",
-                    saoms_api::format_duration(*pause)
+                    saoms_api::host::format_duration(*pause)
                 )
             }
             Occurrence::Restarted { number } => write!(formatter, "restarted ({number})"),
@@ -124,7 +125,7 @@ impl fmt::Display for Occurrence {
             Occurrence::Slow { budget } => write!(
                 formatter,
                 "an execution takes longer than {}: it runs on a thread of its own from now on, less punctually",
-                saoms_api::format_duration(*budget)
+                saoms_api::host::format_duration(*budget)
             ),
             Occurrence::Dropped { topic, count } => {
                 write!(formatter, "lost {count} messages of topic `{topic}`, whose queue was full")

@@ -2,7 +2,8 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{Failure, Level, Time, TopicDeclaration};
+use saoms_api::host::TopicDeclaration;
+use saoms_api::{Failure, Level, Time};
 
 use super::{Event, Occurrence, Progress, Sent};
 use crate::journal::{Entry, Named};

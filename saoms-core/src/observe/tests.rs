@@ -3,7 +3,8 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
-use saoms_api::{Cause, Failure, Level, Phase, Time, record};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Failure, Level, Time, record};
 
 use super::{
     Beginning, Event, EventQueue, Interest, JournalFile, Observer, Observers, Occurrence, Progress, Records,

@@ -2,7 +2,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use saoms_abi::VERSION;
-use saoms_api::{Code, Severity};
+use saoms_api::rule::{Code, Severity};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};
 use serde_json::value::RawValue;

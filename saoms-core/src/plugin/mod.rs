@@ -14,7 +14,9 @@ mod search;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use saoms_api::{DynComponent, DynLoop, Failure, Finding, FleetView, PropertyValue};
+use saoms_api::host::{DynComponent, DynLoop, PropertyValue};
+use saoms_api::rule::FleetView;
+use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
 pub use boundary::{ImportedClass, ImportedLoopClass, ImportedRule};

@@ -1,14 +1,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use saoms_api::{CallError, Cause, Chance, Context, DynComponent, Failure, Invocation, SharedMessage, Work};
+use saoms_api::host::{DynComponent, Invocation, SharedMessage};
+use saoms_api::{CallError, Cause, Chance, Context, Failure, Work};
 
 use super::host::ComponentHost;
 use super::shared::Shared;
 use crate::bus::{Subscription, TopicId};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
-use saoms_api::contain::contained;
+use saoms_api::host::contain::contained;
 use saoms_lang::assembly::ComponentSpec;
 use saoms_lang::schema::Schema;
 

@@ -1,7 +1,8 @@
 use std::sync::Arc;
 
 use saoms_api::host::TARGET_SHIFT;
-use saoms_api::{CallError, Failure, Invocation, ServiceCall, cdr};
+use saoms_api::host::{Invocation, ServiceCall, cdr};
+use saoms_api::{CallError, Failure};
 
 use super::body::{Body, Job, Part};
 use super::engine::Engine;

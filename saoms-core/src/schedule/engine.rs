@@ -2,7 +2,8 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use saoms_api::{Chance, Failure, SharedMessage, Time, Work};
+use saoms_api::host::SharedMessage;
+use saoms_api::{Chance, Failure, Time, Work};
 
 use super::body::{Body, Job, Part};
 use super::ending::Cause;

@@ -23,7 +23,7 @@ use super::takeover::Takeover;
 use crate::journal::Named;
 use crate::observe::{Beginning, Observer, Progress, Told, tell_records};
 use crate::report::RunReport;
-use saoms_api::contain;
+use saoms_api::host::contain;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 
 /// A fleet that runs.

@@ -2,11 +2,9 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
-use saoms_api::{
-    CallError, Cause, Chance, DynLoop, Failure, Level, NamedLoops, Phase, Record, ReportValue, ServiceCall,
-    SharedMessage, Time, TopicDeclaration, Value, Work,
-};
+use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
 
 use super::body::Part;
 use super::inject::{OUTSIDE, OUTSIDE_NAME};

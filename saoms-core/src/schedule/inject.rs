@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-use saoms_api::{Cause, Header, SharedMessage, Time, nearest};
+use saoms_api::host::SharedMessage;
+use saoms_api::rule::nearest;
+use saoms_api::{Cause, Header, Time};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
@@ -40,7 +42,7 @@ pub struct Injection {
 pub enum Content {
     /// Its fields, as JSON.
     Fields(Value),
-    /// Its CDR form (see [`saoms_api::cdr`]).
+    /// Its CDR form (see [`saoms_api::host::cdr`]).
     Bytes(Vec<u8>),
 }
 

@@ -1,7 +1,8 @@
 use std::sync::Arc;
 
-use saoms_api::contain::contained;
-use saoms_api::{DynComponent, Failure, Saved};
+use saoms_api::host::DynComponent;
+use saoms_api::host::contain::contained;
+use saoms_api::{Failure, Saved};
 use saoms_lang::assembly::ComponentSpec;
 
 use super::body::{Body, Part};

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::queue::Queue;
 use super::slot::Apart;
 use super::sys::{self, Gate};
-use saoms_api::contain::{contained, install_hook};
+use saoms_api::host::contain::{contained, install_hook};
 
 #[test]
 fn a_component_comes_back_after_it_behaved_and_has_to_behave_longer_each_time() {

@@ -1,4 +1,4 @@
-use saoms_api::SharedMessage;
+use saoms_api::host::SharedMessage;
 
 use crate::hash::fold;
 use crate::journal::Head;

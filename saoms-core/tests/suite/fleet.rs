@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use saoms_api::{PropertyValue, Registration, parse_duration};
+use saoms_api::host::{PropertyValue, Registration, parse_duration};
 use saoms_core::observe::{Event, Interest, Observer, Occurrence};
 use saoms_core::report::{ComponentReport, RunReport};
 use saoms_core::schedule::{Fleet, Settings, StartError};

@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, Mutex};
 
-use saoms_api::{Time, cdr};
+use saoms_api::Time;
+use saoms_api::host::cdr;
 use saoms_core::observe::{Observer, Sent};
 use saoms_core::report::Status;
 use saoms_core::schedule::{Content, Fleet, Handle, InjectError, Injection, Settings};
@@ -97,7 +98,7 @@ fn a_state_topic_keeps_messages_from_outside_under_their_keys() {
 struct Reader(Mutex<Vec<String>>);
 
 impl Observer for Reader {
-    fn wants_topic(&self, _: &str, _: &saoms_api::TopicDeclaration<'_>) -> bool {
+    fn wants_topic(&self, _: &str, _: &saoms_api::host::TopicDeclaration<'_>) -> bool {
         true
     }
 

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::sync::{Arc, Mutex};
 
-use saoms_api::{Message, TopicDeclaration};
+use saoms_api::Message;
+use saoms_api::host::TopicDeclaration;
 use saoms_core::observe::{Event, Observer, Occurrence, Sent};
 use saoms_core::schedule::{Fleet, Settings};
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::HashSet;
 
-use saoms_api::{PropertyValue, format_duration};
+use saoms_api::host::{PropertyValue, format_duration};
 use smol_str::SmolStr;
 
 use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};

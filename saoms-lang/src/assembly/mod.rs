@@ -9,7 +9,8 @@ mod traffic;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{PropertyField, PropertyValue};
+use saoms_api::PropertyField;
+use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 pub use expanded::expanded;

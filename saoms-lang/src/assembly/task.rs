@@ -3,7 +3,8 @@
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use saoms_api::{Failure, Properties, PropertyField, PropertyValue};
+use saoms_api::host::PropertyValue;
+use saoms_api::{Failure, Properties, PropertyField};
 use smol_str::SmolStr;
 
 use super::{Loss, Overrun, Restart, TaskSettings};

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
-use saoms_api::TopicKind;
+use saoms_api::host::TopicKind;
 
 use super::{Assembly, ComponentSpec};
 use crate::registry::TopicDeclaration;

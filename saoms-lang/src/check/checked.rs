@@ -1,6 +1,6 @@
 //! What the properties of a component come to.
 
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 use super::slots::{Slot, Slots};

@@ -5,8 +5,9 @@ use super::findings::{Subject, diagnostic};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::{LoopClass, PropertyDeclaration};
-use saoms_api::declaration::PropertyKind;
-use saoms_api::{Failure, Finding, PropertyValue, contain::contained};
+use saoms_api::host::declaration::PropertyKind;
+use saoms_api::host::{PropertyValue, contain::contained};
+use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
 /// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 
 use super::checked::Given;
 use super::classes::ClassIndex;

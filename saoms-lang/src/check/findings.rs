@@ -1,6 +1,7 @@
 //! What components and rules say about values, as diagnostics at the very places.
 
-use saoms_api::{Finding, Place, PropertyValue};
+use saoms_api::host::PropertyValue;
+use saoms_api::{Finding, Place};
 use smol_str::SmolStr;
 
 use super::checked::Elsewhere;

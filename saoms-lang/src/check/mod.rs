@@ -75,7 +75,7 @@ mod written;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 use crate::assembly::{Assembly, ComponentSpec, Target, Wire};
@@ -186,7 +186,7 @@ fn examine<T>(
     let promoted = promote::check(&fleet, &classes, report);
     let wiring = wires::check(&fleet, &classes, &promoted, report);
     let has_open_wires = misread || report.errors() > known;
-    saoms_api::contain::install_hook();
+    saoms_api::host::contain::install_hook();
     for (member, resolved) in fleet.members.iter().zip(&resolved) {
         report.about(member);
         if let (Kind::Class(class), Some(resolved)) = (member.kind, resolved) {

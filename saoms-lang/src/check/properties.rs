@@ -3,7 +3,7 @@
 use std::cell::LazyCell;
 use std::collections::HashMap;
 
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 
 use super::checked::{Checks, Elsewhere, Open};
 use super::described;

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::rc::Rc;
 
-use saoms_api::{ClassView, ComponentView, FleetView};
+use saoms_api::rule::{ClassView, ComponentView, FleetView};
 
 use super::Resolved;
 use super::classes::ClassIndex;

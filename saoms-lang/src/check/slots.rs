@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use saoms_api::PropertyValue;
-use saoms_api::declaration::{PlainBounds, PropertyKind};
+use saoms_api::host::PropertyValue;
+use saoms_api::host::declaration::{PlainBounds, PropertyKind};
 use smol_str::SmolStr;
 
 use crate::assembly::TaskProperties;

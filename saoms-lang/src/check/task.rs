@@ -4,7 +4,8 @@ use std::collections::HashSet;
 use std::rc::Rc;
 use std::time::Duration;
 
-use saoms_api::{PropertyField, PropertyValue};
+use saoms_api::PropertyField;
+use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 use super::checked::Checked;
@@ -297,7 +298,7 @@ fn combinations(
     if let Some(deadline) = settings.deadline
         && deadline > settings.period
     {
-        let shown = |duration| saoms_api::format_duration(duration);
+        let shown = |duration| saoms_api::host::format_duration(duration);
         let message = format!(
             "the deadline of {} is behind the period of {}: the next execution is due before it",
             shown(deadline),

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use saoms_api::TopicKind;
+use saoms_api::host::TopicKind;
 
 use super::classes::ClassIndex;
 use super::fleet::Member;

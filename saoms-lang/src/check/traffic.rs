@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
-use saoms_api::{TopicKind, format_duration};
+use saoms_api::host::{TopicKind, format_duration};
 
 use super::report::Report;
 use super::similar::{Name, Similar};

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fmt;
 
-use saoms_api::PropertyValue;
-use saoms_api::declaration::{PropertyKind, Scalar, parse_scalar};
+use saoms_api::host::PropertyValue;
+use saoms_api::host::declaration::{PropertyKind, Scalar, parse_scalar};
 use smol_str::SmolStr;
 
 use super::checked::Checked;
@@ -236,7 +236,7 @@ impl Canonical {
                 Err(_) => Self::Text(number.to_string().into()),
             },
             Scalar::Float(number) => Self::Text(number.to_string().into()),
-            Scalar::Duration(duration) => Self::Text(saoms_api::format_duration(duration).into()),
+            Scalar::Duration(duration) => Self::Text(saoms_api::host::format_duration(duration).into()),
             Scalar::Boolean(value) => Self::Text(value.to_string().into()),
             Scalar::Text(text) => Self::Text(text.into()),
         })

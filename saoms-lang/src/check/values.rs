@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 use std::fmt;
 
-use saoms_api::PropertyValue;
-use saoms_api::declaration::{PropertyKind, parse_scalar};
+use saoms_api::host::PropertyValue;
+use saoms_api::host::declaration::{PropertyKind, parse_scalar};
 use smol_str::SmolStr;
 
 use super::instance::{COUNTERS, Instance};

@@ -2,11 +2,11 @@
 //!
 //! A code never changes its meaning and is never used again. `S0` is files and XML, `S1` the SCA vocabulary, `S2`
 //! names and wiring, `S3` classes and properties, `S4` tasks, topics and loops. `S5` is what rules of crates of components find
-//! (see [`FleetRule`](saoms_api::FleetRule)); each of them declares its own code.
+//! (see [`FleetRule`](saoms_api::rule::FleetRule)); each of them declares its own code.
 
-use saoms_api::Severity::{Error, Note, Warning};
+use saoms_api::rule::Severity::{Error, Note, Warning};
 
-pub use saoms_api::Code;
+pub use saoms_api::rule::Code;
 
 macro_rules! codes {
     ($($constant:ident = $id:literal $severity:ident $name:literal $(($rule:literal))? : $meaning:literal;)*) => {

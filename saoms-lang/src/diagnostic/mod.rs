@@ -24,7 +24,8 @@ pub use human::{Human, human};
 pub use json::{Json, json};
 pub use level::{Level, SetBy};
 pub use quoted::quoted;
-pub use saoms_api::{Severity, nearest, nearest_equal, nearest_few};
+pub use saoms_api::host::{nearest_equal, nearest_few};
+pub use saoms_api::rule::{Severity, nearest};
 pub use sarif::{Sarif, sarif};
 
 use crate::source::Location;

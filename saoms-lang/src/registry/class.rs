@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::fmt;
 use std::path::Path;
 
-use saoms_api::{DynComponent, Failure, PropertyValue, Registration};
+use saoms_api::Failure;
+use saoms_api::host::{DynComponent, PropertyValue, Registration};
 use smol_str::SmolStr;
 
 use super::ClassDeclaration;
@@ -37,7 +38,7 @@ impl Class {
         &self.declaration
     }
 
-    /// The declaration as its author's build wrote it: a JSON object in the shape of [`saoms_api::declaration`].
+    /// The declaration as its author's build wrote it: a JSON object in the shape of [`saoms_api::host::declaration`].
     pub fn declaration_json(&self) -> &str {
         &self.text
     }

@@ -1,9 +1,10 @@
-//! What classes say about themselves, read from the text of their declarations (see [`saoms_api::declaration`]).
+//! What classes say about themselves, read from the text of their declarations (see [`saoms_api::host::declaration`]).
 
 use std::sync::LazyLock;
 
-use saoms_api::declaration::{PlainBounds, PropertyKind, Rule, Scalar};
-use saoms_api::{Interface, TaskInterface, TopicKind};
+use saoms_api::TaskInterface;
+use saoms_api::host::declaration::{PlainBounds, PropertyKind, Rule, Scalar};
+use saoms_api::host::{Interface, TopicKind};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 use serde_json::Value;

@@ -74,7 +74,8 @@ fn add<T: PartialEq>(own: &mut Vec<T>, inherited: Vec<T>, name: impl Fn(&T) -> &
 mod tests {
     use std::sync::Arc;
 
-    use saoms_api::{DynComponent, Failure, PropertyValue};
+    use saoms_api::Failure;
+    use saoms_api::host::{DynComponent, PropertyValue};
     use serde_json::{Value, json};
     use smol_str::SmolStr;
 

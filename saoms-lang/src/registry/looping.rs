@@ -1,11 +1,12 @@
-//! What loops and what they work on say about themselves, read from the text of declarations (see [`saoms_api::declaration`]).
+//! What loops and what they work on say about themselves, read from the text of declarations (see [`saoms_api::host::declaration`]).
 
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-use saoms_api::{DynLoop, Failure, LoopRegistration, PropertyValue};
+use saoms_api::Failure;
+use saoms_api::host::{DynLoop, LoopRegistration, PropertyValue};
 use serde::Deserialize;
 use serde_json::Value;
 use smol_str::SmolStr;
@@ -135,7 +136,7 @@ impl LoopClass {
         &self.declaration
     }
 
-    /// The declaration as its author's build wrote it: a JSON object in the shape of [`saoms_api::declaration`].
+    /// The declaration as its author's build wrote it: a JSON object in the shape of [`saoms_api::host::declaration`].
     pub fn declaration_json(&self) -> &str {
         &self.text
     }

@@ -20,7 +20,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use saoms_api::{Code, FleetRule, LoopRegistration, Registration};
+use saoms_api::host::{LoopRegistration, Registration};
+use saoms_api::rule::{Code, FleetRule};
 
 pub use class::{Class, Provider};
 pub use declaration::{
@@ -40,7 +41,8 @@ use near::{near, simple};
 /// Classes and loops by name.
 ///
 /// ```
-/// use saoms_api::{Class, Component, Failure, Registration};
+/// use saoms_api::host::Registration;
+/// use saoms_api::{Class, Component, Failure};
 /// use saoms_lang::registry::Registry;
 ///
 /// /// Stands around.

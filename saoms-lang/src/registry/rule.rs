@@ -2,8 +2,9 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-use saoms_api::contain::contained;
-use saoms_api::{Code, Failure, Finding, FleetRule, FleetView};
+use saoms_api::host::contain::contained;
+use saoms_api::rule::{Code, FleetRule, FleetView};
+use saoms_api::{Failure, Finding};
 
 /// A rule over whole fleets; see [`FleetRule`].
 #[derive(Clone, Debug)]

@@ -1,9 +1,8 @@
 use std::time::Duration;
 
-use saoms_api::declaration::PropertyKind;
-use saoms_api::{
-    Class, Component, DynLoop, Failure, Message, Properties, PropertyValue, Registration, Topic,
-};
+use saoms_api::host::declaration::PropertyKind;
+use saoms_api::host::{DynLoop, PropertyValue, Registration};
+use saoms_api::{Class, Component, Failure, Message, Properties, Topic};
 use serde_json::{Value, json};
 use smol_str::SmolStr;
 

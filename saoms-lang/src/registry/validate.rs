@@ -4,7 +4,7 @@
 
 use std::collections::HashSet;
 
-use saoms_api::declaration::PropertyKind;
+use saoms_api::host::declaration::PropertyKind;
 
 use super::{ClassDeclaration, EntryDeclaration, LoopDeclaration, PropertyDeclaration, simple};
 
@@ -88,7 +88,7 @@ fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {
                 .map_err(|message| format!("the default of property `{name}`: {message}"))?;
         }
         for bound in [&property.min, &property.max, &property.exclusive_max].into_iter().flatten() {
-            if saoms_api::declaration::parse_scalar(property.kind, bound).is_none() {
+            if saoms_api::host::declaration::parse_scalar(property.kind, bound).is_none() {
                 return Err(format!(
                     "the bound `{bound}` of property `{name}` is no {}",
                     property.kind.name()

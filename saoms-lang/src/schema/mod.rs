@@ -1,6 +1,6 @@
 //! Messages that this program knows by their schema alone: those of plugins and of other programs.
 //!
-//! A [`Schema`] is read from the text that a declaration carries (see [`saoms_api::declaration`]). It tells whether bytes are such a message
+//! A [`Schema`] is read from the text that a declaration carries (see [`saoms_api::host::declaration`]). It tells whether bytes are such a message
 //! ([`Schema::check`]), and turns them into JSON and back, for tools and people.
 
 mod json;
@@ -11,7 +11,7 @@ mod tests;
 
 use std::fmt;
 
-use saoms_api::cdr::{DecodeError, Reader};
+use saoms_api::host::cdr::{DecodeError, Reader};
 use serde::Deserialize;
 use serde_json::Value;
 

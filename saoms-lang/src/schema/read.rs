@@ -1,6 +1,6 @@
 //! Bytes of a message, looked at without knowing its Rust type.
 
-use saoms_api::cdr::{DecodeError, Reader};
+use saoms_api::host::cdr::{DecodeError, Reader};
 
 use super::{Number, Schema, Type};
 

@@ -1,5 +1,5 @@
 use saoms_api::Chance;
-use saoms_api::cdr::Writer;
+use saoms_api::host::cdr::Writer;
 
 use super::{Number, Schema, Type};
 

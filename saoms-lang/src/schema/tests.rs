@@ -1,5 +1,6 @@
 use proptest::prelude::*;
-use saoms_api::{Field, Message, cdr};
+use saoms_api::host::cdr;
+use saoms_api::{Field, Message};
 use serde_json::json;
 
 use super::Schema;

@@ -1,6 +1,6 @@
 //! What there is to draw.
 
-use saoms_api::TopicKind;
+use saoms_api::host::TopicKind;
 
 /// A composite as a picture shows it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 //!
 //! Each rule of a class is an assertion (XPath 2.0) over `component`, true for components of every other class.
 
-use saoms_api::declaration::PropertyKind;
-use saoms_api::parse_duration;
+use saoms_api::host::declaration::PropertyKind;
+use saoms_api::host::parse_duration;
 
 use super::node::{Documented, Node};
 use saoms_lang::assembly::TaskProperties;

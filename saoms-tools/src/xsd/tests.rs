@@ -1,7 +1,8 @@
 use std::collections::HashMap;
 
 use roxmltree::{Document, Node};
-use saoms_api::{Class, Component, Failure, Properties, PropertyField, Registration};
+use saoms_api::host::Registration;
+use saoms_api::{Class, Component, Failure, Properties, PropertyField};
 
 use super::*;
 use saoms_lang::assembly::TaskProperties;

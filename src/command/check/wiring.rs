@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::time::Duration;
 
-use saoms_api::format_duration;
+use saoms_api::host::format_duration;
 use saoms_lang::assembly::{Assembly, End, Topic, Traffic};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};

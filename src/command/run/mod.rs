@@ -46,7 +46,7 @@ pub(crate) struct RunArguments {
     pub(crate) format: Format,
 
     /// End the run after this time (a bare number is milliseconds; units us, ms, s, min, h)
-    #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) limit: Option<Duration>,
 
     /// Run in virtual time: the same fleet, deterministic, as fast as the machine goes
@@ -86,15 +86,15 @@ pub(crate) struct RunArguments {
     pub(crate) realtime: bool,
 
     /// How much later the kernel may wake the timer to save power; 1ns is the most punctual
-    #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) timer_slack: Duration,
 
     /// How long an execution may hold up the others before a spare thread takes over
-    #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) budget: Duration,
 
     /// How long a component may take to end before it is abandoned
-    #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) grace: Duration,
 }
 

@@ -1,8 +1,8 @@
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use saoms_api::TopicDeclaration;
 use saoms_api::extension::{PictureRegistration, RunPicture};
+use saoms_api::host::TopicDeclaration;
 use saoms_core::observe::{Interest, Observer, Sent};
 use saoms_core::report::RunReport;
 

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::fmt::Write;
 
-use saoms_api::{Cause, Phase, Time};
+use saoms_api::host::Phase;
+use saoms_api::{Cause, Time};
 use saoms_core::journal::{Chain, Document, Entry, Why};
 
 /// How many reasons are shown; of a longer chain, the first and the last ones.

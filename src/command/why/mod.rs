@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use saoms_api::{Time, format_duration};
+use saoms_api::Time;
+use saoms_api::host::format_duration;
 use saoms_core::journal::{Document, Named, ReadError, Why, read};
 use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
@@ -31,7 +32,7 @@ pub(crate) struct WhyArguments {
     pub(crate) component: String,
 
     /// Ask what it did last up to this time of the run, and not up to its end (a bare number is milliseconds; units us, ms, s, min, h)
-    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::parse_duration)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) at: Option<Duration>,
 
     /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input

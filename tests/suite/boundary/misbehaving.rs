@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use saoms_api::{PropertyValue, Saved};
+use saoms_api::Saved;
+use saoms_api::host::PropertyValue;
 use saoms_core::plugin::Plugin;
 use saoms_lang::registry::Registry;
 

@@ -2,8 +2,9 @@ use std::ops::Range;
 
 use saoms_abi::{Bytes, FindingSink, FindingView, LabelView, PlaceView, list};
 
-use crate::contain::contained;
-use crate::{Failure, Finding, Place, Severity};
+use crate::host::contain::contained;
+use crate::rule::Severity;
+use crate::{Failure, Finding, Place};
 
 /// Findings of the other side; one that cannot be read is kept as what is wrong with it.
 pub type Findings = Vec<Result<Finding, Failure>>;

@@ -1,6 +1,7 @@
 use saoms_abi::{Bytes, PropertyView};
 
-use crate::{Failure, PropertyValue, SmolStr};
+use crate::Failure;
+use crate::host::{PropertyValue, SmolStr};
 
 /// The views of property values. Those below the top are kept alive beside them.
 pub struct PropertyViews {

@@ -1,6 +1,7 @@
 use saoms_abi::{Bytes, TopicView};
 
-use crate::{Failure, TopicDeclaration, TopicKind};
+use crate::Failure;
+use crate::host::{TopicDeclaration, TopicKind};
 
 /// The view of a topic.
 pub(in crate::boundary) const fn topic_view(topic: &TopicDeclaration<'_>) -> TopicView {

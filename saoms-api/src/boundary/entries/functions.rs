@@ -5,8 +5,9 @@ use saoms_abi::{Bytes, EntriesFunctions, EntriesHandle, EntryView, Sink, Status,
 use crate::boundary::convert::{read_value, value_view};
 use crate::boundary::guard::{guarded, guarded_value};
 use crate::boundary::lease_cell::knowledge;
-use crate::contain::contained;
-use crate::{DynEntries, EntryDeclaration, Failure, Knowledge, Value};
+use crate::host::contain::contained;
+use crate::host::{DynEntries, EntryDeclaration};
+use crate::{Failure, Knowledge, Value};
 
 /// Gives entries away.
 pub(in crate::boundary) fn export_entries(entries: Box<dyn DynEntries>) -> EntriesHandle {

@@ -1,7 +1,8 @@
 use saoms_abi::EntriesHandle;
 
 use crate::adaptation::no_entry;
-use crate::{DynEntries, EntryDeclaration, Extras, Failure, Knowledge, Value};
+use crate::host::{DynEntries, EntryDeclaration};
+use crate::{Extras, Failure, Knowledge, Value};
 
 use super::remote::RemoteEntries;
 

@@ -4,7 +4,8 @@ use saoms_abi::{Bytes, EntriesFunctions, EntriesHandle, EntryView};
 
 use crate::boundary::convert::{read_value, value_view};
 use crate::boundary::lease::{call, call_for_bytes};
-use crate::{DynEntries, EntryDeclaration, Failure, Value};
+use crate::host::{DynEntries, EntryDeclaration};
+use crate::{Failure, Value};
 
 /// Entries of the other side. While they are lent, the handle is that of the present call.
 pub(in crate::boundary) struct RemoteEntries {

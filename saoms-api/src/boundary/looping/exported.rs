@@ -10,8 +10,9 @@ use crate::boundary::context_state::ContextState;
 use crate::boundary::convert::read_properties;
 use crate::boundary::entries::{RemoteKnowledge, export_entries};
 use crate::boundary::guard::{guarded, guarded_construct, guarded_value};
-use crate::contain::contained;
-use crate::{Context, DynLoop, Failure, Knowledge, LoopClass, LoopRegistration, Snapshot};
+use crate::host::contain::contained;
+use crate::host::{DynLoop, LoopRegistration, Snapshot};
+use crate::{Context, Failure, Knowledge, LoopClass};
 
 /// The table of a loop class.
 pub const fn loop_class_table<L: LoopClass>() -> LoopClassTable {

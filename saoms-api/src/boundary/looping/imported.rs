@@ -6,7 +6,8 @@ use saoms_abi::{EntriesHandle, LoopTable, Step};
 
 use crate::boundary::entries::{OwnedRemoteEntries, RemoteEntries};
 use crate::boundary::lease::Lease;
-use crate::{Context, DynEntries, DynLoop, Failure, Knowledge, Snapshot};
+use crate::host::{DynEntries, DynLoop, Snapshot};
+use crate::{Context, Failure, Knowledge};
 
 /// Takes over a loop of the other side.
 ///

@@ -1,8 +1,9 @@
 //! Loops over a knowledge: what they reach, what they may change, what is told of it.
 
+use saoms_api::host::{KnowledgeClass, LoopRegistration, Registration};
 use saoms_api::{
-    Class, Component, Context, Effector, Entries, Entry, Extras, Failure, Field, Knowledge, KnowledgeClass,
-    Loop, LoopClass, LoopRegistration, Loops, Properties, PropertyField, Record, Registration, Value, record,
+    Class, Component, Context, Effector, Entries, Entry, Extras, Failure, Field, Knowledge, Loop, LoopClass,
+    Loops, Properties, PropertyField, Record, Value, record,
 };
 
 use super::host::FakeHost;
@@ -319,7 +320,7 @@ fn entries_are_reached_by_name_and_by_place() {
     knowledge.set_value(2, true.into()).unwrap();
     knowledge.set_value(5, Value::Word("LOW_BEAM")).unwrap();
     assert!(!peers.changed(knowledge));
-    knowledge.set_to_bytes(6, &saoms_api::cdr::encode(&vec![9_u16])).unwrap();
+    knowledge.set_to_bytes(6, &saoms_api::host::cdr::encode(&vec![9_u16])).unwrap();
     assert!(peers.changed(knowledge));
     assert!(!peers.changed(knowledge));
     assert_eq!(next.get(knowledge).unwrap(), Some(Block { x: 2, y: 3 }));

@@ -1,12 +1,15 @@
 //! What a component or a loop does behind the boundary to plugins is what it does without one.
 
 use saoms_api::boundary::{class_table, loop_class_table, rule_table};
+use saoms_api::host::{
+    DynComponent, DynLoop, Invocation, LoopRegistration, PropertyValue, Registration, SharedMessage, SmolStr,
+    TypedCall,
+};
+use saoms_api::rule::{ClassView, Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{
-    CallError, Cause, Class, ClassView, Code, Component, ComponentView, Context, DynComponent, DynLoop,
-    Effector, Entries, Entry, Extras, Failure, Field, Finding, FleetRule, FleetView, Header, Invocation,
-    Knowledge, Level, Loop, LoopClass, LoopRegistration, Loops, Message, Place, Properties, PropertyValue,
-    Publisher, Record, Registration, ReportValue, Severity, SharedMessage, SmolStr, Subscription, Time,
-    Topic, TypedCall, Work, interface, record,
+    CallError, Cause, Class, Component, Context, Effector, Entries, Entry, Extras, Failure, Field, Finding,
+    Header, Knowledge, Level, Loop, LoopClass, Loops, Message, Place, Properties, Publisher, Record,
+    ReportValue, Subscription, Time, Topic, Work, interface, record,
 };
 use saoms_core::plugin::{ImportedClass, ImportedLoopClass, ImportedRule};
 

@@ -1,6 +1,5 @@
-use saoms_api::{
-    CallError, Class, Component, Context, Failure, Field, Reference, Registration, TypedCall, interface,
-};
+use saoms_api::host::{Reference, Registration, TypedCall};
+use saoms_api::{CallError, Class, Component, Context, Failure, Field, interface};
 
 use super::host::{Boundary, FakeHost};
 

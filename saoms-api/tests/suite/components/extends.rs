@@ -1,9 +1,7 @@
 //! A component that wraps another one, and property structs within others.
 
-use saoms_api::{
-    CallError, Class, Component, Context, Failure, Invocation, Message, Properties, PropertyValue, Topic,
-    TypedCall, interface,
-};
+use saoms_api::host::{Invocation, PropertyValue, TypedCall};
+use saoms_api::{CallError, Class, Component, Context, Failure, Message, Properties, Topic, interface};
 
 use super::host::FakeHost;
 

@@ -5,11 +5,11 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::host::Host;
-use saoms_api::{
-    CallError, Cause, Chance, Context, DynComponent, Failure, Invocation, Level, LoopRegistration,
-    NamedLoops, Operation, Phase, Record, ReportValue, ServiceCall, SharedMessage, Time, TopicDeclaration,
-    Value, Work,
+use saoms_api::host::{
+    DynComponent, Invocation, LoopRegistration, NamedLoops, Operation, Phase, ServiceCall, SharedMessage,
+    TopicDeclaration,
 };
+use saoms_api::{CallError, Cause, Chance, Context, Failure, Level, Record, ReportValue, Time, Value, Work};
 
 /// How calls reach the provider.
 #[derive(Clone, Copy, PartialEq)]

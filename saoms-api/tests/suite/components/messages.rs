@@ -1,6 +1,7 @@
+use saoms_api::host::{Registration, SharedMessage, cdr};
 use saoms_api::{
-    Cause, Class, Component, Context, Failure, Header, Message, Publisher, Registration, ReportValue,
-    SharedMessage, Subscription, Time, Topic, Work, cdr,
+    Cause, Class, Component, Context, Failure, Header, Message, Publisher, ReportValue, Subscription, Time,
+    Topic, Work,
 };
 
 use super::host::FakeHost;

@@ -1,6 +1,7 @@
 use std::time::Duration;
 
-use saoms_api::{nearest, parse_duration};
+use saoms_api::host::parse_duration;
+use saoms_api::rule::nearest;
 
 use super::draw::Drawn;
 use super::words::Words;

@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use saoms_api::nearest;
+use saoms_api::rule::nearest;
 
 use crate::text::{TextFault, bytes};
 

@@ -9,7 +9,8 @@
 
 use std::time::Duration;
 
-use saoms_api::{Finding, Severity};
+use saoms_api::Finding;
+use saoms_api::rule::Severity;
 
 use super::Range;
 use super::reach::Ways;

@@ -8,7 +8,8 @@ mod reach;
 
 use std::time::Duration;
 
-use saoms_api::{Code, Finding, FleetRule, FleetView, Severity};
+use saoms_api::Finding;
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::map::{Area, area, luggage};
 use super::robots::{Known, may_be_others, robots};

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use saoms_api::{Finding, Severity};
+use saoms_api::Finding;
+use saoms_api::rule::Severity;
 
 use super::Range;
 use crate::environment::Spot;

@@ -3,7 +3,8 @@ use std::ptr;
 
 use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
 use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_findings};
-use saoms_api::{CallError, Context, DynComponent, Failure, Invocation, PropertyValue, Saved, SmolStr};
+use saoms_api::host::{DynComponent, Invocation, PropertyValue, SmolStr};
+use saoms_api::{CallError, Context, Failure, Saved};
 
 /// A class of the other side.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 use saoms_abi::{Construct, LoopClassTable, LoopTable};
+use saoms_api::Failure;
 use saoms_api::boundary::import_loop;
-use saoms_api::{DynLoop, Failure, PropertyValue, SmolStr};
+use saoms_api::host::{DynLoop, PropertyValue, SmolStr};
 
 use super::component::construct;
 

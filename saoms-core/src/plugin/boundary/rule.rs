@@ -1,6 +1,7 @@
 use saoms_abi::{Bytes, FleetList, MemberView, RuleTable, TextList, WireView};
 use saoms_api::boundary::{PropertyViews, call_with_findings};
-use saoms_api::{Failure, Finding, FleetView};
+use saoms_api::rule::FleetView;
+use saoms_api::{Failure, Finding};
 
 /// A rule of the other side.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use saoms_api::{Level, format_duration};
+use saoms_api::Level;
+use saoms_api::host::format_duration;
 
 use super::super::ending::Cause;
 use super::super::engine::{Engine, Phase};

@@ -1,8 +1,9 @@
 //! Components and loops that pass luggage on to each other, and leave records.
 
+use saoms_api::host::{DynLoop, Registration};
 use saoms_api::{
-    Class, Component, Context, DynLoop, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
-    Properties, Publisher, Record, Registration, Subscription, Topic, record,
+    Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
+    Publisher, Record, Subscription, Topic, record,
 };
 use saoms_lang::assembly::Assembly;
 use saoms_lang::registry::Registry;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 
 use super::{Planned, order};
 use crate::check::checked::Checked;

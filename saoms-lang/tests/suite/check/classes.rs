@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
+use saoms_api::host::Registration;
 use saoms_api::{
-    Class, Component, Context, Failure, Finding, Message, Place, Properties, PropertyField, Registration,
-    TaskInterface, Topic, interface,
+    Class, Component, Context, Failure, Finding, Message, Place, Properties, PropertyField, TaskInterface,
+    Topic, interface,
 };
 use saoms_lang::registry::Registry;
 

@@ -1,8 +1,9 @@
 //! A class with loops, and loops that fit it or not.
 
+use saoms_api::host::{LoopRegistration, Registration};
 use saoms_api::{
-    Class, Component, Context, Entries, Extras, Failure, Finding, Knowledge, Loop, LoopClass,
-    LoopRegistration, Place, Properties, PropertyField, Record, Registration, Topic,
+    Class, Component, Context, Entries, Extras, Failure, Finding, Knowledge, Loop, LoopClass, Place,
+    Properties, PropertyField, Record, Topic,
 };
 use saoms_lang::registry::Registry;
 

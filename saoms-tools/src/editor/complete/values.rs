@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use saoms_api::declaration::PropertyKind;
 use saoms_api::extension::DURATION_UNITS;
+use saoms_api::host::declaration::PropertyKind;
 use saoms_lang::registry::PropertyDeclaration;
 
 use super::{Completion, language, names, topics, value};

@@ -1,6 +1,6 @@
 //! The loops of a component, as far as they can be known.
 
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 use saoms_lang::registry::{Class, LoopClass};
 
 use super::Scene;

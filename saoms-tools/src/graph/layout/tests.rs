@@ -1,7 +1,7 @@
 //! Pictures that can be read, of whatever there is to draw.
 
 use proptest::prelude::*;
-use saoms_api::TopicKind;
+use saoms_api::host::TopicKind;
 
 use super::measure::{CHEVRON, CHIP_HEIGHT, LABEL, NAME_SIZE, SMALL_SIZE};
 use super::{Layout, LineKind, Point, Rect, layout};

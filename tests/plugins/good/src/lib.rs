@@ -1,9 +1,7 @@
 //! Does all as it should.
 
-use saoms_api::{
-    Class, Code, Component, Context, Failure, Finding, FleetRule, FleetView, Message, Place, Properties,
-    Publisher, Severity, Subscription, Topic, interface,
-};
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Class, Component, Context, Failure, Finding, Message, Place, Properties, Publisher, Subscription, Topic, interface};
 
 /// What a sender measures.
 #[derive(Clone, Debug, Message)]

@@ -8,7 +8,7 @@ use saoms_abi::{
     Bytes, ClassTable, ComponentTable, FindingSink, HostHandle, PluginTable, PropertyView, RecordView,
     ReportView, Sink, Status, TopicView, ValueView,
 };
-use saoms_api::declaration::Text;
+use saoms_api::host::declaration::Text;
 use saoms_api::{Class, Component, Context, Failure, Message, Properties, Topic, interface};
 
 /// A message.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use saoms_api::declaration::PropertyKind;
+use saoms_api::host::declaration::PropertyKind;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::load::vocabulary::{COMPONENT, LOOP};
 use saoms_lang::registry::{Class, PropertyDeclaration};

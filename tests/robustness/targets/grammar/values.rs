@@ -1,6 +1,6 @@
 //! Values of attributes and of properties, most of them right.
 
-use saoms_api::declaration::PropertyKind;
+use saoms_api::host::declaration::PropertyKind;
 use saoms_lang::diagnostic::{Level, codes};
 use saoms_lang::load::vocabulary::Holds;
 use saoms_lang::registry::{PropertyDeclaration, Registry};

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use expect_test::expect;
-use saoms_api::PropertyValue;
+use saoms_api::host::PropertyValue;
 use saoms_lang::assembly::Assembly;
 use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::Diagnostics;

@@ -15,7 +15,8 @@
 //! Bytes from outside are not trusted: [`decode`] checks every length before it allocates, and refuses bytes that are left over.
 //!
 //! ```
-//! use saoms_api::{Message, cdr};
+//! use saoms_api::host::cdr;
+//! use saoms_api::Message;
 //!
 //! #[derive(Clone, Debug, PartialEq, Message)]
 //! struct Position {

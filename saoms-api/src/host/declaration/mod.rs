@@ -93,7 +93,7 @@
 //! | `{"enumeration": "uint8", "values": {"LANDING": 0}}` | an integer with named constants |
 //! | `{"name", "fields"}` | a nested message |
 //!
-//! Schemas carry no docs, so that equal text means equal encoding: see [`crate::cdr`].
+//! Schemas carry no docs, so that equal text means equal encoding: see [`crate::host::cdr`].
 //!
 //! # An interface
 //! `{"name", "operations": [{"name", "arguments": [{"name", "type"}], "reply": type}]}`; the reply is `null` where there is none. The number of

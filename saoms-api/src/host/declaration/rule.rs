@@ -1,7 +1,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::parse_duration;
+use crate::host::parse_duration;
 use crate::time::read_duration;
 
 /// The type of a property, as declarations name it.
@@ -77,7 +77,7 @@ pub enum Scalar {
 /// What one scalar property accepts, as its declaration says. The checker and the component read values through it, so they agree.
 ///
 /// ```
-/// use saoms_api::declaration::{PropertyKind, Rule, Scalar};
+/// use saoms_api::host::declaration::{PropertyKind, Rule, Scalar};
 ///
 /// let rule = Rule { min: Some("1"), max: Some("99"), unit: Some("%"), ..Rule::of(PropertyKind::Integer) };
 /// assert_eq!(rule.check("35"), Ok(Scalar::Integer(35)));
@@ -211,7 +211,7 @@ impl<'a> Rule<'a> {
 /// read again for each value.
 ///
 /// ```
-/// use saoms_api::declaration::{PlainBounds, PropertyKind, Rule};
+/// use saoms_api::host::declaration::{PlainBounds, PropertyKind, Rule};
 ///
 /// const RULE: Rule<'static> = Rule { min: Some("1"), max: Some("99"), ..Rule::of(PropertyKind::Integer) };
 /// const BOUNDS: Option<PlainBounds> = PlainBounds::of(&RULE);

@@ -1,20 +1,41 @@
-//! The contract with hosts of components: the scheduler, the testkit, the checker. Not for authors.
+//! The contract with hosts of components: the scheduler, the checker, the testkit, the code that the macros generate. Not
+//! for authors of components.
+
+pub mod cdr;
+pub mod contain;
+pub mod declaration;
 
 use std::fmt;
 use std::time::Duration;
 
-use crate::{
-    CallError, Cause, Chance, DynLoop, Failure, Level, NamedLoops, Phase, PropertyValue, Record, ReportValue,
-    ServiceCall, SharedMessage, SmolStr, Time, TopicDeclaration, Value, Work,
+pub use crate::adaptation::{
+    DynEntries, DynLoop, EntryDeclaration, KnowledgeClass, LoopRegistration, NamedLoops, Phase, Snapshot,
+    Subject,
 };
+pub use crate::component::DynComponent;
+pub use crate::field::Arguments;
+pub use crate::message::SharedMessage;
+pub use crate::nearest::{nearest_equal, nearest_few};
+pub use crate::property::PropertyValue;
+pub use crate::registration::Registration;
+pub use crate::service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
+pub use crate::time::{format_duration, parse_duration};
+pub use crate::topic::{TopicDeclaration, TopicKind};
 
-/// Where in a handle of a reference the number of the target is; below it is the place of the reference in its class.
+/// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
+pub use smol_str::SmolStr;
+
+use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
+
+/// The lowest bit of the number of a target in the handle of a reference; the bits below are the place of the reference
+/// in its class.
 pub const TARGET_SHIFT: u32 = 16;
 
-/// Sees the loops of a component: name, class and values of each.
+/// A function that sees the loops of a component: name, class and values of each.
 pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(SmolStr, PropertyValue)]) + 'a;
 
-/// What a host gives to a component: the scheduler in a run, a stand-in in a test, a function table behind a plugin's boundary.
+/// The world of a component behind its context: the scheduler in a run, a stand-in in a test, a table of functions behind
+/// the boundary to a plugin.
 /// Component authors use [`Context`](crate::Context).
 pub trait Host {
     /// See [`Context::name`].

@@ -1,7 +1,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Arguments, Message};
+use crate::Message;
+use crate::host::Arguments;
 
 #[derive(Clone, Debug, PartialEq, Message)]
 struct Everything {
