@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-/// What describes a fleet.
+/// Options that describe a fleet.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct FleetArguments {
     /// Composite files, `-` for standard input; several form one fleet. A folder is a contribution: `check` looks at all of it, others
@@ -28,14 +28,14 @@ pub(crate) struct FleetArguments {
     pub(crate) max_size: u64,
 }
 
-/// Where classes come from that are not linked into this program.
+/// Options that name plugins: the classes that are not linked into this program.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct PluginArguments {
     /// Use the classes of this plugin, or of all plugins in this folder; may be repeated
     #[arg(long = "plugin", value_name = "PATH")]
     pub(crate) plugins: Vec<PathBuf>,
 
-    /// Whether copies of libraries are loaded, because they may change.
+    /// True if copies of libraries are loaded, because they may change.
     #[arg(skip)]
     pub(crate) copies: bool,
 }

@@ -5,12 +5,12 @@ use std::io::{self, BufWriter, Write};
 
 use serde::Serialize;
 
-/// Writes what can be shown to standard output, piece by piece.
+/// Writes a value to standard output, piece by piece.
 pub(crate) fn print(shown: &(impl Display + ?Sized)) {
     let _ = try_print(shown);
 }
 
-/// The same. A reader that went away (`saoms components | head`) is not an error.
+/// [`print`] with the result of writing. A reader that went away (`saoms components | head`) is not an error.
 pub(crate) fn try_print(shown: &(impl Display + ?Sized)) -> io::Result<()> {
     let mut output = BufWriter::new(io::stdout().lock());
     unless_closed(write!(output, "{shown}").and_then(|()| output.flush()))
@@ -33,7 +33,7 @@ fn write_json(to: impl Write, value: &impl Serialize) {
     let _ = written.and_then(|()| output.write_all(b"\n")).and_then(|()| output.flush());
 }
 
-/// What came of writing, where it is no fault that nobody reads on.
+/// The result of writing, where a reader that went away is no error.
 pub(crate) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
@@ -41,7 +41,7 @@ pub(crate) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Writes what can be shown to standard error, piece by piece.
+/// Writes a value to standard error, piece by piece.
 pub(crate) fn eprint(shown: &(impl Display + ?Sized)) {
     let mut output = BufWriter::new(io::stderr().lock());
     let _ = write!(output, "{shown}").and_then(|()| output.flush());

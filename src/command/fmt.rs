@@ -85,7 +85,7 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     }
 }
 
-/// What came of a file.
+/// The outcome for a file.
 enum Outcome {
     /// It is, or was, formatted.
     Formatted,
@@ -131,7 +131,7 @@ fn well_formed(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -
     }
 }
 
-/// Whether what is shown is this text, found without keeping it.
+/// True if the value is displayed as this text, found without keeping it.
 fn is_same(shown: &impl Display, text: &str) -> bool {
     struct Rest<'t>(&'t str);
     impl fmt::Write for Rest<'_> {

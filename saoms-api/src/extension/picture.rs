@@ -4,12 +4,12 @@ use crate::host::{SharedMessage, TopicDeclaration};
 
 /// A picture of a run, drawn from the messages of the fleet.
 pub trait RunPicture: Send {
-    /// True if the picture shows the messages of a topic, which its publishers declare so and call `name` after renaming. Asked before
-    /// the first message of the topic.
+    /// True if the picture shows the messages of a topic, which its publishers declare so and call `name` after
+    /// renaming. Asked before the first message of the topic.
     fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool;
 
-    /// Takes in a message that a component sent on such a topic; `component` is the path of the component. The messages of a run come in
-    /// the order in which they were sent.
+    /// Takes in a message that a component sent on such a topic; `component` is the path of the component. The messages
+    /// of a run come in the order in which they were sent.
     fn message(&mut self, topic: &str, component: &Arc<str>, message: &SharedMessage);
 
     /// The picture as an SVG document, under a title and a line that tells how the run ended.

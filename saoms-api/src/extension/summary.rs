@@ -8,7 +8,8 @@ pub struct RunSummary {
     pub result: fn(&Counts<'_>) -> Option<String>,
     /// The progress of a run that goes on; `None` where the counts say nothing.
     pub progress: fn(&Counts<'_>) -> Option<String>,
-    /// The components that say when the work is done, as advice to who runs a fleet without any: `a world and a scenario`.
+    /// The components that say when the work is done, as advice to who runs a fleet without any: `a world and a
+    /// scenario`.
     pub voters: &'static str,
 }
 

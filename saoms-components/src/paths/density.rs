@@ -1,4 +1,4 @@
-//! How often blocks were entered, where there are too many paths to tell them apart.
+//! The picture of too many paths to tell them apart: blocks shaded by how often they were entered.
 
 use super::frame::Frame;
 use super::palette::SHADES;

@@ -13,7 +13,8 @@ pub(super) struct Area {
 }
 
 impl Area {
-    /// The world's map or, without a world, all blocks from (0,0) on that somebody was on or spoke of. `None` where that is none.
+    /// The world's map or, without a world, all blocks from (0,0) on that somebody was on or spoke of. `None` where
+    /// that is none.
     pub(super) fn of(recording: &Recording) -> Option<Area> {
         if let Some(map) = &recording.map {
             return Some(Area { left: 0, top: 0, width: map.width(), height: map.height() });
@@ -31,7 +32,7 @@ impl Area {
         Some(Area { left, top, width, height })
     }
 
-    /// How many blocks its longer side has.
+    /// The number of blocks of its longer side.
     pub(super) fn longest(&self) -> f64 {
         f64::from(self.width.max(self.height))
     }
@@ -48,7 +49,7 @@ pub(super) struct Frame {
     pub(super) area: Area,
     /// The side of a block.
     pub(super) cell: f64,
-    /// Where the area begins.
+    /// The upper left corner of the area.
     pub(super) left: f64,
     pub(super) top: f64,
 }
@@ -126,7 +127,7 @@ impl Frame {
         svg.close();
     }
 
-    /// Which columns or rows get a number: every one, or every 2, 5, 10 ... where the blocks are small.
+    /// The columns or rows that get a number: every one, or every 2, 5, 10 ... where the blocks are small.
     fn numbers(&self, first: i32, end: i64) -> impl Iterator<Item = f64> + use<> {
         let room = 12.0 + 7.0 * (end.to_string().len() as f64);
         let steps = (0..6).flat_map(|power| [1, 2, 5].map(|step| step * 10_i64.pow(power)));

@@ -3,7 +3,7 @@
 use super::palette::Look;
 use super::svg::{Svg, escaped, number};
 
-/// What happened to a robot.
+/// An incident of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Incident {
     Collision,
@@ -108,7 +108,7 @@ pub(super) fn incident(svg: &mut Svg, x: f64, y: f64, size: f64, incident: Incid
     svg.close();
 }
 
-/// How wide the label with a robot's number is.
+/// The width of the label with a robot's number.
 pub(super) fn tag_width(text: &str) -> f64 {
     6.6 * text.chars().count() as f64 + 7.0
 }

@@ -1,7 +1,8 @@
-//! Which legs run side by side, and in which order.
+//! The lanes of legs: the legs that run side by side, and their order.
 //!
-//! All legs of a row or a column share its width. Legs that have a block in common get lanes of their own, by colouring intervals greedily,
-//! which needs no more lanes than legs meet in one block. A turn joins two lanes at a right angle, so that no path runs over another.
+//! All legs of a row or a column share its width. Legs that have a block in common get lanes of their own, by colouring
+//! intervals greedily, which needs no more lanes than legs meet in one block. A turn joins two lanes at a right angle,
+//! so that no path runs over another.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +11,7 @@ use super::path::Leg;
 /// More lanes than a block can show.
 const MOST: usize = 40;
 
-/// What shares a lane.
+/// The passes that share a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sharing {
     /// Nothing: each pass has its own.
@@ -21,7 +22,7 @@ pub(super) enum Sharing {
     Robot,
 }
 
-/// Where in its row or column each leg runs.
+/// The place of each leg in its row or column.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lanes {
     /// For each robot and each of its legs, how many lanes right or below of the middle it is.
@@ -123,7 +124,7 @@ fn colour(strips: &mut [Strip]) -> Option<()> {
     Some(())
 }
 
-/// How many lanes there are at each strip, and at those that it touches, and so on.
+/// The number of lanes at each strip, and at those that it touches, and so on.
 fn widths(strips: &[Strip]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..strips.len()).collect();
     order.sort_by_key(|place| strips[*place].first);

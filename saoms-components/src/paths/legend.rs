@@ -1,4 +1,4 @@
-//! What the signs and colours mean, and what each robot did.
+//! The legend: the meaning of signs and colours, and the deeds of each robot.
 
 use super::glyphs::{self, Incident};
 use super::lines::dashes;
@@ -16,7 +16,7 @@ pub(super) const DEEDS: usize = 34;
 pub(super) enum Entry {
     /// A robot with its line, and what it did.
     Robot { look: Look, number: String, name: String, deeds: String },
-    /// The same where there are no lines.
+    /// A robot in a picture without lines.
     Plain { name: String, deeds: String },
     /// A sign and its meaning.
     Sign { sign: Sign, text: String },
@@ -133,7 +133,7 @@ pub(super) struct Group {
     pub(super) entries: Vec<Entry>,
 }
 
-/// How high groups are in so many columns.
+/// The height of groups in so many columns.
 pub(super) fn height(groups: &[Group], columns: usize) -> f64 {
     draw(&mut Svg::default(), groups, 0.0, 0.0, columns)
 }

@@ -11,7 +11,7 @@ use super::svg::{Svg, number};
 /// A point on the paper.
 type Point = (f64, f64);
 
-/// How far from a turn the line begins to bend.
+/// The distance from a turn at which the line begins to bend.
 const BEND: f64 = 6.0;
 
 /// Arrows stand so many blocks apart.
@@ -25,7 +25,7 @@ pub(super) struct Lines<'a> {
     pub(super) spacing: f64,
 }
 
-/// Where a path begins and ends on the paper.
+/// The begin and the end of a path on the paper.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends {
     pub(super) start: Point,
@@ -103,7 +103,8 @@ impl Lines<'_> {
         runs
     }
 
-    /// Where a leg in this lane meets the block at one of its ends: in the middle, or in the lane of the leg that it turns into.
+    /// The point at which a leg in this lane meets the block at one of its ends: in the middle, or in the lane of the
+    /// leg that it turns into.
     fn end_of(&self, leg: &Leg, offset: f64, block: crate::grid::Block, turn: Option<f64>) -> Point {
         let (x, y) = self.frame.middle(block);
         let (own, other) = (offset * self.spacing, turn.unwrap_or(0.0) * self.spacing);

@@ -1,4 +1,4 @@
-//! What is drawn in blocks besides paths: chargers, luggage, the robots' numbers, and what went wrong.
+//! Marks in blocks, beside paths: chargers, luggage, the robots' numbers, and incidents.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ use super::svg::{Svg, number};
 /// Blocks at least that long have room for numbers.
 pub(super) const NUMBERED: f64 = 44.0;
 
-/// How far marks stay from the edge of their block.
+/// The distance of marks from the edge of their block.
 const INSET: f64 = 3.0;
 
 /// A robot's number where it starts, or ends.
@@ -151,7 +151,7 @@ impl Marks<'_> {
         }
     }
 
-    /// What went wrong, and where.
+    /// The number of incidents, by block and kind.
     pub(super) fn incidents(&self) -> BTreeMap<(Block, Incident), u32> {
         let mut found = BTreeMap::new();
         let mut add = |block: Block, incident: Incident, count: u32| {

@@ -1,4 +1,4 @@
-//! What the legend of a picture has to say: the robots, and the signs that occur.
+//! The content of a picture's legend: the robots, and the signs that occur.
 
 use super::density::Shades;
 use super::glyphs::Incident;
@@ -32,7 +32,7 @@ pub(super) fn of(
     groups
 }
 
-/// What a robot did, in few words.
+/// The deeds of a robot, in a few words.
 pub(super) fn deeds(robot: &Robot, path: &Path) -> String {
     let blocks = counted(usize::try_from(path.moves).unwrap_or(usize::MAX), "block");
     let delivered = &robot.delivered;

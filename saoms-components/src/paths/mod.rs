@@ -1,8 +1,8 @@
 //! The picture of the robots' paths: `saoms run --paths`.
 //!
-//! The messages of robots and world are recorded while the fleet runs ([`recording`]), and drawn at its end. A robot's path is a line of its
-//! own colour, every pass beside the others. Where robots pass each other too often for that, the passes of one robot share a line; beyond
-//! that, blocks are shaded by how often they were entered.
+//! The messages of robots and world are recorded while the fleet runs ([`recording`]), and drawn at its end. A robot's
+//! path is a line of its own colour, every pass beside the others. Where robots pass each other too often for that, the
+//! passes of one robot share a line; beyond that, blocks are shaded by how often they were entered.
 
 mod density;
 mod frame;

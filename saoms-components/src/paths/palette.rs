@@ -1,4 +1,4 @@
-/// How a robot's path looks.
+/// The look of a robot's path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     pub(super) colour: &'static str,
@@ -8,8 +8,8 @@ pub(super) struct Look {
     pub(super) dash: &'static [f64],
 }
 
-/// Colours that people with any kind of colour vision tell apart, without yellow, which is faint on white: M. Okabe and K. Ito, "Color
-/// Universal Design" (2008).
+/// Colours that people with any kind of colour vision tell apart, without yellow, which is faint on white: M. Okabe and
+/// K. Ito, "Color Universal Design" (2008).
 const COLOURS: [(&str, &str); 7] = [
     ("#0072b2", "#fff"),
     ("#d55e00", "#fff"),
@@ -22,7 +22,7 @@ const COLOURS: [(&str, &str); 7] = [
 
 const DASHES: [&[f64]; 4] = [&[], &[4.0, 2.0], &[1.4, 1.6], &[7.0, 1.6, 1.4, 1.6]];
 
-/// How many looks there are. More robots than that cannot be told apart as lines.
+/// The number of looks. More robots than that cannot be told apart as lines.
 pub(super) const LOOKS: usize = COLOURS.len() * DASHES.len();
 
 /// The look of the robot that comes at this place, from 0.
@@ -31,8 +31,8 @@ pub(super) fn look(place: usize) -> Look {
     Look { colour, on_colour, dash: DASHES[place / COLOURS.len() % DASHES.len()] }
 }
 
-/// Shades for how often a block was entered, from seldom to often: ColorBrewer's YlGnBu, which prints well and is safe for any colour
-/// vision (C. Brewer and M. Harrower, 2003).
+/// Shades for how often a block was entered, from seldom to often: ColorBrewer's YlGnBu, which prints well and is safe
+/// for any colour vision (C. Brewer and M. Harrower, 2003).
 pub(super) const SHADES: [&str; 6] = ["#edf8b1", "#c7e9b4", "#7fcdbb", "#41b6c4", "#2c7fb8", "#253494"];
 
 #[cfg(test)]

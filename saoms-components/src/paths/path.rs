@@ -10,7 +10,7 @@ pub(super) struct Robot {
     pub(super) path: Option<Path>,
     pub(super) charger: Option<Block>,
     pub(super) delivered: Pieces,
-    /// Whether it said last that its battery is empty.
+    /// True if its last message said that its battery is empty.
     pub(super) empty: bool,
 }
 
@@ -26,7 +26,7 @@ impl Robot {
     }
 }
 
-/// Where a robot was, straight leg by straight leg.
+/// The path of a robot, straight leg by straight leg.
 #[derive(Clone, Debug)]
 pub(super) struct Path {
     pub(super) start: Block,
@@ -46,12 +46,12 @@ pub(super) struct Leg {
 }
 
 impl Leg {
-    /// Whether it leads along a row.
+    /// True if it leads along a row.
     pub(super) fn is_level(&self) -> bool {
         self.from.y == self.to.y
     }
 
-    /// Whether its column or row counts up.
+    /// True if its column or row counts up.
     pub(super) fn is_forward(&self) -> bool {
         (self.from.x, self.from.y) <= (self.to.x, self.to.y)
     }
@@ -102,7 +102,7 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// How many numbers are kept.
+    /// The most numbers that are kept.
     const KEPT: usize = 8;
 
     pub(super) fn add(&mut self, luggage: u32) {

@@ -30,7 +30,7 @@ const SHORT: f64 = 420.0;
 const STYLE: &str = "text { font-family: system-ui, Helvetica, Arial, sans-serif } \
                      .robots:hover .robot:not(:hover) { opacity: 0.15 }";
 
-/// How paths are shown.
+/// The style in which paths are shown.
 pub(super) enum Style {
     Lines { lanes: Lanes, spacing: f64, sharing: Sharing },
     Density,
@@ -39,7 +39,7 @@ pub(super) enum Style {
 /// A robot that said where it is: its number, what is known of it, its path.
 pub(super) type Moved<'a> = (u32, &'a Robot, &'a Path);
 
-/// Draws what was recorded, under a title and a line on how the run ended.
+/// Draws a recording, under a title and a line that tells how the run ended.
 pub(super) fn draw(recording: &Recording, title: &str, outcome: &str) -> String {
     let all = recording.robots.iter();
     let robots: Vec<Moved<'_>> =
@@ -84,7 +84,8 @@ pub(super) fn draw(recording: &Recording, title: &str, outcome: &str) -> String 
     svg.finish(right + MARGIN, bottom.max(top + height) + MARGIN, title)
 }
 
-/// Each pass has its own line where there is room for that; otherwise passes share lines, and in the end there are none.
+/// Each pass has its own line where there is room for that; otherwise passes share lines, and in the end there are
+/// none.
 fn choose(recording: &Recording, robots: &[Moved<'_>], area: &Area) -> (Style, f64) {
     let widest = LONGEST / area.longest();
     let legs: Vec<&[Leg]> = robots.iter().map(|(.., path)| path.legs.as_slice()).collect();

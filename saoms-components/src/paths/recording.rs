@@ -14,8 +14,8 @@ use saoms_api::host::{SharedMessage, TopicDeclaration};
 /// More legs than anybody could tell apart: beyond this number, only how often each block was entered is kept.
 const LEGS: usize = 20_000;
 
-/// The messages of a run, as far as the picture shows them. A recording grows with the area and the number of robots, not with the length
-/// of the run.
+/// The messages of a run, as far as the picture shows them. A recording grows with the area and the number of robots,
+/// not with the length of the run.
 #[derive(Debug, Default)]
 pub(super) struct Recording {
     topics: HashMap<String, Content>,
@@ -26,13 +26,13 @@ pub(super) struct Recording {
     pub(super) collected: BTreeMap<Block, Pieces>,
     pub(super) delivered: BTreeMap<Block, Pieces>,
     pub(super) collisions: BTreeMap<Block, u32>,
-    /// Where robots broke down.
+    /// Breakdowns by the block of the robot.
     pub(super) breakdowns: BTreeMap<Block, u32>,
     pub(super) visits: BTreeMap<Block, Visits>,
     legs: usize,
 }
 
-/// How often a block was entered, and how much more often rightwards and downwards than the other way.
+/// The number of times a block was entered, and the surplus of rightward and downward moves over those the other way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Visits {
     pub(super) count: u64,

@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write};
 
-/// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from outside goes through
-/// [`escaped`].
+/// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from
+/// outside goes through [`escaped`].
 #[derive(Default)]
 pub(super) struct Svg {
     text: String,
@@ -68,8 +68,8 @@ impl Svg {
     }
 }
 
-/// A text as it can stand inside an element, and in an attribute within quotation marks. Tabs and line ends are written by their numbers;
-/// a character that XML cannot write becomes U+FFFD.
+/// A text as it can stand inside an element, and in an attribute within quotation marks. Tabs and line ends are written
+/// by their numbers; a character that XML cannot write becomes U+FFFD.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {

@@ -97,7 +97,7 @@ fn tell<T>(
     if outcome.count(Severity::Error) == 0 { Exit::Done } else { Exit::WrongInput }
 }
 
-/// What the log of `--format sarif` has besides.
+/// Additional properties in the log of `--format sarif`.
 #[derive(Serialize)]
 struct Properties<'a> {
     wiring: Wired<'a>,

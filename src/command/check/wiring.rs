@@ -32,7 +32,8 @@ fn groups<'a>(ends: &[End], assembly: &'a Assembly) -> Vec<Group<'a>> {
     all
 }
 
-/// The report about a fleet: text for people, and data for machines. It is made while it is written, as it can be larger than the fleet.
+/// The report about a fleet: text for people, and data for machines. It is made while it is written, as it can be
+/// larger than the fleet.
 pub(crate) struct Wiring<'a>(pub(crate) &'a Assembly);
 
 impl fmt::Display for Wiring<'_> {

@@ -174,7 +174,7 @@ fn described(class: &Class) -> String {
     text
 }
 
-/// What the class's name presets for the property.
+/// The value that the class's name presets for the property.
 fn preset<'a>(class: &'a Class, property: &str) -> Option<&'a str> {
     let declaration = class.declaration();
     let alias = declaration.also.iter().find(|alias| alias.name == class.name())?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::PluginKind;
 
-/// What a plugin is called in the places where names differ.
+/// The names of a plugin, as package, library and class.
 pub(super) struct Names {
     /// `my-robot`, the package.
     pub(super) package: String,
@@ -63,7 +63,7 @@ impl Names {
     }
 }
 
-/// Where the crates of SAOMS come from, as the end of a dependency: `path = "..."` and the like.
+/// The origin of the crates of SAOMS, as the end of a dependency: `path = "..."` and the like.
 pub(super) enum Source {
     /// The checkout that this program was built in.
     Checkout(PathBuf),

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::RunArguments;
 use crate::output::{counted, eprint, try_print};
 
-/// True if the files can be written, asked before a run that may last for days. What they hold stays until there is something new. Where one
-/// cannot, that has been told.
+/// True if the files can be written, asked before a run that may last for days. What they hold stays until there is
+/// something new. Where one cannot, that has been told.
 pub(super) fn are_writable(arguments: &RunArguments) -> bool {
     let files = [
         ("report", "--report", &arguments.report),
@@ -50,7 +50,8 @@ pub(super) fn are_writable(arguments: &RunArguments) -> bool {
     problems.is_empty()
 }
 
-/// Whether a file can be written, without a trace of the question: what is there stays as it is, and nothing else is there afterwards.
+/// Tries whether a file can be written, without a trace: a file that exists stays as it is, and no other one exists
+/// afterwards.
 fn try_open(path: &Path) -> io::Result<()> {
     if path == Path::new("-") {
         return Ok(());

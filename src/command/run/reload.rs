@@ -18,13 +18,13 @@ use crate::arguments::FleetArguments;
 use crate::fleet::checked;
 use crate::output::eprint;
 
-/// How often the files are looked at. A file is taken when it is the same twice.
+/// The time between two looks at the files. A file is loaded when two looks in a row find it unchanged.
 const LOOK: Duration = Duration::from_millis(300);
 
-/// When a component that could not be replaced is asked again.
+/// The time after which a component that could not be replaced is asked again.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// What a file is known by: its number, its size, and when it was written.
+/// The identity of a file's content: inode, size, and time of its last change.
 type Stamp = (u64, u64, i64, i64);
 
 /// Watches the libraries of a fleet until it is dropped.
@@ -45,7 +45,7 @@ struct Watcher {
 
 struct Known {
     loaded: Option<Stamp>,
-    /// What the file was at the last look.
+    /// The file at the last look.
     seen: Option<Stamp>,
 }
 
@@ -74,7 +74,7 @@ impl Reload {
     }
 }
 
-/// What there is to watch of an assembly.
+/// The parts of an assembly that are watched.
 pub(crate) struct Watched {
     components: Vec<String>,
     files: Vec<PathBuf>,

@@ -8,10 +8,10 @@ use saoms_core::report::{ComponentReport, RunReport, Status};
 
 use crate::output::counted;
 
-/// How many components the table shows; the report file has all.
+/// Components that the table shows at most; the report file has all.
 const ROWS: usize = 24;
 
-/// How the run ended, what was done, and a line per component.
+/// The report in a few lines: the outcome of the run, and a line per component.
 pub(crate) fn summary(report: &RunReport) -> String {
     let mut text = format!("\n{}\n", outcome(report));
     for reason in &report.outcome.reasons {
@@ -27,7 +27,7 @@ pub(crate) fn summary(report: &RunReport) -> String {
     text
 }
 
-/// How the run ended and what was done, in one line.
+/// The outcome of the run and its results, in one line.
 pub(crate) fn outcome(report: &RunReport) -> String {
     let how = match report.outcome.status {
         Status::Done => "done",
@@ -44,7 +44,7 @@ pub(crate) fn outcome(report: &RunReport) -> String {
     text
 }
 
-/// What of the journal is not there; mostly nothing.
+/// The records missing in the journal; usually none.
 fn journal(journal: &Journal) -> String {
     let mut text = String::new();
     if journal.overwritten > 0 {
@@ -61,7 +61,7 @@ fn journal(journal: &Journal) -> String {
     text
 }
 
-/// What the table has no column for, because it is rare: a line for each component that had trouble.
+/// Rare counts, for which the table has no column: a line for each component that had trouble.
 fn troubles(components: &[ComponentReport]) -> String {
     let told = components.iter().filter_map(|one| {
         let counts = [

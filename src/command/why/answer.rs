@@ -7,12 +7,12 @@ use saoms_api::host::Phase;
 use saoms_api::{Cause, Time};
 use saoms_core::journal::{Chain, Document, Entry, Why};
 
-/// How many reasons are shown; of a longer chain, the first and the last ones.
+/// Reasons that are shown at most; of a longer chain, the first and the last ones.
 const SHOWN: usize = 40;
-/// How many of the last ones.
+/// The last ones among them.
 const LAST: usize = 8;
 
-/// What was done, what led to it, and what was known.
+/// The answer: actions, the reasons for them, and the knowledge at that time.
 pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, document: &Document) -> String {
     let Some(time) = why.time else { return nothing(component, asked, document) };
     let mut text = match asked.filter(|asked| *asked != time) {
@@ -66,7 +66,8 @@ struct Row<'a> {
     text: String,
 }
 
-/// How much of a chain is shown: up to the first record, that one included, which an earlier one goes through as well.
+/// The number of reasons of a chain that are shown: up to the first record, that one included, which an earlier chain
+/// goes through as well.
 fn shown_anew(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> usize {
     let told: HashSet<Cause> = earlier
         .iter()

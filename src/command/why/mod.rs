@@ -94,7 +94,7 @@ fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
     Ok(Answer { text, lost })
 }
 
-/// What to do about records that are not there.
+/// Advice about records that are missing.
 fn advice(document: &Document) -> String {
     if document.is_report {
         "A report holds the newest records of each component: run with `--journal FILE` to keep all of them"
