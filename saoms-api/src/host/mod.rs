@@ -38,7 +38,7 @@ pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(SmolStr, PropertyValue)]) + 'a
 /// the boundary to a plugin.
 /// Component authors use [`Context`](crate::Context).
 pub trait Host {
-    /// See [`Context::name`].
+    /// See [`Context::name`](crate::Context::name).
     fn name(&self) -> &str;
     /// The index that stands for this component in [`Header::sender`](crate::Header::sender).
     fn sender(&self) -> u32;
@@ -47,41 +47,41 @@ pub trait Host {
         let _ = sender;
         None
     }
-    /// See [`Context::now`].
+    /// See [`Context::now`](crate::Context::now).
     fn now(&self) -> Time;
-    /// See [`Context::date`].
+    /// See [`Context::date`](crate::Context::date).
     fn date(&self) -> Option<Duration>;
-    /// See [`Context::due`].
+    /// See [`Context::due`](crate::Context::due).
     fn due(&self) -> Time;
-    /// See [`Context::execution`].
+    /// See [`Context::execution`](crate::Context::execution).
     fn execution(&self) -> u64;
-    /// See [`Context::period`].
+    /// See [`Context::period`](crate::Context::period).
     fn period(&self) -> Duration;
-    /// See [`Context::cancelled`].
+    /// See [`Context::cancelled`](crate::Context::cancelled).
     fn cancelled(&self) -> bool;
-    /// See [`Context::chance`].
+    /// See [`Context::chance`](crate::Context::chance).
     fn chance(&mut self) -> &mut Chance;
-    /// See [`Context::publish`].
+    /// See [`Context::publish`](crate::Context::publish).
     ///
     /// # Errors
     /// As there.
     fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure>;
-    /// See [`Context::subscribe`]. The index is the place of the subscription's inbox in the context.
+    /// See [`Context::subscribe`](crate::Context::subscribe). The index is the place of the subscription's inbox in the context.
     ///
     /// # Errors
     /// As there.
     fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure>;
-    /// See [`Context::send`].
+    /// See [`Context::send`](crate::Context::send).
     ///
     /// # Errors
     /// As there.
     fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure>;
-    /// See [`Context::reference`].
+    /// See [`Context::reference`](crate::Context::reference).
     ///
     /// # Errors
     /// As there.
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure>;
-    /// See [`Context::is_wired`].
+    /// See [`Context::is_wired`](crate::Context::is_wired).
     fn is_wired(&self, reference: u32) -> bool;
     /// How many targets a reference has. The handle of one of them is that of the reference with the number of the target, from 0,
     /// in the bits from [`TARGET_SHIFT`] on.
@@ -93,7 +93,7 @@ pub trait Host {
     /// # Errors
     /// As [`CallError`] says.
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
-    /// Constructs the component's loops. See [`Context::loops`].
+    /// Constructs the component's loops. See [`Context::loops`](crate::Context::loops).
     ///
     /// # Errors
     /// As there.
@@ -115,9 +115,9 @@ pub trait Host {
     }
     /// The loop at this place acts from now on, or none.
     fn enter_loop(&mut self, place: Option<u32>);
-    /// See [`Context::because`].
+    /// See [`Context::because`](crate::Context::because).
     fn because(&mut self, cause: Cause);
-    /// See [`Context::cause`].
+    /// See [`Context::cause`](crate::Context::cause).
     fn cause(&self) -> Cause;
     /// Writes to the journal what the present loop saw, decided or did.
     fn journal(&mut self, phase: Phase, record: &Record);
@@ -127,14 +127,14 @@ pub trait Host {
     }
     /// Whether somebody reads the log at this level, or without one the classic console.
     fn listens(&self, level: Option<Level>) -> bool;
-    /// See [`Context::log`].
+    /// See [`Context::log`](crate::Context::log).
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>);
-    /// See [`Context::console`].
+    /// See [`Context::console`](crate::Context::console).
     fn console(&mut self, line: fmt::Arguments<'_>);
-    /// See [`Context::report`].
+    /// See [`Context::report`](crate::Context::report).
     fn report(&mut self, path: &str, value: ReportValue);
-    /// See [`Context::count`].
+    /// See [`Context::count`](crate::Context::count).
     fn count(&mut self, path: &str, more: i64);
-    /// See [`Context::vote`].
+    /// See [`Context::vote`](crate::Context::vote).
     fn vote(&mut self, work: Work);
 }
