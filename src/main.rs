@@ -6,7 +6,6 @@
 mod arguments;
 mod command;
 mod fleet;
-mod folder;
 mod lsp;
 mod output;
 mod plugins;

@@ -4,7 +4,8 @@ use std::env;
 use std::path::PathBuf;
 
 use saoms_core::plugin::Search;
-use saoms_lang::registry::{Registry, RegistryError};
+use saoms_lang::project::{ClassPath, Classes, Problem};
+use saoms_lang::registry::Registry;
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
@@ -13,28 +14,54 @@ use crate::output::eprint;
 /// The variable with folders of plugins, separated by colons.
 const SEARCH_PATH: &str = "SAOMS_PLUGIN_PATH";
 
-/// Something that is wrong with a plugin.
-#[derive(Clone, Debug)]
-pub(crate) struct Problem {
-    /// Whether somebody named the plugin, or it contradicts another one; others are only left out.
-    pub(crate) is_error: bool,
-    pub(crate) text: String,
+/// The classes of a command. Plugins are looked for where the command line says, in the folders of `SAOMS_PLUGIN_PATH`, beside each composite,
+/// and in a folder `plugins` beside it or in the current folder.
+pub(crate) struct CommandClasses<'a> {
+    arguments: &'a PluginArguments,
+    linked: Registry,
 }
 
-/// The registry of a command over these composites. Plugins are looked for where the command line says, in the folders of
-/// `SAOMS_PLUGIN_PATH`, beside each composite, and in a folder `plugins` beside it or in the current folder.
+impl<'a> CommandClasses<'a> {
+    /// The classes linked in, with plugins as the arguments say.
+    ///
+    /// # Errors
+    /// The linked classes contradict each other, which is a fault of this build and not of the user: it was told.
+    pub(crate) fn new(arguments: &'a PluginArguments) -> Result<Self, Exit> {
+        match Registry::linked() {
+            Ok(linked) => Ok(Self { arguments, linked }),
+            Err(error) => {
+                eprint(&format!("error: {error}\n"));
+                Err(Exit::Failed)
+            }
+        }
+    }
+}
+
+impl ClassPath for CommandClasses<'_> {
+    fn classes(&self, files: &[PathBuf]) -> Classes {
+        search(self.arguments, files).classes(self.linked.clone())
+    }
+}
+
+/// The registry of a command without composites.
 ///
-/// What is wrong is told here; then the exit code is that for wrong input.
-pub(crate) fn registry(arguments: &PluginArguments, files: &[PathBuf]) -> Result<Registry, Exit> {
-    let (registry, problems) = collect(&search(arguments, files)).map_err(|error| {
-        // A fault of this build, not of the user: no composite could be checked.
-        eprint(&format!("error: {error}\n"));
-        Exit::Failed
-    })?;
-    for Problem { is_error, text } in &problems {
+/// # Errors
+/// A plugin cannot be used, which was told.
+pub(crate) fn registry(arguments: &PluginArguments) -> Result<Registry, Exit> {
+    let Classes { registry, problems, .. } = CommandClasses::new(arguments)?.classes(&[]);
+    usable(&problems)?;
+    Ok(registry)
+}
+
+/// Tells what is wrong with plugins.
+///
+/// # Errors
+/// One of them cannot be used.
+pub(crate) fn usable(problems: &[Problem]) -> Result<(), Exit> {
+    for Problem { is_error, text } in problems {
         eprint(&format!("{}: {text}\n", if *is_error { "error" } else { "warning" }));
     }
-    if problems.iter().any(|one| one.is_error) { Err(Exit::WrongInput) } else { Ok(registry) }
+    if problems.iter().any(|one| one.is_error) { Err(Exit::WrongInput) } else { Ok(()) }
 }
 
 /// Where plugins are looked for.
@@ -50,26 +77,4 @@ pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     }
     folders.push("plugins".into());
     Search { named: arguments.plugins.clone(), folders, copies: arguments.copies }
-}
-
-/// The classes linked in and those of the plugins that a search finds, with all that is wrong.
-///
-/// # Errors
-/// What is linked in does not fit together.
-pub(crate) fn collect(search: &Search) -> Result<(Registry, Vec<Problem>), RegistryError> {
-    let mut registry = Registry::linked()?;
-    let found = search.run();
-    let left_out = found.left_out.iter().map(|error| Problem { is_error: false, text: error.to_string() });
-    let mut problems: Vec<Problem> = left_out.collect();
-    problems.extend(found.errors.iter().map(|error| Problem { is_error: true, text: error.to_string() }));
-    for plugin in &found.plugins {
-        if let Err(error) = plugin.register(&mut registry) {
-            let text = match error {
-                RegistryError::NameTaken { .. } => error.to_string(),
-                _ => format!("plugin `{}`: {error}", plugin.path().display()),
-            };
-            problems.push(Problem { is_error: true, text });
-        }
-    }
-    Ok((registry, problems))
 }

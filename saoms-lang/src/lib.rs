@@ -8,6 +8,7 @@ pub mod diagnostic;
 pub mod expression;
 pub mod load;
 pub mod model;
+pub mod project;
 pub mod registry;
 pub mod schema;
 pub mod source;

@@ -4,16 +4,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_core::observe::Observer;
-use saoms_core::plugin::{Search, open_named};
+use saoms_core::plugin::Search;
 use saoms_core::report::RunReport;
 use saoms_core::schedule::Settings;
-use saoms_lang::assembly::Assembly;
-use saoms_lang::check::{Options, Setting, SeveritySetting, Variable, check};
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics, human};
-use saoms_lang::load::{MAX_SIZE, load_file, load_named, read, read_values};
-use saoms_lang::model::Contribution;
+use saoms_lang::project::{ClassPath, Classes, Compilation, Project};
 use saoms_lang::registry::Registry;
-use saoms_lang::source::{FileId, SourceFile, Sources};
+use saoms_lang::source::{FileId, SourceFile};
 
 use crate::expected::{Checked, Found};
 use crate::run::{Log, Run};
@@ -97,10 +93,10 @@ impl Fleet {
 
     /// What the checker finds, a line each: `error S3001 5:32 there is no class ...`; empty where all is well.
     pub fn diagnostics(&self) -> String {
-        let (_, sources, diagnostics, _) = self.checked();
+        let found = self.compiled();
         let mut text = String::new();
-        for one in &diagnostics {
-            let place = sources.get(one.location.file).range(one.location.span).start;
+        for one in found.reported() {
+            let place = found.sources.get(one.location.file).range(one.location.span).start;
             let (severity, code) = (one.severity.name(), one.code.id);
             let _ = writeln!(text, "{severity} {code} {}:{} {}", place.line, place.column, one.message);
         }
@@ -109,18 +105,18 @@ impl Fleet {
 
     /// Every text that was read, with what the checker finds in it.
     pub(crate) fn texts(&self) -> Vec<Checked> {
-        let (_, sources, diagnostics, _) = self.checked();
+        let found = self.compiled();
         let text = |(id, file): (FileId, &SourceFile)| {
-            let own = diagnostics.iter().filter(|one| one.location.file == id);
-            let found = own.map(|one| Found {
+            let own = found.reported().filter(|one| one.location.file == id);
+            let own = own.map(|one| Found {
                 line: file.range(one.location.span).start.line,
                 severity: one.severity.name(),
                 code: one.code.id,
                 message: one.message.clone(),
             });
-            Checked { path: file.path().to_owned(), text: file.text().to_string(), found: found.collect() }
+            Checked { path: file.path().to_owned(), text: file.text().to_string(), found: own.collect() }
         };
-        sources.iter().map(text).collect()
+        found.sources.iter().map(text).collect()
     }
 
     /// The one composite that is left when all is resolved, as `saoms expand` writes it: what a test can hold an assembly to.
@@ -129,17 +125,13 @@ impl Fleet {
     /// With all diagnostics when the composites have errors.
     #[expect(clippy::panic, reason = "a test whose fleet has errors has failed")]
     pub fn expanded(&self) -> String {
-        let (assembly, sources, diagnostics, contribution) = self.checked();
-        match (assembly, contribution.asked_for().first()) {
-            (Some(assembly), Some(first)) => saoms_lang::assembly::expanded(&assembly, first, &diagnostics),
-            _ => panic!("{}", human(&diagnostics, &sources, false)),
-        }
+        let found = self.compiled();
+        found.expanded().unwrap_or_else(|| panic!("{}", found.text()))
     }
 
     /// The same as people see it, each with a picture of its place.
     pub fn shown(&self) -> String {
-        let (_, sources, diagnostics, _) = self.checked();
-        human(&diagnostics, &sources, false)
+        self.compiled().text()
     }
 
     /// Runs the fleet in virtual time, until it ends by itself or the time is over. Same seed, same run.
@@ -158,8 +150,8 @@ impl Fleet {
     /// As [`run`](Fleet::run).
     #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
     pub fn run_with(&self, seed: u64, limit: Duration, observer: Arc<dyn Observer>) -> RunReport {
-        let (assembly, sources, diagnostics, _) = self.checked();
-        let Some(assembly) = assembly else { panic!("{}", human(&diagnostics, &sources, false)) };
+        let mut found = self.compiled();
+        let Some(assembly) = found.output.take() else { panic!("{}", found.text()) };
         let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
         match saoms_core::schedule::Fleet::start(assembly, settings, vec![observer]) {
             Ok(fleet) => fleet.run_to_end(),
@@ -167,40 +159,28 @@ impl Fleet {
         }
     }
 
-    #[expect(clippy::panic, reason = "two linked classes of one name are a fault of the test's own build")]
-    fn checked(&self) -> (Option<Assembly>, Sources, Vec<Diagnostic>, Contribution) {
-        let mut registry = Registry::linked().unwrap_or_else(|error| panic!("{error}"));
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let mut settings = Vec::new();
-        for setting in &self.settings {
-            settings.extend(Setting::parse("set", setting, &mut sources, &mut diagnostics));
-        }
-        let mut severities = Vec::new();
-        for severity in &self.severities {
-            severities.extend(SeveritySetting::parse("severity", severity, &mut sources, &mut diagnostics));
-        }
-        let mut composites = Vec::new();
-        for composite in &self.composites {
-            let file = match composite {
-                Composite::File(path) => read(path, MAX_SIZE, &mut sources, &mut diagnostics),
-                Composite::Text(text) => Some(sources.add("text.composite", text.trim_start())),
-            };
-            let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics))
-            else {
-                continue;
-            };
-            read_values(&mut composite, MAX_SIZE, &mut sources, &mut diagnostics);
-            composites.push(composite);
-        }
-        let mut contribution = Contribution::of(composites);
-        load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
-        open_named(&mut contribution, &Search::default(), &sources, &mut registry);
-        let variable = |name: &str| {
-            self.variables.iter().find(|(known, _)| known == name).map(|(_, value)| value.into())
+    fn compiled(&self) -> Compilation {
+        let variables = self.variables.clone();
+        let variable = move |name: &str| {
+            variables.iter().find(|(known, _)| known == name).map(|(_, value)| value.into())
         };
-        let variables = Variable::read(&contribution, variable, &mut sources, &mut diagnostics);
-        let options = Options { settings, variables, severities, ..Options::default() };
-        let assembly = check(&contribution, &registry, &options, &sources, &mut diagnostics);
-        (assembly, sources, diagnostics.into_sorted(), contribution)
+        let project =
+            Project::new().set_all(&self.settings).severities(&self.severities).environment(variable);
+        let project = self.composites.iter().fold(project, |project, composite| match composite {
+            Composite::File(path) => project.file(path),
+            Composite::Text(text) => project.text("text.composite", text.trim_start()),
+        });
+        project.compile(&Linked)
+    }
+}
+
+/// The classes that are linked in, and those of libraries that composites name.
+struct Linked;
+
+impl ClassPath for Linked {
+    #[expect(clippy::panic, reason = "two linked classes of one name are a fault of the test's own build")]
+    fn classes(&self, _: &[PathBuf]) -> Classes {
+        let linked = Registry::linked().unwrap_or_else(|error| panic!("{error}"));
+        Search::default().classes(linked)
     }
 }

@@ -3,8 +3,6 @@
 use std::sync::Arc;
 
 use clap::Args;
-use saoms_lang::assembly::expanded;
-use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::source::FileId;
 use saoms_lang::xml;
@@ -13,7 +11,7 @@ use saoms_tools::format::{Formatted, WIDTH};
 use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::fleet::checked;
+use crate::fleet::{Shown, compiled};
 use crate::output::{counted, eprint, print};
 
 /// Print the one composite that is left when includes, inner composites, property sources and wires are resolved
@@ -25,16 +23,17 @@ pub(crate) struct ExpandArguments {
 }
 
 pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
-    let outcome = match checked(check, &arguments.fleet, Options::default()) {
-        Ok(outcome) => outcome,
+    let compilation = match compiled(&arguments.fleet, |project, classes| project.compile(classes)) {
+        Ok(compilation) => compilation,
         Err(exit) => return exit,
     };
-    eprint(&outcome.human(Severity::Error));
-    let (Some(assembly), Some(first)) = (&outcome.made, outcome.first()) else {
-        eprint(&format!("\n{}: nothing to expand\n", counted(outcome.count(Severity::Error), "error")));
+    let shown = Shown::from(&compilation);
+    eprint(&shown.human(Severity::Error));
+    let Some(text) = compilation.expanded() else {
+        eprint(&format!("\n{}: nothing to expand\n", counted(shown.count(Severity::Error), "error")));
         return Exit::WrongInput;
     };
-    let text = Arc::new(expanded(assembly, first, outcome.diagnostics()));
+    let text = Arc::new(text);
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
     match xml::parse(FileId(0), &text).document {
         Some(document) => print(&Formatted { document: &document, width: WIDTH }),

@@ -9,13 +9,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use saoms_lang::diagnostic::{Diagnostics, human};
 use saoms_lang::load::composites_below;
+use saoms_lang::project::{INPUT, read};
 use saoms_lang::source::{FileId, Sources};
 use saoms_lang::xml::{self, Document};
 use saoms_tools::format::Formatted;
 
 use crate::Exit;
 use crate::arguments::parse_size;
-use crate::fleet::{INPUT, read_or_input};
 use crate::output::{eprint, print, try_print};
 
 const EXIT_CODES: &str = "\
@@ -100,7 +100,7 @@ enum Outcome {
 fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
     let is_input = path == Path::new(INPUT);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = read_or_input(path, arguments.max_size, &mut sources, &mut diagnostics);
+    let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
     let document = file.and_then(|file| well_formed(file, &sources, &mut diagnostics));
     let Some(document) = document else {
         let diagnostics = diagnostics.into_sorted();

@@ -6,20 +6,14 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use saoms_core::plugin::open_named;
-use saoms_lang::check::{Census, Options, Variable};
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Human, Severity};
-use saoms_lang::load::{Finder, load_file, read_values};
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use saoms_lang::diagnostic::{Diagnostic, Human, Severity};
+use saoms_lang::project::{SET, SEVERITY};
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::fleet::{SET, SEVERITY, options, read_or_input};
-use crate::folder::one_fleet;
+use crate::fleet::compiled;
 use crate::output::{eprint, unless_closed};
-use crate::plugins::{registry, search};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -70,38 +64,22 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         },
     };
     let fleet = &arguments.fleet;
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let mut composites = Vec::new();
-    let mut finder = Finder::new(sources.open().clone());
-    let files = one_fleet(&fleet.files, fleet.max_size, &mut finder, &mut sources, &mut diagnostics);
-    for path in &files {
-        let file = read_or_input(path, fleet.max_size, &mut sources, &mut diagnostics);
-        let Some(mut composite) = file.and_then(|file| load_file(file, &sources, &mut diagnostics)) else {
-            continue;
-        };
-        read_values(&mut composite, fleet.max_size, &mut sources, &mut diagnostics);
-        composites.push(composite);
-    }
-    let mut contribution = Contribution::of(composites);
-    finder.load_named(&mut contribution, fleet.max_size, &mut sources, &mut diagnostics);
-    let asked = options(fleet, Options::default(), &mut sources, &mut diagnostics);
-    let variables =
-        Variable::read(&contribution, |name| std::env::var_os(name), &mut sources, &mut diagnostics);
-    let options = Options { variables, ..asked };
-    let mut registry = match registry(&fleet.plugins, &files) {
-        Ok(registry) => registry,
+    let compilation = match compiled(fleet, |project, classes| project.census(classes)) {
+        Ok(compilation) => compilation,
         Err(exit) => return exit,
     };
-    open_named(&mut contribution, &search(&fleet.plugins, &files), &sources, &mut registry);
-    let census = Census::of(&contribution, &registry, &options, &sources, &mut diagnostics);
-    let found = diagnostics.into_sorted();
-    let is_of_option = |one: &&Diagnostic| matches!(sources.get(one.location.file).path(), SET | SEVERITY);
-    let of_options: Vec<Diagnostic> = found.iter().filter(is_of_option).cloned().collect();
-    if contribution.composites().is_empty() || !of_options.is_empty() {
-        let shown = if of_options.is_empty() { &found } else { &of_options };
-        eprint(&Human::of(shown, &sources, io::stderr().is_terminal()));
-        return Exit::WrongInput;
-    }
+    let (contribution, sources) = (&compilation.contribution, &compilation.sources);
+    let found: Vec<&Diagnostic> = compilation.reported().collect();
+    let is_of_option = |one: &&&Diagnostic| matches!(sources.get(one.location.file).path(), SET | SEVERITY);
+    let of_options: Vec<&Diagnostic> = found.iter().filter(is_of_option).copied().collect();
+    let census = match &compilation.output {
+        Some(census) if !contribution.composites().is_empty() && of_options.is_empty() => census,
+        _ => {
+            let shown = if of_options.is_empty() { found } else { of_options };
+            eprint(&Human::of(shown, sources, io::stderr().is_terminal()));
+            return Exit::WrongInput;
+        }
+    };
     // How many there are, a check finds: a picture asks for no more than it needs.
     if found.iter().any(|one| one.severity == Severity::Error) {
         let names: Vec<String> = fleet.files.iter().map(|file| file.display().to_string()).collect();
@@ -110,9 +88,9 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
             "warning: drawn as far as it is understood; `saoms check {name}` shows what is wrong\n"
         ));
     }
-    let diagram = Diagram::of(&contribution, &registry, &census);
+    let diagram = Diagram::of(contribution, &compilation.registry, census);
     // A picture of a large composite needs the memory.
-    drop((contribution, census, registry, sources, finder));
+    drop(compilation);
     let text = match picture {
         PictureFormat::Svg => svg(&diagram),
         PictureFormat::Mermaid => mermaid(&diagram),

@@ -47,7 +47,7 @@ pub(crate) enum XsdVersion {
 const CATALOG: &str = "catalog.xml";
 
 pub(crate) fn schema(arguments: &SchemaArguments) -> Exit {
-    let registry = match registry(&arguments.plugins, &[]) {
+    let registry = match registry(&arguments.plugins) {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };

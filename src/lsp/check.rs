@@ -7,10 +7,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use saoms_lang::check::{Options, count};
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics, codes};
-use saoms_lang::load::{Finder, MAX_SIZE};
-use saoms_lang::registry::Registry;
+use saoms_lang::diagnostic::{Diagnostic, codes};
+use saoms_lang::load::Finder;
+use saoms_lang::project::Project;
 use saoms_lang::source::{OpenTexts, Sources, identity};
 
 use saoms_api::host::contain::contained;
@@ -18,8 +17,6 @@ use saoms_tools::editor::{Fleet, Scene, Workspace};
 
 use super::diagnostics::{Reported, reported};
 use super::registries::Registries;
-use crate::fleet::{Asked, checked_with};
-use crate::folder::is_of_user;
 use crate::output::eprint;
 
 /// How long nothing has to change before a check starts.
@@ -143,20 +140,22 @@ impl Checker {
         if self.newest.load(Ordering::Relaxed) != job.generation {
             return None;
         }
+        if fleet.is_empty() {
+            return Some(());
+        }
         // Nothing of a plugin runs because somebody looks at a file.
-        let options =
-            Options { assume_classes: self.assume_classes, without_plugin_code: true, ..Options::default() };
-        let Some(root) = fleet.first() else { return Some(()) };
-        let registry = Registry::clone(&self.registries.of(root, &[]));
-        let search = self.registries.search(root);
-        let sources = Sources::with_open(job.open.clone());
-        let asked = Asked { files: fleet, max_size: MAX_SIZE, options, search: &search, finder };
-        let found = checked_with(count, asked, registry, sources, Diagnostics::new());
+        let project = Project::new()
+            .files(fleet)
+            .open_texts(job.open.clone())
+            .assume_classes(self.assume_classes)
+            .without_plugin_code()
+            .part(may_be_part);
+        let found = project.load_with(finder, self.registries.as_ref()).check();
         for (_, file) in found.sources.iter() {
             seen.insert(identity(Path::new(file.path())));
         }
-        let told: Vec<_> = found.told().filter(|one| !(may_be_part && is_of_user(one))).cloned().collect();
-        add(&told, &found.sources, files);
+        let reported: Vec<_> = found.reported().cloned().collect();
+        add(&reported, &found.sources, files);
         Some(())
     }
 }
@@ -170,11 +169,10 @@ fn contribution(
 ) {
     let folder = description.parent().unwrap_or(Path::new(""));
     let inner = folder.ends_with("META-INF").then(|| folder.parent()).flatten();
-    let (mut sources, mut found) = (Sources::with_open(job.open.clone()), Diagnostics::new());
-    finder.load_folder(inner.unwrap_or(folder), MAX_SIZE, &mut sources, &mut found);
-    let told: Vec<_> =
-        found.into_all().into_iter().filter(|one| one.code != &codes::FILE_IS_DIRECTORY).collect();
-    add(&told, &sources, files);
+    let project = Project::new().file(inner.unwrap_or(folder)).open_texts(job.open.clone());
+    let (mut found, sources) = project.check_folders(finder);
+    found.retain(|one| one.code != &codes::FILE_IS_DIRECTORY);
+    add(&found, &sources, files);
 }
 
 fn add(told: &[Diagnostic], sources: &Sources, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {

@@ -3,14 +3,16 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
 use saoms_core::plugin::{Plugin, Search};
+use saoms_lang::project::{ClassPath, Classes, Problem};
 use saoms_lang::registry::Registry;
 
 use crate::arguments::PluginArguments;
-use crate::plugins::{Problem, collect, search};
+use crate::plugins::search;
 
 /// The registries by file and by the libraries that it names. Both threads of the server ask for them.
 #[derive(Debug)]
@@ -34,8 +36,8 @@ impl Registries {
         Self { arguments, known: Mutex::default() }
     }
 
-    /// Where plugins for a composite are looked for.
-    pub(super) fn search(&self, file: &Path) -> Search {
+    /// The search for plugins of a composite.
+    fn search(&self, file: &Path) -> Search {
         search(&self.arguments, &[file.to_owned()])
     }
 
@@ -61,9 +63,13 @@ impl Registries {
         {
             return Arc::clone(registry);
         }
-        let (mut registry, problems) = collect(&search).unwrap_or_else(|error| {
-            (Registry::new(), vec![Problem { is_error: true, text: error.to_string() }])
-        });
+        let Classes { mut registry, problems, .. } = match Registry::linked() {
+            Ok(linked) => search.classes(linked),
+            Err(error) => {
+                let problem = Problem { is_error: true, text: error.to_string() };
+                Classes { problems: vec![problem], ..Registry::new().into() }
+            }
+        };
         for problem in problems {
             if known.told.insert(problem.text.clone()) {
                 known.problems.push(problem);
@@ -81,6 +87,15 @@ impl Registries {
     /// What is wrong with plugins and was not asked for before.
     pub(super) fn new_problems(&self) -> Vec<Problem> {
         std::mem::take(&mut self.known.lock().unwrap_or_else(PoisonError::into_inner).problems)
+    }
+}
+
+/// What is wrong with plugins is told apart from the diagnostics of a check, see [`Registries::new_problems`].
+impl ClassPath for Registries {
+    fn classes(&self, files: &[PathBuf]) -> Classes {
+        let first = files.first().map_or(Path::new(""), PathBuf::as_path);
+        let registry = Registry::clone(&self.of(first, &[]));
+        Classes { registry, libraries: Some(Rc::new(self.search(first))), problems: Vec::new() }
     }
 }
 

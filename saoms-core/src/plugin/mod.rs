@@ -22,7 +22,6 @@ use smol_str::SmolStr;
 pub use boundary::{ImportedClass, ImportedLoopClass, ImportedRule};
 pub use error::PluginError;
 pub use metadata::Metadata;
-pub use named::open_named;
 pub use search::{Found, Search};
 
 use saoms_lang::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};

@@ -1,41 +1,25 @@
-//! The libraries that composites name.
+//! Libraries that composites name.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::Search;
-use saoms_lang::model::{Contribution, ImplementationKind, LibraryLink, Origin};
+use saoms_lang::model::LibraryLink;
+use saoms_lang::project::LibraryResolver;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::{Sources, identity};
+use saoms_lang::source::identity;
 
-/// Looks for the libraries that implementations name with `library`, and adds what they offer to a registry; nothing in them runs.
-///
-/// A name is a path relative to the folder of its composite, or to a place of the search; `lib` before the name and `.so` behind it may be left
-/// out. What is wrong is for the checker to say.
-pub fn open_named(
-    contribution: &mut Contribution,
-    search: &Search,
-    sources: &Sources,
-    registry: &mut Registry,
-) {
-    let mut wanted: Vec<(Origin, PathBuf, String)> = Vec::new();
-    for composite in contribution.composites() {
-        let folder = Path::new(sources.get(composite.file()).path()).parent().unwrap_or(Path::new(""));
-        for implementation in composite.components.iter().filter_map(|one| one.implementation.as_ref()) {
-            if let ImplementationKind::Rust { library: Some(library), .. } = &implementation.kind {
-                wanted.push((implementation.origin, folder.to_owned(), library.as_str().trim().to_owned()));
-            }
-        }
-    }
-    for (origin, folder, name) in wanted {
-        let link = match search.find(&folder, &name) {
+/// A name is a path relative to the folder of its composite, or to a place of the search; `lib` before the name and `.so` behind it may be
+/// left out.
+impl LibraryResolver for Search {
+    fn open(&self, folder: &Path, name: &str, registry: &mut Registry) -> LibraryLink {
+        match self.find(folder, name) {
             Err(looked) => LibraryLink::Missing(looked),
-            Ok(path) => match registered(&path, search, registry) {
+            Ok(path) => match registered(&path, self, registry) {
                 Ok(path) => LibraryLink::To(path),
                 Err(message) => LibraryLink::Faulty(message),
             },
-        };
-        contribution.set_library(origin, link);
+        }
     }
 }
 
@@ -45,7 +29,7 @@ fn registered(path: &Path, search: &Search, registry: &mut Registry) -> Result<P
     if let Some(known) = registry.origins().find(|known| identity(known) == same) {
         return Ok(known.to_owned());
     }
-    let plugin = search.open(path).map_err(|error| error.to_string())?;
+    let plugin = search.plugin(path).map_err(|error| error.to_string())?;
     plugin.register(registry).map_err(|error| error.to_string())?;
     Ok(path.to_owned())
 }

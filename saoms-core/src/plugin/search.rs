@@ -1,7 +1,11 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
+
+use saoms_lang::project::{Classes, Problem};
+use saoms_lang::registry::{Registry, RegistryError};
 
 use super::{Plugin, PluginError};
 
@@ -29,8 +33,27 @@ pub struct Found {
 
 impl Search {
     /// Reads the metadata of one library.
-    pub(super) fn open(&self, path: &Path) -> Result<Arc<Plugin>, PluginError> {
+    pub(super) fn plugin(&self, path: &Path) -> Result<Arc<Plugin>, PluginError> {
         if self.copies { Plugin::open_copy(path) } else { Plugin::open(path) }
+    }
+
+    /// The classes of a registry together with those of all libraries that are found, and what is wrong with these.
+    pub fn classes(&self, mut registry: Registry) -> Classes {
+        let found = self.run();
+        let left_out =
+            found.left_out.iter().map(|error| Problem { is_error: false, text: error.to_string() });
+        let mut problems: Vec<Problem> = left_out.collect();
+        problems.extend(found.errors.iter().map(|error| Problem { is_error: true, text: error.to_string() }));
+        for plugin in &found.plugins {
+            if let Err(error) = plugin.register(&mut registry) {
+                let text = match error {
+                    RegistryError::NameTaken { .. } => error.to_string(),
+                    _ => format!("plugin `{}`: {error}", plugin.path().display()),
+                };
+                problems.push(Problem { is_error: true, text });
+            }
+        }
+        Classes { registry, libraries: Some(Rc::new(self.clone())), problems }
     }
 
     /// Reads the metadata of all libraries; nothing in them runs.
@@ -42,7 +65,7 @@ impl Search {
             if !seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())) {
                 return;
             }
-            match self.open(path) {
+            match self.plugin(path) {
                 Ok(plugin) => found.plugins.push(plugin),
                 Err(error) if named => found.errors.push(error),
                 Err(PluginError::NoMetadata { .. } | PluginError::NoLibrary { .. }) => {}

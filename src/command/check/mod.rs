@@ -2,21 +2,21 @@
 
 mod wiring;
 
-use std::mem::ManuallyDrop;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use saoms_lang::assembly::Assembly;
-use saoms_lang::check::Options;
 use saoms_lang::diagnostic::Severity;
+use saoms_lang::project::{Compilations, FleetOutput};
 use serde::Serialize;
 use serde::ser::Serializer;
 
 use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::folder::{Several, checked_each};
+use crate::fleet::{Shown, project};
 use crate::output::{counted, eprint, print, print_json};
+use crate::plugins::{CommandClasses, usable};
 use wiring::Wiring;
 
 /// Check composites without running anything
@@ -47,54 +47,58 @@ pub(crate) enum CheckFormat {
 }
 
 pub(crate) fn check(arguments: &CheckArguments) -> Exit {
-    let asked =
-        Options { assume_classes: arguments.assume_classes, wiring: arguments.wiring, ..Options::default() };
-    let (fleet, format) = (&arguments.fleet, arguments.format);
-    let exit = match arguments.wiring {
-        true => checked_each(fleet, asked, saoms_lang::check::check)
-            .map(|several| tell(&several, |one| one.components.len(), |one| Some(one), format)),
-        false => checked_each(fleet, asked, saoms_lang::check::count).map(|several| {
-            // The process ends here: taking a large model apart takes as long as checking some of it.
-            tell(&ManuallyDrop::new(several), |count| *count, |_| None, format)
-        }),
+    let classes = match CommandClasses::new(&arguments.fleet.plugins) {
+        Ok(classes) => classes,
+        Err(exit) => return exit,
     };
-    exit.unwrap_or_else(|exit| exit)
+    let project = project(&arguments.fleet).assume_classes(arguments.assume_classes).wiring(arguments.wiring);
+    let format = arguments.format;
+    match arguments.wiring {
+        true => tell(&project.compile_each(&classes), |one| one.components.len(), |one| Some(one), format),
+        false => tell(&project.check_each(&classes), |count| *count, |_| None, format),
+    }
 }
 
 /// Writes what was found, with the wiring report where there are assemblies.
 fn tell<T>(
-    several: &Several<T>,
+    found: &Compilations<T>,
     components: impl Fn(&T) -> usize,
     assembly: impl Fn(&T) -> Option<&Assembly>,
     format: CheckFormat,
 ) -> Exit {
-    let Several { checked: outcome, made, fleets } = several;
-    let wired: Vec<(&Path, Wiring<'_>)> =
-        made.iter().filter_map(|(path, made)| Some((path.as_path(), Wiring(assembly(made)?)))).collect();
+    let Compilations { outputs, fleets, problems, .. } = found;
+    if let Err(exit) = usable(problems) {
+        return exit;
+    }
+    let shown = Shown::from(found);
+    let wired: Vec<(&Path, Wiring<'_>)> = outputs
+        .iter()
+        .filter_map(|FleetOutput { file, output }| Some((file.as_path(), Wiring(assembly(output)?))))
+        .collect();
     let wiring = (!wired.is_empty()).then_some(Wired { of: &wired, is_one: *fleets == 1 });
     match format {
-        CheckFormat::Json => print_json(&outcome.json(wiring)),
-        CheckFormat::Sarif => print_json(&outcome.sarif(wiring.map(|wiring| Properties { wiring }))),
+        CheckFormat::Json => print_json(&shown.json(wiring)),
+        CheckFormat::Sarif => print_json(&shown.sarif(wiring.map(|wiring| Properties { wiring }))),
         CheckFormat::Human => {
-            eprint(&outcome.human(Severity::Note));
+            eprint(&shown.human(Severity::Note));
             for (path, wiring) in &wired {
                 if *fleets > 1 {
                     print(&format!("{}\n", path.display()));
                 }
                 print(wiring);
             }
-            let errors = counted(outcome.count(Severity::Error), "error");
-            let warnings = counted(outcome.count(Severity::Warning), "warning");
-            let components = made.iter().map(|(_, made)| components(made)).sum();
+            let errors = counted(shown.count(Severity::Error), "error");
+            let warnings = counted(shown.count(Severity::Warning), "warning");
+            let components = outputs.iter().map(|one| components(&one.output)).sum();
             let components = counted(components, "component");
-            print(&match (*fleets, made.len()) {
+            print(&match (*fleets, outputs.len()) {
                 (2.., _) => format!("{fleets} fleets, {components}: {errors}, {warnings}\n"),
                 (_, 1) => format!("{components}: {errors}, {warnings}\n"),
                 _ => format!("{errors}, {warnings}\n"),
             });
         }
     }
-    if outcome.count(Severity::Error) == 0 { Exit::Done } else { Exit::WrongInput }
+    if shown.count(Severity::Error) == 0 { Exit::Done } else { Exit::WrongInput }
 }
 
 /// Additional properties in the log of `--format sarif`.

@@ -33,7 +33,7 @@ pub(crate) struct ComponentsArguments {
 }
 
 pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
-    let registry = match registry(&arguments.plugins, &[]) {
+    let registry = match registry(&arguments.plugins) {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };

@@ -19,15 +19,15 @@ use saoms_core::observe::{JournalFile, Observer};
 use saoms_core::report::Status;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
 use saoms_lang::assembly::Assembly;
-use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::Severity;
+use saoms_lang::project::INPUT;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
-use crate::fleet::{INPUT, checked};
+use crate::fleet::{Shown, compiled};
 use crate::output::{counted, eprint, eprint_json, print_json};
 use console::Console;
 use picture_file::PictureFile;
@@ -158,19 +158,20 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 
 /// The fleet to run; without one, what is wrong has been shown. Texts and diagnostics do not outlive this: a run may last for days.
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly> {
-    let outcome = checked(check, files, Options::default()).ok()?;
+    let compilation = compiled(files, |project, classes| project.compile(classes)).ok()?;
+    let shown = Shown::from(&compilation);
     // Standard output belongs to the run, unless there is none.
-    match (arguments.format, &outcome.made) {
-        (Format::Json, None) => print_json(&outcome.json(None::<()>)),
-        (Format::Json, Some(_)) => eprint_json(&outcome.json(None::<()>)),
+    match (arguments.format, &compilation.output) {
+        (Format::Json, None) => print_json(&shown.json(None::<()>)),
+        (Format::Json, Some(_)) => eprint_json(&shown.json(None::<()>)),
         (Format::Human, _) => {
-            eprint(&outcome.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
+            eprint(&shown.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
         }
     }
-    if outcome.made.is_none() && arguments.format == Format::Human {
-        eprint(&format!("\n{}: nothing was started\n", counted(outcome.count(Severity::Error), "error")));
+    if compilation.output.is_none() && arguments.format == Format::Human {
+        eprint(&format!("\n{}: nothing was started\n", counted(shown.count(Severity::Error), "error")));
     }
-    outcome.made
+    compilation.output
 }
 
 fn settings(arguments: &RunArguments) -> Settings {

@@ -11,11 +11,10 @@ use std::time::{Duration, Instant};
 use saoms_api::Level;
 use saoms_core::schedule::{ChangeError, Handle};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
-use saoms_lang::check::{Options, check};
 use saoms_lang::diagnostic::Severity;
 
 use crate::arguments::FleetArguments;
-use crate::fleet::checked;
+use crate::fleet::{Shown, compiled};
 use crate::output::eprint;
 
 /// The time between two looks at the files. A file is loaded when two looks in a row find it unchanged.
@@ -125,11 +124,11 @@ impl Watcher {
         let names = names.join(", ");
         let kept = |why: &str| format!("{names} changed: {why}; the fleet goes on with the earlier build");
         // What is wrong with a library was told already.
-        let Ok(outcome) = checked(check, &self.arguments, Options::default()) else {
+        let Ok(compilation) = compiled(&self.arguments, |project, classes| project.compile(classes)) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
-        let Some(assembly) = &outcome.made else {
-            eprint(&outcome.human(Severity::Error));
+        let Some(assembly) = &compilation.output else {
+            eprint(&Shown::from(&compilation).human(Severity::Error));
             return self.handle.note(Level::Error, kept("the composites do not fit to it"));
         };
         if paths(assembly) != self.components {

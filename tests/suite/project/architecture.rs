@@ -20,6 +20,7 @@ const ORDERS: &[(&str, &[&str])] = &[
             "registry",
             "assembly",
             "check",
+            "project",
         ],
     ),
     (

@@ -3,13 +3,14 @@
 use std::fmt::Write as _;
 
 use saoms_lang::assembly::Assembly;
-use saoms_lang::check::{Options, Setting, check};
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics};
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
+use saoms_lang::diagnostic::Diagnostic;
+use saoms_lang::project::{Compilation, Project, SET, SEVERITY};
 use saoms_lang::source::{Location, Sources};
 
 use crate::check::classes::registry;
+
+/// The name of the first text.
+const FIRST: &str = "fleet.composite";
 
 /// A composite of SCA 1.1 around `inside`, which starts in line 2.
 pub(crate) fn fleet(inside: &str) -> String {
@@ -28,25 +29,18 @@ fn composite(namespace: &str, inside: &str) -> String {
     )
 }
 
+/// The outcome of a project in memory.
+fn compiled(project: &Project) -> (Option<Assembly>, Vec<Diagnostic>, Sources) {
+    let Compilation { output, mut diagnostics, sources, .. } = project.compile(&registry());
+    diagnostics.retain(|one| !one.is_allowed());
+    (output, diagnostics, sources)
+}
+
 /// Loads and checks texts as one fleet.
 pub(crate) fn run(texts: &[&str], settings: &[&str]) -> (Option<Assembly>, Vec<Diagnostic>, Sources) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let names = ["fleet.composite", "more.composite"];
-    let files: Vec<_> = texts.iter().zip(names).map(|(text, name)| sources.add(name, *text)).collect();
-    let settings: Vec<_> = settings
-        .iter()
-        .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
-        .collect();
-    let composites: Vec<_> =
-        files.iter().filter_map(|file| load_file(*file, &sources, &mut diagnostics)).collect();
-    let assembly = check(
-        &Contribution::of(composites),
-        &registry(),
-        &Options::with_settings(settings),
-        &sources,
-        &mut diagnostics,
-    );
-    (assembly, diagnostics.into_sorted(), sources)
+    let project = Project::new().in_memory().set_all(settings.iter().copied());
+    let named = texts.iter().zip([FIRST, "more.composite"]);
+    compiled(&named.fold(project, |project, (text, name)| project.text(name, *text)))
 }
 
 /// Loads and checks the first text as a fleet that can name what is in the others; each is called as it says it is.
@@ -55,20 +49,12 @@ pub(crate) fn nested(
     settings: &[&str],
     assume_classes: bool,
 ) -> (Option<Assembly>, Vec<Diagnostic>, Sources) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let name = |text: &str| {
         text.split(" name=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap().to_owned()
     };
-    let files: Vec<_> = texts.iter().map(|text| sources.add(name(text), *text)).collect();
-    let settings =
-        settings.iter().filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics));
-    let options = Options { settings: settings.collect(), assume_classes, ..Options::default() };
-    let mut composites: Vec<_> =
-        files.iter().filter_map(|file| load_file(*file, &sources, &mut diagnostics)).collect();
-    let others = composites.split_off(1);
-    let fleet = Contribution::with(composites, others);
-    let assembly = check(&fleet, &registry(), &options, &sources, &mut diagnostics);
-    (assembly, diagnostics.into_sorted(), sources)
+    let project = Project::new().in_memory().assume_classes(assume_classes);
+    let project = project.set_all(settings.iter().copied()).text(name(texts[0]), texts[0]);
+    compiled(&texts[1..].iter().fold(project, |project, text| project.other_text(name(text), *text)))
 }
 
 /// A composite of SCA 1.1 of this name, for [`nested`]: attributes, then what is inside from line 2.
@@ -139,7 +125,9 @@ fn at(location: Location, sources: &Sources) -> String {
     let file = sources.get(location.file);
     let range = file.range(location.span);
     let (start, end) = (range.start, range.end);
-    let name = if location.file.0 == 0 { String::new() } else { format!("{}:", file.path()) };
+    let first = sources.iter().find(|(_, file)| ![SET, SEVERITY].contains(&file.path()));
+    let is_first = first.is_some_and(|(id, _)| id == location.file);
+    let name = if is_first { String::new() } else { format!("{}:", file.path()) };
     if start.line == end.line {
         return format!("{name}{}:{}-{}", start.line, start.column, end.column);
     }

@@ -226,11 +226,11 @@ fn what_comes_from_outside_is_told_where_it_was_given() {
         "<property name=\"n\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">4</property>";
     let fleet = crate::check::support::fleet(&format!("{inside}\n{GPS}"));
     expect![[r#"
-        2:17-18 warning S2026: the property `n` of the composite is used by no component
-          help: a component takes its value with `source="$n"`
         --set:1:3-3 error S2042: the property `n` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
           2:26-33 the type
           help: change the value, or the type
+        2:17-18 warning S2026: the property `n` of the composite is used by no component
+          help: a component takes its value with `source="$n"`
     "#]].assert_eq(&faults_of(&[&fleet], &["n="]));
     // What cannot be read may declare it.
     expect![[r#"

@@ -8,11 +8,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use expect_test::expect_file;
-use saoms_core::plugin::{Search, open_named};
-use saoms_lang::check::{Options, Setting, check};
+use saoms_core::plugin::Search;
 use saoms_lang::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
-use saoms_lang::load::{MAX_SIZE, load, load_file, load_folder, load_named, read};
-use saoms_lang::model::Contribution;
+use saoms_lang::load::MAX_SIZE;
+use saoms_lang::project::{ClassPath, Classes, Compilation, Project, read};
 use saoms_lang::source::Sources;
 
 use crate::check::classes::registry;
@@ -140,20 +139,31 @@ fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
 
 /// Checks `ID.composite` in its folder, where there are component types, with unknown classes taken as given.
 fn from_folder(id: &str) -> (Vec<Diagnostic>, Sources) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let composite = load(&folder().join(format!("{id}.composite")), &mut sources, &mut diagnostics);
-    let mut fleet = Contribution::of(composite.into_iter().collect());
-    load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
-    let options = Options { assume_classes: true, ..Options::default() };
-    check(&fleet, &registry(), &options, &sources, &mut diagnostics);
-    (diagnostics.into_sorted(), by_file_name(&sources))
+    let project = Project::new().file(folder().join(format!("{id}.composite"))).assume_classes(true);
+    let (diagnostics, sources) = compiled(&project);
+    (diagnostics, by_file_name(&sources))
 }
 
 /// Looks at the folder of a contribution.
 fn contribution(id: &str) -> (Vec<Diagnostic>, Sources) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    load_folder(&folder().join(id), MAX_SIZE, &mut sources, &mut diagnostics);
-    (diagnostics.into_sorted(), by_file_name(&sources))
+    let project = Project::new().file(folder().join(id));
+    let (diagnostics, sources) = project.check_folders(&mut project.finder());
+    (diagnostics, by_file_name(&sources))
+}
+
+/// The classes of these tests, and libraries beside composites.
+struct WithLibraries;
+
+impl ClassPath for WithLibraries {
+    fn classes(&self, _: &[PathBuf]) -> Classes {
+        Search::default().classes(registry())
+    }
+}
+
+fn compiled(project: &Project) -> (Vec<Diagnostic>, Sources) {
+    let Compilation { mut diagnostics, sources, .. } = project.compile(&WithLibraries);
+    diagnostics.retain(|one| !one.is_allowed());
+    (diagnostics, sources)
 }
 
 fn by_file_name(sources: &Sources) -> Sources {
@@ -177,21 +187,10 @@ fn checked_with(
     settings: &[&str],
     wiring: bool,
 ) -> (Vec<Diagnostic>, Sources) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let files: Vec<_> = files.iter().map(|(name, text)| sources.add(name.as_str(), text.as_str())).collect();
-    let settings: Vec<_> = settings
-        .iter()
-        .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
-        .collect();
-    let load = |file| load_file(file, &sources, &mut diagnostics);
-    let mut composites: Vec<_> = files.into_iter().filter_map(load).collect();
-    let others = composites.split_off(asked_for.min(composites.len()));
-    let mut fleet = Contribution::with(composites, others);
-    let mut registry = registry();
-    open_named(&mut fleet, &Search::default(), &sources, &mut registry);
-    let options = Options { wiring, ..Options::with_settings(settings) };
-    check(&fleet, &registry, &options, &sources, &mut diagnostics);
-    (diagnostics.into_sorted(), sources)
+    let project = Project::new().in_memory().set_all(settings.iter().copied()).wiring(wiring);
+    let (fleet, others) = files.split_at(asked_for);
+    let project = fleet.iter().fold(project, |project, (name, text)| project.text(name, text));
+    compiled(&others.iter().fold(project, |project, (name, text)| project.other_text(name, text)))
 }
 
 /// Reads a file that cannot be read.

@@ -83,6 +83,9 @@ fn conditions_take_away_what_is_checked_all_the_same() {
 #[test]
 fn a_text_without_quotes_is_told_as_one() {
     expect![[r#"
+        --set:1:7-10 error S2042: the property `night` is of the type `xsd:boolean`: found `off`, expected `true` or `false`
+          2:68-79 the type
+          fix: replace `off` with `false` [--set:1:7-10 "false"]
         2:126-131 error S2042: the property `night` is of the type `xsd:boolean`: found `flase`, expected `true` or `false`
           2:68-79 the type
           fix: replace `flase` with `false` [2:126-131 "false"]
@@ -90,9 +93,6 @@ fn a_text_without_quotes_is_told_as_one() {
           help: a text stands between two `'`, as `'south'`; its properties are `night` and `site`
         4:39-44 error S2045: the composite has no property `sight`
           fix: replace `sight` with `night` [4:39-44 "night"]
-        --set:1:7-10 error S2042: the property `night` is of the type `xsd:boolean`: found `off`, expected `true` or `false`
-          2:68-79 the type
-          fix: replace `off` with `false` [--set:1:7-10 "false"]
     "#]].assert_eq(&of(
         r#"<property name="site">north</property><property name="night" type="xsd:boolean" xmlns:xsd="http://www.w3.org/2001/XMLSchema">flase</property>
 <component name="A" saoms:if="site == south"><implementation.java class="example.Gps"/></component>

@@ -372,13 +372,13 @@ fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
 <component xmlns:saoms="urn:saoms:1" name="R${index}" saoms:count="robots + 1" saoms:if="day and index > 0"><implementation.java class="example.Robot"/>
 <property name="ID">R${index}</property><property name="period">100</property><property name="number">${robots}</property></component>"#;
     expect![[r#"
+        --set:1:8-12 error S2042: the property `robots` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
+          2:31-38 the type
+          help: change the value, or the type
         2:31-38 warning S2050: the prefix `xsd` of this type is bound to no namespace
           fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
         2:92-99 error S2042: the property `day` is of the type `xsd:boolean`: found `perhaps`, expected `true` or `false`
           2:79-90 the type
-          help: change the value, or the type
-        --set:1:8-12 error S2042: the property `robots` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
-          2:31-38 the type
           help: change the value, or the type
     "#]].assert_eq(&faults_of(&[&crate::check::support::fleet(inside)], &["robots=many"]));
 }

@@ -1,0 +1,54 @@
+//! The outcome of a compilation.
+
+use super::Problem;
+use crate::assembly::{Assembly, expanded};
+use crate::diagnostic::{Diagnostic, Human, Severity};
+use crate::model::{Composite, Contribution};
+use crate::registry::Registry;
+use crate::source::Sources;
+
+/// The output of a compilation with all that was read and found on the way.
+#[derive(Debug)]
+pub struct Compilation<T = Assembly> {
+    /// The output; `None` where there is an error.
+    pub output: Option<T>,
+    /// The composites, with those that they name.
+    pub contribution: Contribution,
+    /// The classes that they can name.
+    pub registry: Registry,
+    /// The texts that were read.
+    pub sources: Sources,
+    /// All diagnostics by file and place, with those that are allowed and kept for the record alone.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Faults of plugins, which have no place in a composite.
+    pub problems: Vec<Problem>,
+}
+
+impl<T> Compilation<T> {
+    /// The first composite of the fleet.
+    pub fn first(&self) -> Option<&Composite> {
+        self.contribution.asked_for().first()
+    }
+
+    /// The diagnostics but for those that are allowed.
+    pub fn reported(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|one| !one.is_allowed())
+    }
+
+    /// True if one of the diagnostics is an error.
+    pub fn has_errors(&self) -> bool {
+        self.reported().any(|one| one.severity == Severity::Error)
+    }
+
+    /// The diagnostics as people read them, without colours.
+    pub fn text(&self) -> String {
+        Human::of(self.reported(), &self.sources, false).to_string()
+    }
+}
+
+impl Compilation<Assembly> {
+    /// The text of the one composite that is left when includes, inner composites, sources and wires are resolved; `None` where there is an error.
+    pub fn expanded(&self) -> Option<String> {
+        Some(expanded(self.output.as_ref()?, self.first()?, &self.diagnostics))
+    }
+}

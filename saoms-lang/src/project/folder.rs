@@ -1,0 +1,68 @@
+//! Folders among the inputs of one fleet.
+
+use std::path::{Path, PathBuf};
+
+use super::Input;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
+use crate::load::{Finder, FolderFleet};
+use crate::source::{Sources, Span};
+
+/// Composites that are named where one of them has to be.
+const OFFERED: usize = 5;
+
+/// The inputs of one fleet: a folder stands for the files that run in it. A folder where that is unclear is reported.
+pub(super) fn one_fleet(
+    inputs: &[Input],
+    max_size: u64,
+    finder: &mut Finder,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Input> {
+    let mut all = Vec::with_capacity(inputs.len());
+    for input in inputs {
+        let Input::Path(path) = input else {
+            all.push(input.clone());
+            continue;
+        };
+        if !path.is_dir() {
+            all.push(input.clone());
+            continue;
+        }
+        let mut fleets = finder.load_folder(path, max_size, sources, diagnostics);
+        if fleets.iter().any(|one| one.is_deployable) {
+            fleets.retain(|one| one.is_deployable);
+        }
+        match &fleets[..] {
+            [] => {}
+            [only] => all.extend(only.files.iter().cloned().map(Input::Path)),
+            several => diagnostics.push(unclear(path, several, sources)),
+        }
+    }
+    all
+}
+
+fn unclear(folder: &Path, fleets: &[FolderFleet], sources: &mut Sources) -> Diagnostic {
+    let file = sources.add(folder.display().to_string(), "");
+    let message = format!("a directory with {} fleets, and one is asked for", fleets.len());
+    let firsts = fleets.iter().filter_map(|fleet| fleet.files.first());
+    let mut names: Vec<String> =
+        firsts.take(OFFERED).map(|path| quoted(&path.display().to_string())).collect();
+    if fleets.len() > OFFERED {
+        names.push(format!("{} more", fleets.len() - OFFERED));
+    }
+    let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);
+    let one = one.help(format!("name one: {}", names.join(", ")));
+    if fleets[0].is_deployable {
+        return one;
+    }
+    let description: PathBuf = folder.join("sca-contribution.xml");
+    one.help(format!(
+        "or let {} say what runs: `<deployable composite=\"...\"/>`",
+        quoted(&description.display().to_string())
+    ))
+}
+
+/// True for a fault that those who use a composite have to mend: it is none where these may be elsewhere.
+pub(super) fn is_left_to_users(one: &Diagnostic) -> bool {
+    [&codes::COMPOSITE_PROPERTY_MISSING, &codes::PROMOTED_UNWIRED].contains(&one.code)
+}
