@@ -5,10 +5,12 @@
 //!
 //! - [`RunSummary`]: the counts of a report and their meaning, in reports and on the console,
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
-//! - [`PropertyLanguage`]: the language of a property's text, in editors.
+//! - [`PropertyLanguage`]: the language of a property's text, in editors,
+//! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`).
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
 
+mod events;
 mod language;
 mod picture;
 mod summary;
@@ -16,6 +18,7 @@ mod summary;
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
+pub use events::{EventLanguage, EventReader, LineFault, TimedMessage};
 pub use language::{Completion, CompletionKind, PropertyLanguage, PropertyText};
 pub use picture::{PictureRegistration, RunPicture};
 pub use summary::{Counts, RunSummary};

@@ -1,5 +1,6 @@
 //! What happens outside the fleet, as a scenario tells it.
 
+mod outside;
 mod player;
 mod scenario;
 #[cfg(test)]

@@ -101,7 +101,7 @@ impl Player {
     }
 }
 
-fn draw(happening: &Happening, chance: &mut Chance, area: Option<&Map>) -> Option<Event> {
+pub(super) fn draw(happening: &Happening, chance: &mut Chance, area: Option<&Map>) -> Option<Event> {
     let exceptional = |kind, pieces| Some(Event::Exceptional(ExceptionalEvent { kind, pieces }));
     match happening {
         Happening::Luggage { from, to } => {

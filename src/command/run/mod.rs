@@ -1,6 +1,7 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
 mod console;
+mod events;
 mod outputs;
 mod picture_file;
 mod reload;
@@ -30,6 +31,7 @@ use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{Shown, compiled};
 use crate::output::{counted, eprint, eprint_json, print_json};
 use console::Console;
+use events::Events;
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
 use report_file::ReportFile;
@@ -68,6 +70,11 @@ pub(crate) struct RunArguments {
     /// Write every record of the journal to this file, as lines of JSON; the report holds the newest ones of each component
     #[arg(long, value_name = "FILE")]
     pub(crate) journal: Option<PathBuf>,
+
+    /// Let events happen, one scenario line each, from this file or, for `-`, from standard input as they come: `at 3s luggage (3,1) to
+    /// (3,10)`, or without `at 3s` for now. A wrong line is told, and the run goes on
+    #[arg(long, value_name = "FILE")]
+    pub(crate) events: Option<PathBuf>,
 
     /// Watch the libraries of plugins: components of one that is built anew are replaced while the fleet runs
     #[arg(long, conflicts_with = "virtual_time")]
@@ -111,10 +118,29 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         eprint("error: `--reload` reads composites again, which standard input cannot be\n");
         return Exit::WrongInput;
     }
+    let from_input = |path: &PathBuf| path == Path::new(INPUT);
+    if arguments.events.as_ref().is_some_and(from_input) && files.files.iter().any(from_input) {
+        eprint(
+            "error: composite and events cannot both be read from standard input\n  = help: give one of them a file\n",
+        );
+        return Exit::WrongInput;
+    }
     let Some(assembly) = assembly(arguments, &files) else { return Exit::WrongInput };
     if !outputs::are_writable(arguments) {
         return Exit::WrongInput;
     }
+    let events = arguments.events.as_deref().map(|path| (path, Events::open(path, arguments.seed)));
+    let events = match events {
+        Some((path, Err(error))) => {
+            let path = path.display();
+            eprint(&format!(
+                "error: the events cannot be read from `{path}`: {error}\n\n1 error: nothing was started\n"
+            ));
+            return Exit::WrongInput;
+        }
+        Some((_, Ok(events))) => Some(events),
+        None => None,
+    };
     let report = arguments.report.as_deref().map(|path| Arc::new(ReportFile::new(path)));
     let paths = PictureRegistration::linked("paths");
     if arguments.paths.is_some() && paths.is_none() {
@@ -142,6 +168,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     };
     end_on_signals(signals, fleet.handle());
     let reload = watched.map(|watched| Reload::start(&files, &watched, fleet.handle()));
+    if let Some(events) = events {
+        events.play(fleet.handle(), arguments.virtual_time);
+    }
     let outcome = fleet.run_to_end().outcome;
     drop(reload);
     if report.is_some_and(|report| report.output.has_failed())

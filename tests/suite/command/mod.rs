@@ -1,6 +1,7 @@
 //! The command as a user meets it.
 
 mod contributions;
+mod events;
 mod fmt;
 mod graph;
 mod new;

@@ -21,9 +21,31 @@ const REPEATED: &str =
     "as in `from 10s every 5s until 60s luggage (3,1) to (3,10)`, or `from 10s every 5s 100 times landing 2`";
 
 /// The lines of a text with something in them: they end with the text's lines or `;`, comments are left out.
-pub(super) fn split(text: &str) -> impl Iterator<Item = &str> {
+pub(in crate::environment) fn split(text: &str) -> impl Iterator<Item = &str> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
     lines.flat_map(|line| line.split(';')).filter(|line| !line.trim().is_empty())
+}
+
+/// Reads a line that may begin with its event: then it happens now, and the flag says so.
+pub(in crate::environment) fn read_outside(line: &str, endless: bool) -> Result<(Line, bool), TextFault> {
+    let mut words = Words::of(line, line);
+    let first = words.peek().unwrap_or_default();
+    if STARTS.contains(&first) {
+        return read(line, line, endless).map(|line| (line, false));
+    }
+    if !event::KINDS.contains(&first) {
+        let near = nearest(first, event::KINDS.into_iter().chain(STARTS));
+        let expected = "an event, `at`, `from` or `then` at the start of a line";
+        return Err(words.wrong(first, expected).instead(near));
+    }
+    let bytes = words.bytes(first);
+    let happening = event::read(&mut words)?;
+    if let Some(more) = words.peek() {
+        return Err(words.wrong(more, "the end of the line, or `;` before the next event"));
+    }
+    let (time, every) = (Drawn::fixed(Duration::ZERO), Drawn::fixed(Duration::ZERO));
+    let line = Line { text: 0, time, follows: false, every, times: Some(1), until: None, happening, bytes };
+    Ok((line, true))
 }
 
 /// Reads a line of the text. `endless` says that the line before has no last event.

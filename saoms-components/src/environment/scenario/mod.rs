@@ -3,7 +3,7 @@
 mod complete;
 mod draw;
 mod event;
-mod line;
+pub(super) mod line;
 mod next;
 mod words;
 

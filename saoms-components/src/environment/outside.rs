@@ -1,0 +1,206 @@
+//! Scenario lines from outside a running fleet (`saoms run --events`).
+
+use saoms_api::extension::{EventLanguage, EventReader, LineFault, TimedMessage, submit};
+use saoms_api::host::cdr;
+use saoms_api::{Chance, Time};
+
+use super::player::draw;
+use super::scenario::line::{read_outside, split};
+use super::{Event, Happening, Line, Spot};
+use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
+use crate::text::{TextFault, bytes};
+
+submit! { EventLanguage { topic: ENVIRONMENT.declaration(), new: |seed| Box::new(Reader::new(seed)) } }
+
+/// The number of the first piece of luggage from outside: those of a scenario begin with 1.
+const FIRST_LUGGAGE: u32 = 1_000_001;
+/// The most events of one line.
+const MOST: usize = 100_000;
+
+/// A reader of scenario lines, without knowledge of the area.
+struct Reader {
+    chance: Chance,
+    luggage: u32,
+    /// When the last event of the line before was, and whether it had one.
+    last: Time,
+    is_endless: bool,
+}
+
+impl Reader {
+    fn new(seed: u64) -> Reader {
+        let chance = Chance::for_component(seed, "(outside)");
+        Reader { chance, luggage: FIRST_LUGGAGE, last: Time::START, is_endless: false }
+    }
+
+    /// Reads one event of the line.
+    fn part(&mut self, text: &str, now: Time) -> Result<Vec<TimedMessage>, TextFault> {
+        let (line, is_now) = read_outside(text, self.is_endless)?;
+        place_is_known(&line)?;
+        if line.times.is_none() && line.until.is_none() {
+            let fault = TextFault::new(line.bytes, "found no last event: a line from outside has one");
+            return Err(fault.help("end it: `100 times`, or `until 60s`"));
+        }
+        // Each line draws for itself, so that one more or less changes nothing in the others.
+        let mut chance = Chance::new(self.chance.next_u64());
+        let mut messages = Vec::new();
+        let start = if line.follows { self.last } else { Time::START };
+        let mut at = if is_now { now } else { start + line.time.draw(&mut chance) };
+        let until = line.until.map(|until| Time::START + until);
+        while until.is_none_or(|until| at <= until) {
+            if messages.len() == MOST {
+                let message = format!("found more than {MOST} events in a line from outside");
+                return Err(TextFault::new(line.bytes, message));
+            }
+            let event = draw(&line.happening, &mut chance, None).ok_or_else(|| {
+                TextFault::new(line.bytes.clone(), "found no two blocks for luggage where the line wants it")
+            })?;
+            let (message, text) = self.message(&event);
+            messages.push(TimedMessage { at: (!is_now).then_some(at), bytes: cdr::encode(&message), text });
+            self.last = at;
+            if line.times.is_some_and(|times| messages.len() as u64 >= times) {
+                break;
+            }
+            at = at + line.every.draw(&mut chance);
+        }
+        Ok(messages)
+    }
+
+    /// The message of an event, and the scenario line that says it, without its time.
+    fn message(&mut self, event: &Event) -> (EnvironmentEvent, String) {
+        match event {
+            Event::Luggage { from, to } => {
+                let request = EventLuggage::request(self.luggage, *from, *to);
+                self.luggage = self.luggage.saturating_add(1);
+                (request.into(), format!("luggage {from} to {to}"))
+            }
+            Event::Exceptional(event) => {
+                let kind = match event.kind {
+                    ExceptionalKind::Landing => "landing",
+                    ExceptionalKind::Takeoff => "takeoff",
+                };
+                (event.clone().into(), format!("{kind} {}", event.pieces))
+            }
+            Event::Breakdown(robot) => (Fault::breakdown(*robot).into(), format!("breakdown {robot}")),
+            Event::End => (EnvironmentEvent::default(), "end".to_owned()),
+        }
+    }
+}
+
+/// Refuses `random`, for which the area has to be known.
+fn place_is_known(line: &Line) -> Result<(), TextFault> {
+    let Happening::Luggage { from, to } = &line.happening else { return Ok(()) };
+    match [from, to].into_iter().find(|spot| spot.value == Spot::Anywhere) {
+        None => Ok(()),
+        Some(spot) => {
+            let expected = "a block such as `(3,1)`, or two corners such as `(1,0)..(10,10)`";
+            let fault = TextFault::new(spot.bytes.clone(), format!("found `random`, expected {expected}"));
+            Err(fault.help("only a scenario in a composite knows the area"))
+        }
+    }
+}
+
+impl EventReader for Reader {
+    fn read(&mut self, line: &str, now: Time) -> Result<Vec<TimedMessage>, LineFault> {
+        let mut messages = Vec::new();
+        for part in split(line) {
+            let offset = bytes(line, part).start;
+            messages.extend(self.part(part, now).map_err(|fault| LineFault {
+                bytes: fault.bytes.start + offset..fault.bytes.end + offset,
+                message: fault.message,
+                instead: fault.instead,
+                help: fault.help,
+            })?);
+        }
+        Ok(messages)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    /// The events of lines that come one after the other at 7 s, or what is wrong with a line.
+    fn events(lines: &[&str]) -> Vec<String> {
+        let mut reader = Reader::new(1);
+        let mut told = Vec::new();
+        for line in lines {
+            match reader.read(line, Time::START + Duration::from_secs(7)) {
+                Ok(messages) => told.extend(messages.into_iter().map(|TimedMessage { at, text, .. }| {
+                    at.map_or_else(|| format!("now {text}"), |at| format!("{at} {text}"))
+                })),
+                Err(LineFault { bytes, message, instead, .. }) => {
+                    told.push(format!("`{}`: {message}, {instead:?}", &line[bytes]));
+                }
+            }
+        }
+        told
+    }
+
+    #[test]
+    fn lines_become_messages_at_their_times() {
+        assert_eq!(
+            events(&[
+                "luggage (3,1) to (3,10) # soon",
+                "at 9s landing 4; then 500ms takeoff 2",
+                "",
+                "then 1s every 2s 2 times breakdown Robot002",
+                "from 1s every 1s until 3s luggage (1,5) to (10,5)",
+                "end",
+            ]),
+            [
+                "now luggage (3,1) to (3,10)",
+                "9.000 s landing 4",
+                "9.500 s takeoff 2",
+                "10.500 s breakdown 2",
+                "12.500 s breakdown 2",
+                "1.000 s luggage (1,5) to (10,5)",
+                "2.000 s luggage (1,5) to (10,5)",
+                "3.000 s luggage (1,5) to (10,5)",
+                "now end",
+            ]
+        );
+    }
+
+    #[test]
+    fn luggage_has_numbers_of_its_own_and_chance_follows_from_the_seed() {
+        let line = "at 1s 2 times luggage (1,0)..(10,10) to (1,0)..(10,10)";
+        let read = |seed| Reader::new(seed).read(line, Time::START).unwrap();
+        let first: EnvironmentEvent = cdr::decode(&read(1)[0].bytes).unwrap();
+        let second: EnvironmentEvent = cdr::decode(&read(1)[1].bytes).unwrap();
+        assert_eq!((first.luggage[0].luggage, second.luggage[0].luggage), (1_000_001, 1_000_002));
+        assert_eq!(read(1), read(1));
+        assert_ne!(read(1), read(2));
+    }
+
+    #[test]
+    fn wrong_lines_are_refused_at_the_very_word() {
+        assert_eq!(
+            events(&[
+                "at 6s lugage (3,1) to (3,10)",
+                "landin 4",
+                "att 4s landing 4",
+                "hello",
+                "luggage random to (1,1)",
+                "at 1s landing 1; from 1s every 1s landing 2",
+                "from 1s every 1ms until 10h landing 2",
+                "luggage (3,1) to (3,1)..(3,1)",
+                "luggage (3,1) to (3,10) quickly",
+                "ü",
+            ]),
+            [
+                "`lugage`: found `lugage`, expected `luggage`, `landing`, `takeoff`, `breakdown` or `end`, Some(\"luggage\")",
+                "`landin`: found `landin`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"landing\")",
+                "`att`: found `att`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"at\")",
+                "`hello`: found `hello`, expected an event, `at`, `from` or `then` at the start of a line, None",
+                "`random`: found `random`, expected a block such as `(3,1)`, or two corners such as `(1,0)..(10,10)`, None",
+                "`landing`: found no last event: a line from outside has one, None",
+                "`landing`: found more than 100000 events in a line from outside, None",
+                "`(3,1)..(3,1)`: found (3,1), where the luggage is already: expected another block, None",
+                "`quickly`: found `quickly`, expected the end of the line, or `;` before the next event, None",
+                "`ü`: found `ü`, expected an event, `at`, `from` or `then` at the start of a line, None",
+            ]
+        );
+    }
+}

@@ -1,0 +1,170 @@
+//! `saoms run --events`: events from outside, a line each, while the fleet runs.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+use std::thread;
+
+use saoms_api::extension::{EventLanguage, EventReader, LineFault};
+use saoms_api::{Level, Time};
+use saoms_core::schedule::{Content, Handle, Hold, Injection};
+
+/// The most bytes of a line.
+const LONGEST: usize = 65_536;
+
+/// Lines of events that are not read yet.
+pub(super) struct Events {
+    lines: Box<dyn BufRead + Send>,
+    languages: Vec<(&'static str, Box<dyn EventReader>)>,
+    /// The number of the line that was read last, from 1.
+    number: usize,
+}
+
+impl Events {
+    /// Opens a file, or standard input where the path is `-`.
+    pub(super) fn open(path: &Path, seed: u64) -> io::Result<Events> {
+        let lines: Box<dyn BufRead + Send> = if path == Path::new("-") {
+            Box::new(BufReader::new(io::stdin()))
+        } else {
+            let file = File::open(path)?;
+            if file.metadata()?.is_dir() {
+                return Err(io::Error::from(io::ErrorKind::IsADirectory));
+            }
+            Box::new(BufReader::new(file))
+        };
+        let languages = EventLanguage::linked().map(|one| (one.topic.name, (one.new)(seed)));
+        Ok(Events { lines, languages: languages.collect(), number: 0 })
+    }
+
+    /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same lines give the same
+    /// run; in real time they are read as they come, and the run goes on at least to their end.
+    pub(super) fn play(mut self, handle: Handle, is_virtual: bool) {
+        if is_virtual {
+            return self.read_all(&handle);
+        }
+        let (hold, fleet): (Hold, Handle) = (handle.hold(), handle.clone());
+        let read = move || {
+            self.read_all(&fleet);
+            drop(hold);
+        };
+        if let Err(error) = thread::Builder::new().name("events".to_owned()).spawn(read) {
+            handle.note(Level::Error, format!("no events are read: {error}"));
+        }
+    }
+
+    fn read_all(&mut self, handle: &Handle) {
+        let mut line = Vec::new();
+        loop {
+            match self.next(&mut line) {
+                Ok(false) => return,
+                Ok(true) => self.take(&line, handle),
+                Err(error) => {
+                    return handle.note(Level::Error, format!("the events cannot be read any more: {error}"));
+                }
+            }
+        }
+    }
+
+    /// Reads the next line; what is beyond the most bytes of a line is left out, but for one that tells. `false` is the end.
+    fn next(&mut self, line: &mut Vec<u8>) -> io::Result<bool> {
+        line.clear();
+        self.number += 1;
+        let count = (&mut self.lines).take(LONGEST as u64 + 1).read_until(b'\n', line)?;
+        if line.last() == Some(&b'\n') {
+            line.pop();
+        } else if count > LONGEST {
+            self.lines.skip_until(b'\n')?;
+        }
+        Ok(count > 0)
+    }
+
+    /// Lets what a line says happen, or tells what is wrong with it.
+    fn take(&mut self, line: &[u8], handle: &Handle) {
+        let now = handle.progress().time;
+        let result = if line.len() > LONGEST {
+            Err(format!("found more than {LONGEST} bytes in one line"))
+        } else {
+            match std::str::from_utf8(line) {
+                Ok(text) => self.inject(text.trim_end_matches('\r'), now, handle),
+                Err(_) => Err("found bytes that are no UTF-8".to_owned()),
+            }
+        };
+        match result {
+            Ok(count) => handle.count("events.taken", count),
+            Err(problem) => {
+                handle.count("events.ignored", 1);
+                handle
+                    .note(Level::Error, format!("line {} of the events is ignored: {problem}", self.number));
+            }
+        }
+    }
+
+    /// Injects the messages of a line, and counts them.
+    fn inject(&mut self, line: &str, now: Time, handle: &Handle) -> Result<i64, String> {
+        let mut problem = None;
+        for (topic, reader) in &mut self.languages {
+            match reader.read(line, now) {
+                Ok(messages) => {
+                    let count = i64::try_from(messages.len()).unwrap_or(i64::MAX);
+                    for message in messages {
+                        let (topic, content) = ((*topic).to_owned(), Content::Bytes(message.bytes));
+                        let injection = Injection { topic, content, at: message.at, text: message.text };
+                        handle.inject(injection).map_err(|error| error.to_string())?;
+                    }
+                    return Ok(count);
+                }
+                Err(fault) => problem = problem.or(Some(fault)),
+            }
+        }
+        Err(problem
+            .map_or_else(|| "no class of this program takes events".to_owned(), |one| shown(line, &one)))
+    }
+}
+
+/// A fault with an excerpt of its line.
+fn shown(line: &str, fault: &LineFault) -> String {
+    // What comes from outside must not steer the terminal.
+    let plain = |text: &str| text.replace(|sign: char| sign.is_control(), " ");
+    let (start, end) = (fault.bytes.start.min(line.len()), fault.bytes.end.min(line.len()));
+    let before = line.get(..start).map_or(0, |text| text.chars().count());
+    let marked = line.get(start..end).map_or(1, |text| text.chars().count().max(1));
+    let mut text = plain(&fault.message);
+    if let Some(instead) = &fault.instead {
+        text.push_str(&format!("; did you mean `{}`?", plain(instead)));
+    }
+    text.push_str(&format!("\n    {}\n    {}{}", plain(line), " ".repeat(before), "^".repeat(marked)));
+    if let Some(help) = &fault.help {
+        text.push_str(&format!("\n    = help: {help}"));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_is_shown_at_its_word_and_control_characters_are_not() {
+        let line = "at 6s lugäge\u{1b}[2J (3,1)";
+        let fault = LineFault {
+            bytes: 6..13,
+            message: "found `lugäge`".to_owned(),
+            instead: Some("luggage".to_owned()),
+            help: Some("look".to_owned()),
+        };
+        let expected = "found `lugäge`; did you mean `luggage`?\n    at 6s lugäge [2J (3,1)\n          ^^^^^^\n    = help: look";
+        assert_eq!(shown(line, &fault), expected);
+    }
+
+    #[test]
+    fn lines_that_are_too_long_are_read_to_their_end() {
+        let text = format!("one\n{}\nthree", "x".repeat(3 * LONGEST));
+        let lines = Box::new(io::Cursor::new(text));
+        let mut events = Events { lines, languages: Vec::new(), number: 0 };
+        let (mut line, mut lengths) = (Vec::new(), Vec::new());
+        while events.next(&mut line).unwrap() {
+            lengths.push(line.len());
+        }
+        assert_eq!(lengths, [3, LONGEST + 1, 5]);
+    }
+}

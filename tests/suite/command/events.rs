@@ -1,0 +1,158 @@
+//! Events from outside, as somebody writes them to `saoms run --events`.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// An area with two robots, a master, and an environment without a scenario.
+const FLEET: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="Yard" targetNamespace="http://example.com/yard">
+  <component name="World">
+    <implementation.rust class="saoms.World"/>
+    <property name="ID">World</property>
+    <property name="period">100</property>
+    <property name="width">6</property>
+    <property name="height">6</property>
+  </component>
+  <component name="Environment">
+    <implementation.rust class="saoms.Environment"/>
+    <property name="ID">Environment</property>
+    <property name="period">100</property>
+  </component>
+  <component name="Master">
+    <implementation.rust class="saoms.MasterEnvironment"/>
+    <property name="ID">Master</property>
+    <property name="period">100</property>
+  </component>
+  <component name="Robot001">
+    <implementation.rust class="saoms.Robot"/>
+    <property name="ID">Robot001</property>
+    <property name="period">100</property>
+    <property name="chargeX">0</property>
+    <property name="chargeY">0</property>
+    <reference name="world" target="World"/>
+  </component>
+</composite>
+"#;
+
+struct Yard {
+    folder: tempfile::TempDir,
+}
+
+impl Yard {
+    fn new() -> Yard {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("yard.composite"), FLEET).unwrap();
+        Yard { folder }
+    }
+
+    fn spawn(&self, arguments: &[&str]) -> Child {
+        Command::new(env!("CARGO_BIN_EXE_saoms"))
+            .args(["run", "yard.composite", "--report", "report.json"])
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    }
+
+    /// Runs with these lines on standard input.
+    fn run(&self, arguments: &[&str], lines: &str) -> (Output, String) {
+        let mut child = self.spawn(arguments);
+        child.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let text = String::from_utf8(output.stdout.clone()).unwrap();
+        (output, text)
+    }
+
+    fn report(&self) -> Value {
+        serde_json::from_str(&fs::read_to_string(self.folder.path().join("report.json")).unwrap()).unwrap()
+    }
+}
+
+const LINES: &str = "luggage (3,1) to (3,4)\nat 20s luggage (1,1) to (5,5); then 1s landing 2\nat 60s end\n";
+
+#[test]
+fn events_of_standard_input_and_of_a_file_give_the_same_run_in_virtual_time() {
+    let yard = Yard::new();
+    let (output, text) = yard.run(&["--virtual", "--events", "-", "--for", "10min"], LINES);
+    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(text.contains("2 of 2 pieces of luggage delivered"), "{text}");
+    let report = yard.report();
+    assert_eq!((&report["events"]["taken"], &report["events"]["ignored"]), (&4.into(), &Value::Null));
+    assert!(report["time_s"].as_f64().unwrap() >= 60.0, "{}", report["time_s"]);
+    fs::write(yard.folder.path().join("events.txt"), LINES).unwrap();
+    let (_, again) = yard.run(&["--virtual", "--events", "events.txt", "--for", "10min"], "");
+    assert_eq!(again, text);
+    assert_eq!(yard.report()["trace_hash"], report["trace_hash"]);
+    let other = LINES.replace("(5,5)", "(5,4)");
+    yard.run(&["--virtual", "--events", "-", "--for", "10min"], &other);
+    assert_ne!(yard.report()["trace_hash"], report["trace_hash"]);
+}
+
+#[test]
+fn a_wrong_line_is_told_with_its_number_and_the_run_goes_on() {
+    let lines = "at 1s lugage (3,1) to (3,4)\n\nluggage (3,1) to (3,4)\nluggage (99,1) to (3,4)\n\x1b[2Jend\n\u{fffd}";
+    let yard = Yard::new();
+    let (output, text) = yard.run(&["--virtual", "--events", "-", "--for", "10min"], lines);
+    assert!(output.status.success(), "{text}");
+    let first = "line 1 of the events is ignored: found `lugage`, expected `luggage`, `landing`, `takeoff`, `breakdown` or \
+                 `end`; did you mean `luggage`?\n    at 1s lugage (3,1) to (3,4)\n          ^^^^^^\n";
+    assert!(text.contains(first), "{text}");
+    assert!(text.contains("line 5 of the events is ignored: ") && !text.contains('\x1b'), "{text}");
+    assert!(text.contains("ignores what `(outside)` sent"), "{text}");
+    let report = yard.report();
+    assert_eq!(report["events"], serde_json::json!({ "ignored": 3, "taken": 2 }));
+    assert_eq!(report["luggage"]["delivered"], 1);
+}
+
+#[test]
+fn events_are_taken_as_they_come_and_the_end_of_input_is_no_end_of_the_run() {
+    let yard = Yard::new();
+    let mut child = yard.spawn(&["--events", "-", "--for", "60s", "--seed", "1"]);
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+    let mut input = child.stdin.take().unwrap();
+    assert!(lines.any(|line| line.contains("no scenario")));
+    writeln!(input, "luggage (1,1) to (2,1)").unwrap();
+    assert!(lines.any(|line| line.contains("deposited luggage 1000001")));
+    writeln!(input, "luggage (1,2) to (2,2)").unwrap();
+    drop(input);
+    let rest: Vec<_> = lines.collect();
+    assert!(child.wait().unwrap().success(), "{rest:?}");
+    assert!(rest.iter().any(|line| line.contains("2 of 2 pieces of luggage delivered")), "{rest:?}");
+}
+
+#[test]
+fn events_that_cannot_be_read_start_nothing() {
+    let yard = Yard::new();
+    for (arguments, expected) in [
+        (
+            &["--events", "nowhere.txt"][..],
+            "error: the events cannot be read from `nowhere.txt`: No such file",
+        ),
+        (&["--events", "."], "error: the events cannot be read from `.`: is a directory"),
+        (&["--events", "-", "-"], "error: composite and events cannot both be read from standard input"),
+    ] {
+        let (output, text) = yard.run(arguments, "");
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(text.is_empty() && error.starts_with(expected), "{error}");
+    }
+}
+
+#[test]
+fn why_leads_back_to_the_event() {
+    let yard = Yard::new();
+    yard.run(&["--virtual", "--events", "-", "--for", "10min"], LINES);
+    let output = Command::new(env!("CARGO_BIN_EXE_saoms"))
+        .args(["why", "Robot001", "--at", "2s", "--report", "report.json"])
+        .current_dir(yard.folder.path())
+        .output()
+        .unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("(outside)") && text.contains("luggage (3,1) to (3,4)"), "{text}");
+}
