@@ -4,6 +4,7 @@
 
 pub mod assembly;
 pub mod check;
+pub mod contribution;
 pub mod diagnostic;
 pub mod expression;
 pub mod load;

@@ -7,8 +7,8 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use saoms_lang::contribution::composites_below;
 use saoms_lang::diagnostic::{Diagnostics, human};
-use saoms_lang::load::composites_below;
 use saoms_lang::project::{INPUT, read};
 use saoms_lang::source::{FileId, Sources};
 use saoms_lang::xml::{self, Document};

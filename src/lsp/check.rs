@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
+use saoms_lang::contribution::Finder;
 use saoms_lang::diagnostic::{Diagnostic, codes};
-use saoms_lang::load::Finder;
 use saoms_lang::project::Project;
 use saoms_lang::source::{OpenTexts, Sources, identity};
 

@@ -353,7 +353,7 @@ fn is_own_alone(name: &str) -> bool {
 }
 
 /// The edits that give an element another name, in its end tag too.
-pub(super) fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -> Vec<Edit> {
+pub(crate) fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -> Vec<Edit> {
     let whole = prefix.map_or_else(|| name.to_owned(), |prefix| format!("{prefix}:{name}"));
     let file = element.document().file();
     let spans = [Some(element.name_span()), element.end_name_span()];

@@ -13,7 +13,7 @@ use crate::xml::{self, Element};
 
 /// Checks the file `path`. One of another kind, which may have the same name, is passed over unless it was asked for. True if it is one of
 /// definitions, or something is wrong with it.
-pub(super) fn check(
+pub(crate) fn check(
     path: &Path,
     is_asked_for: bool,
     max_size: u64,

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::children::Family;
 use super::root::of_another_kind;
-use super::shelf::{DESCRIPTIONS, GENERATED};
 use super::vocabulary::CONTRIBUTION;
 use super::{Loader, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
@@ -13,12 +12,17 @@ use crate::model::Version;
 use crate::source::{FileId, Location, Sources, Text};
 use crate::xml::{self, Element};
 
+/// Where the description of a contribution is in its folder: what its author wrote, or else what a tool made.
+pub(crate) const DESCRIPTIONS: [&str; 3] =
+    ["META-INF/sca-contribution.xml", "sca-contribution.xml", GENERATED];
+/// What a tool says of a contribution, beside what its author does (SCA Assembly 1.1, 10.2.2).
+pub(crate) const GENERATED: &str = "META-INF/sca-contribution-generated.xml";
 /// The kinds of imports and exports that are known beside those of namespaces.
 const ENDINGS: [&str; 4] = ["java", "resource", "c", "cpp"];
 
 /// What is imported and exported.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     /// Definitions of a namespace, as composites.
     Namespace,
     /// What belongs to classes of a package.
@@ -26,54 +30,54 @@ pub(super) enum Kind {
 }
 
 /// One `import` or `export`.
-pub(super) struct Entry {
+pub(crate) struct Entry {
     kind: Kind,
     what: String,
     /// Where it is written.
-    pub(super) at: Location,
+    pub(crate) at: Location,
     /// The folder of the other contribution, where it is said.
-    pub(super) location: Option<PathBuf>,
+    pub(crate) location: Option<PathBuf>,
     /// Whether nothing else is said of it.
     is_bare: bool,
 }
 
 /// A composite that runs by itself.
-pub(super) struct Deployable {
-    pub(super) name: Text,
+pub(crate) struct Deployable {
+    pub(crate) name: Text,
     /// The namespace that it is in; `None` where the name does not say it.
-    pub(super) namespace: Option<String>,
+    pub(crate) namespace: Option<String>,
 }
 
 /// What the description of a contribution says.
 #[derive(Default)]
-pub(super) struct Description {
-    pub(super) path: PathBuf,
-    pub(super) imports: Vec<Entry>,
-    pub(super) exports: Vec<Entry>,
-    pub(super) deployables: Vec<Deployable>,
+pub(crate) struct Description {
+    pub(crate) path: PathBuf,
+    pub(crate) imports: Vec<Entry>,
+    pub(crate) exports: Vec<Entry>,
+    pub(crate) deployables: Vec<Deployable>,
     /// Whether what it says could not be read, which is reported.
-    pub(super) is_faulty: bool,
+    pub(crate) is_faulty: bool,
 }
 
 /// The file that describes the contribution in a folder.
-pub(super) fn path_in(root: &Path) -> Option<PathBuf> {
+pub(crate) fn path_in(root: &Path) -> Option<PathBuf> {
     DESCRIPTIONS.iter().map(|name| root.join(name)).find(|path| path.is_file())
 }
 
 impl Entry {
-    pub(super) fn is(&self, kind: Kind, what: &str) -> bool {
+    pub(crate) fn is(&self, kind: Kind, what: &str) -> bool {
         self.kind == kind && self.what == what
     }
 
     /// The namespace that it is about.
-    pub(super) fn namespace(&self) -> Option<&str> {
+    pub(crate) fn namespace(&self) -> Option<&str> {
         (self.kind == Kind::Namespace).then_some(&self.what)
     }
 }
 
 impl Deployable {
     /// Its name without a prefix.
-    pub(super) fn local(&self) -> &str {
+    pub(crate) fn local(&self) -> &str {
         self.name.split_once(':').map_or(self.name.as_str(), |(_, local)| local)
     }
 }
@@ -81,7 +85,7 @@ impl Deployable {
 impl Description {
     /// What is said of the contribution in a folder: by its author, and by the tools that made it. `None` where nobody says anything; what is wrong
     /// is reported.
-    pub(super) fn of(
+    pub(crate) fn of(
         root: &Path,
         max_size: u64,
         sources: &mut Sources,
@@ -105,12 +109,12 @@ impl Description {
     }
 
     /// Whether composites of a namespace are given to other contributions.
-    pub(super) fn exports(&self, namespace: &str) -> bool {
+    pub(crate) fn exports(&self, namespace: &str) -> bool {
         self.exports.iter().any(|entry| entry.is(Kind::Namespace, namespace))
     }
 
     /// Reads a description.
-    pub(super) fn read(
+    pub(crate) fn read(
         path: PathBuf,
         max_size: u64,
         sources: &mut Sources,

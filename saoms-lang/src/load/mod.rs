@@ -1,8 +1,7 @@
 //! From text to the model, with everything that is wrong in it.
 //!
-//! [`load`] reads a file and makes a [`Composite`] of it. All faults of the file are reported in one run; those behind
-//! the first that makes it ill-formed XML are not, since what is meant there cannot be known. Nothing beyond the one
-//! file is looked at; [`read_values`] reads those that properties take their values from.
+//! [`read`] reads a file and [`load_file`] makes a [`Composite`] of its text. All faults of the file are reported in one run. Nothing beyond
+//! the one file is looked at: [`contribution`](crate::contribution) finds what it names.
 
 mod attributes;
 mod children;
@@ -10,60 +9,32 @@ mod component;
 mod component_type;
 mod composite;
 mod contract;
-mod definitions;
-mod description;
+pub(crate) mod definitions;
+pub(crate) mod description;
 mod encoding;
-mod exchange;
-mod finder;
-mod folder;
-mod head;
-mod imports;
 mod looping;
 mod missing;
-mod named;
 mod near;
 mod property;
-mod read;
+pub(crate) mod read;
 mod root;
 mod severity;
-mod shelf;
-mod side;
-mod table;
 mod tangle;
 #[cfg(test)]
 mod tests;
-mod value_file;
-mod values;
 pub mod vocabulary;
 
-use std::path::Path;
 use std::sync::Arc;
 
+pub(crate) use children::renaming;
 pub use component_type::load_component_type;
-pub use finder::Finder;
-pub use folder::{FolderFleet, composites_below, load_folder};
-pub use imports::{imported_near, importing_near};
-pub use named::load_named;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
-pub use shelf::{composites_near, description_near};
-pub use side::SideFile;
-pub use table::table;
 use tangle::Swallowed;
-pub use values::read_values;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::model::{Composite, SeverityRule, Version};
 use crate::source::{FileId, Sources};
 use crate::xml;
-
-/// Reads the composite in the file `path` and the files of its values, each of at most [`MAX_SIZE`] bytes; see [`load_file`]
-/// and [`read_values`].
-pub fn load(path: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
-    let file = read(path, MAX_SIZE, sources, diagnostics)?;
-    let mut composite = load_file(file, sources, diagnostics)?;
-    read_values(&mut composite, MAX_SIZE, sources, diagnostics);
-    Some(composite)
-}
 
 /// Makes the model of a text that was read before. `None` when the text is no well-formed XML with a `composite` as its
 /// root; otherwise the model of all that could be understood, also when there are errors.

@@ -83,7 +83,7 @@ fn add(
 ///
 /// # Errors
 /// What to say there when there is no such file or it is no text in UTF-8.
-pub(super) fn value(
+pub(crate) fn value(
     path: &Path,
     max_size: u64,
     named: Location,

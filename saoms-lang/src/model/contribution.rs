@@ -10,7 +10,7 @@ use crate::xml::ElementId;
 
 /// What forms one fleet: the composites that were asked for, and what those name in other files.
 ///
-/// [`Contribution::of`] links names among the composites it is given; [`load_named`](crate::load::load_named) also looks for
+/// [`Contribution::of`] links names among the composites it is given; [`load_named`](crate::contribution::load_named) also looks for
 /// those in files.
 #[derive(Debug, Default)]
 pub struct Contribution {

@@ -11,7 +11,7 @@ pub struct Replicas {
     pub from: Option<Text>,
     /// `overrides`: the file of the table.
     pub overrides: Option<Text>,
-    /// What that file holds; `None` until [`read_values`](crate::load::read_values), and where it cannot be read.
+    /// What that file holds; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be read.
     pub table: Option<Table>,
 }
 

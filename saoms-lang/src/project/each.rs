@@ -8,8 +8,8 @@ use super::merge::Merged;
 use super::{ClassPath, Classes, Compilation, Input, Loaded, Problem, Project, load};
 use crate::assembly::Assembly;
 use crate::check::{self, Options};
+use crate::contribution::{Finder, FolderFleet, SideFile};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::load::{Finder, FolderFleet, SideFile};
 use crate::model::Contribution;
 use crate::source::{Sources, identity};
 

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::Input;
+use crate::contribution::{Finder, FolderFleet};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
-use crate::load::{Finder, FolderFleet};
 use crate::source::{Sources, Span};
 
 /// Composites that are named where one of them has to be.

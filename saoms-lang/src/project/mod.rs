@@ -20,7 +20,8 @@ use std::sync::Arc;
 
 use crate::assembly::Assembly;
 use crate::check::Census;
-use crate::load::{Finder, MAX_SIZE};
+use crate::contribution::Finder;
+use crate::load::MAX_SIZE;
 use crate::source::OpenTexts;
 
 pub use classes::{ClassPath, Classes, LibraryResolver, Problem};

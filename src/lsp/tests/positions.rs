@@ -4,8 +4,8 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use saoms_lang::check::{Options, count};
+use saoms_lang::contribution::load;
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::load;
 use saoms_lang::model::Contribution;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{OpenTexts, Sources};

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use saoms_lang::assembly::{Assembly, expanded};
 use saoms_lang::check::{Options, Setting, Variable};
+use saoms_lang::contribution::{load, load_named};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, human};
-use saoms_lang::load::{MAX_SIZE, load, load_file, load_named, read_from};
+use saoms_lang::load::{MAX_SIZE, load_file, read_from};
 use saoms_lang::model::Contribution;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::Sources;

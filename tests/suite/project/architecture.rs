@@ -16,6 +16,7 @@ const ORDERS: &[(&str, &[&str])] = &[
             "xml",
             "model",
             "load",
+            "contribution",
             "schema",
             "registry",
             "assembly",

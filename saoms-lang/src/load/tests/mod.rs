@@ -1,5 +1,4 @@
 mod extension;
-mod finder;
 mod large;
 mod mended;
 mod reading;

@@ -13,7 +13,7 @@ const TYPE_ATTRIBUTES: &[Known] = &[
 ];
 
 /// The root of the file.
-pub(in crate::load) static DEFINITIONS: Kind = Kind {
+pub(crate) static DEFINITIONS: Kind = Kind {
     name: "definitions",
     doc: "Intents, policy sets, and the types of bindings and implementations.",
     attributes: &[known("targetNamespace", Holds::Namespace, "The namespace of the names that it gives.")],

@@ -12,7 +12,8 @@ mod types;
 
 pub(super) use contribution::COMPONENT_TYPE;
 pub use contribution::CONTRIBUTION;
-pub(super) use definitions::{DEFINITIONS, IN_DEFINITIONS, definition};
+pub(crate) use definitions::DEFINITIONS;
+pub(super) use definitions::{IN_DEFINITIONS, definition};
 pub use elements::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,

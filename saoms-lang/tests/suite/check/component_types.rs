@@ -4,8 +4,9 @@ use std::fs;
 
 use expect_test::expect;
 use saoms_lang::check::{Options, check};
+use saoms_lang::contribution::{load_named, read_values};
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load_file, load_named, read, read_values};
+use saoms_lang::load::{MAX_SIZE, load_file, read};
 use saoms_lang::model::Contribution;
 use saoms_lang::source::Sources;
 

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use saoms_lang::check::{Options, check};
+use saoms_lang::contribution::{load, load_named};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity};
-use saoms_lang::load::{MAX_SIZE, load, load_named};
+use saoms_lang::load::MAX_SIZE;
 use saoms_lang::model::Contribution;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{Location, Sources, Span};

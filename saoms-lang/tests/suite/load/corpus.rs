@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use proptest::prelude::*;
+use saoms_lang::contribution::load;
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load, read};
+use saoms_lang::load::{MAX_SIZE, read};
 use saoms_lang::source::Sources;
 
 use crate::load::files::{self, Sample};

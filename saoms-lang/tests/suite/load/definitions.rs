@@ -1,8 +1,9 @@
 //! `definitions.xml`, by itself, in a folder and beside a composite.
 
 use expect_test::expect;
+use saoms_lang::contribution::{Finder, SideFile, load_folder};
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{Finder, MAX_SIZE, SideFile, load_folder};
+use saoms_lang::load::MAX_SIZE;
 use saoms_lang::source::{OpenTexts, Sources};
 
 use crate::load::support::{shown, written};

@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 use std::fs;
 
 use expect_test::expect;
+use saoms_lang::contribution::{composites_below, load_folder};
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, composites_below, load_folder};
+use saoms_lang::load::MAX_SIZE;
 use saoms_lang::source::Sources;
 
 use crate::load::imports::description;

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use expect_test::expect;
+use saoms_lang::contribution::{load, load_named};
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load, load_named};
+use saoms_lang::load::MAX_SIZE;
 use saoms_lang::model::{Contribution, Link, Naming};
 use saoms_lang::source::{OpenTexts, Sources};
 

@@ -1,7 +1,7 @@
 //! The names in composites, and in the files beside them, each with what it stands for.
 
+use saoms_lang::contribution::table;
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::table;
 use saoms_lang::model::Table;
 use saoms_lang::source::{Sources, Text};
 

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
-use saoms_lang::load::{MAX_SIZE, composites_near, description_near, imported_near, importing_near};
+use saoms_lang::contribution::{composites_near, description_near, imported_near, importing_near};
+use saoms_lang::load::MAX_SIZE;
 use saoms_lang::source::{OpenTexts, identity};
 
 use super::file::File;

@@ -1,8 +1,9 @@
 //! Laws of editors: what has to hold whatever the text.
 
 use saoms_lang::check::{Options, count};
+use saoms_lang::contribution::{load, load_named};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, human};
-use saoms_lang::load::{MAX_SIZE, load, load_named};
+use saoms_lang::load::MAX_SIZE;
 use saoms_lang::model::Contribution;
 use saoms_lang::source::{OpenTexts, Sources};
 

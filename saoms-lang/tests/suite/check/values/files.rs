@@ -7,8 +7,9 @@ use expect_test::expect;
 use saoms_api::host::PropertyValue;
 use saoms_lang::assembly::Assembly;
 use saoms_lang::check::{Options, check};
+use saoms_lang::contribution::{load, load_named, read_values};
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load, load_file, load_named, read, read_values};
+use saoms_lang::load::{MAX_SIZE, load_file, read};
 use saoms_lang::model::Contribution;
 use saoms_lang::source::Sources;
 

@@ -4,10 +4,10 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::read;
-use super::table::table;
+use super::overrides::table;
 use super::value_file::{self, FileValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
+use crate::load::read;
 use crate::model::Composite;
 use crate::source::{Sources, Span, Text};
 

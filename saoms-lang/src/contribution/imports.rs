@@ -5,10 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use super::MAX_SIZE;
-use super::description::{self, Description, Kind};
-use super::shelf::{self, Shelf};
+use super::index::{self, Index};
 use crate::diagnostic::{Candidates, Diagnostics, quoted};
+use crate::load::MAX_SIZE;
+use crate::load::description::{self, Description, Kind};
 use crate::source::{OpenTexts, Sources, identity};
 use crate::xml::escaped;
 
@@ -101,7 +101,7 @@ impl Imports {
     /// The composite of this name that the contribution in `root` imports.
     pub(super) fn find(
         &mut self,
-        shelf: &mut Shelf,
+        index: &mut Index,
         root: &Path,
         namespaces: Option<&[String]>,
         local: &str,
@@ -110,7 +110,7 @@ impl Imports {
     ) -> Option<PathBuf> {
         namespaces.unwrap_or_default().iter().find_map(|namespace| {
             let from = self.exporters(root, Kind::Namespace, namespace, sources, diagnostics);
-            from.iter().find_map(|root| shelf.find(root, Some(std::slice::from_ref(namespace)), local))
+            from.iter().find_map(|root| index.find(root, Some(std::slice::from_ref(namespace)), local))
         })
     }
 
@@ -127,7 +127,7 @@ impl Imports {
     /// Why a composite of these namespaces cannot be found through the description of the contribution in `root`; nothing where it has none.
     pub(super) fn hints(
         &mut self,
-        (shelf, candidates): (&mut Shelf, &mut Candidates),
+        (index, candidates): (&mut Index, &mut Candidates),
         root: &Path,
         namespaces: Option<&[String]>,
         local: &str,
@@ -147,7 +147,7 @@ impl Imports {
             }
             let holder = others.into_iter().find(|other| {
                 let is_known = self.description(other, sources, diagnostics).is_some();
-                is_known && shelf.find(other, Some(std::slice::from_ref(namespace)), local).is_some()
+                is_known && index.find(other, Some(std::slice::from_ref(namespace)), local).is_some()
             });
             let Some(holder) = holder else {
                 hints.extend(is_imported.then(|| match from.first() {
@@ -226,17 +226,17 @@ impl Imports {
 pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
     let mut imports = Imports::untold(MAX_SIZE);
-    let root = shelf::root(folder);
+    let root = index::root(folder);
     let description = imports.description(&root, &mut sources, &mut diagnostics);
     let entries = description.into_iter().flat_map(|one| &one.imports);
     let namespaces: Vec<String> = entries.filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
-    let mut shelf = Shelf::new(open.clone());
+    let mut index = Index::new(open.clone());
     let mut all = Vec::new();
     for namespace in namespaces {
         let from = imports.exporters(&root, Kind::Namespace, &namespace, &mut sources, &mut diagnostics);
         for other in from.iter() {
-            let composites = shelf.contribution(other).0.into_iter();
-            all.extend(composites.filter(|path| shelf.is_of(path, &namespace)));
+            let composites = index.contribution(other).0.into_iter();
+            all.extend(composites.filter(|path| index.is_of(path, &namespace)));
         }
     }
     all
@@ -246,21 +246,21 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
 pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
     let mut imports = Imports::untold(MAX_SIZE);
-    let root = shelf::root(folder);
+    let root = index::root(folder);
     let description = imports.description(&root, &mut sources, &mut diagnostics);
     let entries = description.into_iter().flat_map(|one| &one.exports);
     let exported: Vec<String> = entries.filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
     if exported.is_empty() {
         return Vec::new();
     }
-    let mut shelf = Shelf::new(open.clone());
+    let mut index = Index::new(open.clone());
     let mut all = Vec::new();
     let own = identity(&root);
     for Neighbour { folder: other, .. } in beside(&root).iter().filter(|one| one.identity != own) {
         let mut is_imported =
             |what: &String| imports.imports(other, Kind::Namespace, what, &mut sources, &mut diagnostics);
         if exported.iter().any(&mut is_imported) {
-            all.extend(shelf.contribution(other).0);
+            all.extend(index.contribution(other).0);
         }
     }
     all

@@ -1,4 +1,4 @@
-//! Finding composites in folders by their names, without reading more than is needed.
+//! Index of the composites in folders, by namespace and name. No more is read than a search needs.
 
 use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
 use std::ffi::{OsStr, OsString};
@@ -6,9 +6,9 @@ use std::fs::{self, FileType};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use super::description;
 use super::head::{Head, head};
 use crate::diagnostic::quoted;
+use crate::load::description;
 use crate::source::{OpenTexts, identity};
 
 /// Entries of folders that are looked at because of the files of one fleet.
@@ -17,11 +17,6 @@ const MOST_ENTRIES: usize = 20_000;
 const MOST_BELOW: usize = 1_000_000;
 /// Folders above a file in which a description of the contribution is looked for.
 const MOST_ABOVE: usize = 12;
-/// Where the description of a contribution is in its folder: what its author wrote, or else what a tool made.
-pub(super) const DESCRIPTIONS: [&str; 3] =
-    ["META-INF/sca-contribution.xml", "sca-contribution.xml", GENERATED];
-/// What a tool says of a contribution, beside what its author does (SCA Assembly 1.1, 10.2.2).
-pub(super) const GENERATED: &str = "META-INF/sca-contribution-generated.xml";
 /// The folder in a contribution whose composites are deployable, as Apache Tuscany has it.
 pub(super) const DEPLOYABLES: &str = "META-INF/sca-deployables";
 /// The name of files of intents and policy sets.
@@ -29,8 +24,8 @@ const DEFINITIONS: &str = "definitions.xml";
 /// Folders that hold what tools made.
 const SKIPPED: &[&str] = &["target", "node_modules"];
 
-/// What is known of files in folders, looked at once each.
-pub(super) struct Shelf {
+/// Index of the files in folders. Each folder and each first tag is read once.
+pub(super) struct Index {
     folders: HashMap<PathBuf, Rc<Listing>>,
     heads: HashMap<PathBuf, Option<Head>>,
     /// The composites in folders; of one name those first whose files are called as they are.
@@ -52,7 +47,7 @@ pub(super) struct Shelf {
     open: OpenTexts,
 }
 
-/// What is known of composites by their local names and then their namespaces.
+/// Values by the local name of a composite and then its namespace.
 type ByName<T> = HashMap<String, HashMap<String, T>>;
 
 /// A folder, namespaces and a local name.
@@ -92,7 +87,7 @@ impl Seen {
     }
 }
 
-impl Shelf {
+impl Index {
     /// Nothing is known yet but the texts that count in place of files.
     pub(super) fn new(open: OpenTexts) -> Self {
         Self {
@@ -426,13 +421,13 @@ fn is_called(path: &Path, local: &str) -> bool {
 /// The files `*.composite` whose composites one in `folder` can name: those in it, and those of its contribution, as
 /// [`load_named`](super::load_named) looks for them. Texts that count in place of files are among them.
 pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
-    let mut shelf = Shelf::new(open.clone());
-    let mut all = shelf.listing(folder).composites.clone();
-    let mut waiting = VecDeque::from([shelf.root(folder)]);
+    let mut index = Index::new(open.clone());
+    let mut all = index.listing(folder).composites.clone();
+    let mut waiting = VecDeque::from([index.root(folder)]);
     let mut seen = HashSet::new();
     while let Some(next) = waiting.pop_front() {
         if seen.insert(next.clone()) {
-            let listing = shelf.listing(&next);
+            let listing = index.listing(&next);
             if next != folder {
                 all.extend(listing.composites.iter().cloned());
             }
@@ -449,7 +444,7 @@ pub fn description_near(folder: &Path) -> Option<PathBuf> {
 
 /// Whether a folder has a description of a contribution, or says by its folders what is deployable: one of its own, and not for the folder around it.
 pub(super) fn describes(folder: &Path) -> bool {
-    let is_described = || DESCRIPTIONS.iter().any(|name| folder.join(name).is_file());
+    let is_described = || description::DESCRIPTIONS.iter().any(|name| folder.join(name).is_file());
     !folder.ends_with("META-INF") && (is_described() || folder.join(DEPLOYABLES).is_dir())
 }
 

@@ -1,14 +1,14 @@
-//! The files of a contribution that are no composites, each by itself.
+//! Files of a contribution that are no composites: descriptions, definitions and component types.
 
 use std::path::Path;
 
-use super::definitions;
 use super::finder::Finder;
 use super::head;
-use super::shelf::is_of_definitions;
-use super::vocabulary::{CONTRIBUTION, DEFINITIONS};
-use super::{load_component_type, read};
+use super::index::is_of_definitions;
 use crate::diagnostic::Diagnostics;
+use crate::load::definitions;
+use crate::load::vocabulary::{CONTRIBUTION, DEFINITIONS};
+use crate::load::{load_component_type, read};
 use crate::model::{ComponentType, Version};
 use crate::source::Sources;
 

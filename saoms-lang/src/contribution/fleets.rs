@@ -4,11 +4,11 @@ use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::description::{Deployable, Description};
 use super::finder::Finder;
-use super::shelf::{DEPLOYABLES, Shelf, describes};
-use super::{definitions, load_file, read};
+use super::index::{DEPLOYABLES, Index, describes};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
+use crate::load::description::{Deployable, Description};
+use crate::load::{definitions, load_file, read};
 use crate::model::{Composite, Contribution, Link};
 use crate::source::{Sources, Span};
 use crate::xml::escaped;
@@ -48,17 +48,17 @@ impl Finder {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) -> Vec<FolderFleet> {
-        self.shelf.turn_to_folder();
+        self.index.turn_to_folder();
         let (mut fleets, mut has_definitions) = (Vec::new(), false);
         let mut waiting = vec![folder.to_owned()];
         while let Some(root) = waiting.pop() {
-            let (files, mut inner) = self.shelf.contribution(&root);
+            let (files, mut inner) = self.index.contribution(&root);
             inner.reverse();
             waiting.extend(inner);
             let description = Description::of(&root, max_size, sources, diagnostics);
             let contribution = Files::read(files, max_size, sources, diagnostics);
             contribution.repeated(describes(&root), max_size, sources, diagnostics);
-            for path in self.shelf.definitions(&root) {
+            for path in self.index.definitions(&root) {
                 has_definitions |= definitions::check(&path, false, max_size, sources, diagnostics);
             }
             if let Some(description) = &description {
@@ -66,7 +66,7 @@ impl Finder {
             }
             let deployables = description.iter().flat_map(|description| &description.deployables);
             let mut deployed: Vec<Option<PathBuf>> =
-                deployables.map(|one| contribution.find(one, &mut self.shelf, &root, diagnostics)).collect();
+                deployables.map(|one| contribution.find(one, &mut self.index, &root, diagnostics)).collect();
             let inside = root.join(DEPLOYABLES);
             deployed.extend(
                 contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some),
@@ -74,7 +74,7 @@ impl Finder {
             contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
         }
         let is_empty = fleets.is_empty() && !has_definitions && !diagnostics.has_errors();
-        unlisted(folder, is_empty, &self.shelf, sources, diagnostics);
+        unlisted(folder, is_empty, &self.index, sources, diagnostics);
         fleets
     }
 
@@ -87,13 +87,13 @@ impl Finder {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) {
-        self.shelf.turn_to_folder();
+        self.index.turn_to_folder();
         let description = Description::read(path.to_owned(), max_size, sources, diagnostics);
         self.exchange(&description, root, max_size, diagnostics);
-        let (files, _) = self.shelf.contribution(root);
+        let (files, _) = self.index.contribution(root);
         let contribution = Files::read(files, max_size, sources, &mut Diagnostics::new());
         for deployable in &description.deployables {
-            _ = contribution.find(deployable, &mut self.shelf, root, diagnostics);
+            _ = contribution.find(deployable, &mut self.index, root, diagnostics);
         }
     }
 }
@@ -101,16 +101,16 @@ impl Finder {
 /// The composites in a folder and in those below it, other contributions among them, in the order of their paths; what is hidden and what tools made
 /// are passed over. Reported is that there are none, or more files than are looked at.
 pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Vec<PathBuf> {
-    let mut shelf = Shelf::new(sources.open().clone());
-    shelf.turn_to_folder();
+    let mut index = Index::new(sources.open().clone());
+    index.turn_to_folder();
     let (mut all, mut waiting) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(root) = waiting.pop() {
-        let (files, inner) = shelf.contribution(&root);
+        let (files, inner) = index.contribution(&root);
         all.extend(files);
         waiting.extend(inner);
     }
     all.sort_unstable();
-    unlisted(folder, all.is_empty(), &shelf, sources, diagnostics);
+    unlisted(folder, all.is_empty(), &index, sources, diagnostics);
     all
 }
 
@@ -118,11 +118,11 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
 fn unlisted(
     folder: &Path,
     is_empty: bool,
-    shelf: &Shelf,
+    index: &Index,
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) {
-    let (message, help) = match (shelf.is_complete(), is_empty) {
+    let (message, help) = match (index.is_complete(), is_empty) {
         (true, false) => return,
         (true, true) => ("a directory without composites", "the names of composites end with `.composite`"),
         (false, _) => {
@@ -198,7 +198,7 @@ impl Files {
     fn find(
         &self,
         deployable: &Deployable,
-        shelf: &mut Shelf,
+        index: &mut Index,
         root: &Path,
         diagnostics: &mut Diagnostics,
     ) -> Option<PathBuf> {
@@ -206,7 +206,7 @@ impl Files {
         let namespaces = deployable.namespace.as_ref().map(std::slice::from_ref);
         // Also a file that could be read no further than its first tag.
         let found =
-            shelf.find(root, namespaces, local).filter(|found| self.paths.binary_search(found).is_ok());
+            index.find(root, namespaces, local).filter(|found| self.paths.binary_search(found).is_ok());
         if found.is_some() {
             return found;
         }

@@ -1,9 +1,9 @@
-//! What files hold that properties take their values from: a text, or XML.
+//! Files that properties take their values from: a text, or XML.
 
 use std::sync::Arc;
 
-use super::children::renaming;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::load::renaming;
 use crate::model::{ValueDocument, Version};
 use crate::source::{FileId, Sources, Text};
 use crate::xml::{self, Element};

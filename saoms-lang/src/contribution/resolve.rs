@@ -1,13 +1,13 @@
-//! The composites that composites name: reading those that are in other files.
+//! Resolution of the composites and component types that composites name.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::description::Kind;
 use super::finder::Finder;
-use super::read::STANDARD_INPUT;
-use super::{component_type, load_component_type, load_file, read, read_values};
+use super::{component_types, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
+use crate::load::description::Kind;
+use crate::load::{STANDARD_INPUT, load_component_type, load_file, read};
 use crate::model::{Component, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
 
@@ -44,7 +44,7 @@ impl Finder {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) {
-        self.shelf.turn_to_fleet();
+        self.index.turn_to_fleet();
         // By their paths, so that one file is one composite; `None` for one that could not be read.
         let mut known: HashMap<PathBuf, Option<usize>> = HashMap::new();
         for (place, composite) in contribution.composites().iter().enumerate() {
@@ -52,7 +52,7 @@ impl Finder {
         }
         let given = contribution.composites().iter();
         let given = given.filter_map(|one| Path::new(sources.get(one.file()).path()).parent());
-        let given = given.map(|folder| self.shelf.root(folder));
+        let given = given.map(|folder| self.index.root(folder));
         self.imports.turn_to_fleet(given, max_size);
         let mut types = HashMap::new();
         let mut warned = HashSet::new();
@@ -86,7 +86,7 @@ impl Finder {
                 continue;
             }
             let folder = path.parent().unwrap_or(Path::new(""));
-            let root = self.shelf.root(folder);
+            let root = self.index.root(folder);
             let mut files = HashMap::new();
             for Described { written, paths, package, is_needed } in described {
                 // By its path in the contribution, or beside the composite under its last name.
@@ -123,21 +123,21 @@ impl Finder {
             }
             for wanted in wanted {
                 let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
-                let own = self.shelf.find(folder, namespaces, local);
+                let own = self.index.find(folder, namespaces, local);
                 if let Some(found) = &own {
-                    self.shelf.adopt(folder, found);
+                    self.index.adopt(folder, found);
                 }
                 let found = own.or_else(|| {
-                    self.imports.find(&mut self.shelf, &root, namespaces, local, sources, diagnostics)
+                    self.imports.find(&mut self.index, &root, namespaces, local, sources, diagnostics)
                 });
                 // What is wrong with a file that is called so is told there, and nowhere else.
-                let found = found.or_else(|| self.shelf.unread_named(folder, local));
+                let found = found.or_else(|| self.index.unread_named(folder, local));
                 let link = match found {
                     None if self.imports.is_faulty(&root, sources, diagnostics) => Link::Faulty,
                     None => Link::Missing(self.missing(folder, &root, &wanted, sources, diagnostics)),
                     Some(found) => {
                         if warned.insert(found.clone()) {
-                            let twins = self.shelf.twins(&found);
+                            let twins = self.index.twins(&found);
                             ambiguous(&wanted, &found, &twins)
                                 .into_iter()
                                 .for_each(|one| diagnostics.push(one));
@@ -167,7 +167,7 @@ impl Finder {
     ) -> Missing {
         let Some(left) = self.explained.checked_sub(1) else { return Missing::default() };
         self.explained = left;
-        let seen = self.shelf.seen(folder);
+        let seen = self.index.seen(folder);
         let is_meant = |namespace: &str| {
             wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace))
         };
@@ -177,7 +177,7 @@ impl Finder {
             near = nearest_few(&wanted.local, of_namespace.map(|one| one.local.as_str()), OFFERED);
         }
         let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
-        let mut searched = vec![self.shelf.searched(folder)];
+        let mut searched = vec![self.index.searched(folder)];
         if let Some(other) = seen.named(&wanted.local) {
             searched.push(format!(
                 "{} has a composite {} of the namespace {}",
@@ -188,7 +188,7 @@ impl Finder {
         }
         let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
         searched.extend(self.unread(folder, local, sources.open()));
-        let around = (&mut self.shelf, &mut self.candidates);
+        let around = (&mut self.index, &mut self.candidates);
         searched.extend(self.imports.hints(around, root, namespaces, local, sources, diagnostics));
         Missing { near, searched }
     }
@@ -216,7 +216,7 @@ fn described(composite: &Composite) -> Vec<Described> {
         if std::mem::replace(&mut before, written) == written || !seen.insert(written) {
             continue;
         }
-        let paths = component_type::paths(component, composite);
+        let paths = component_types::paths(component, composite);
         if paths.is_empty() {
             continue;
         }

@@ -1,14 +1,14 @@
-//! What contributions say that they give and take, held to what is there (SCA Assembly 1.1, 10.2).
+//! Checks of imports and exports against the contributions around (SCA Assembly 1.1, 10.2).
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use super::description::{Description, Entry};
 use super::finder::Finder;
 use super::imports::Imports;
-use super::shelf::is_of_definitions;
+use super::index::is_of_definitions;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::load::description::{Description, Entry};
 
 /// The endings of files that hold no names that others could import, or of which they are known.
 const USUAL: &[&str] = &["composite", "componentType", "csv", "txt", "md", "properties"];
@@ -28,7 +28,7 @@ impl Finder {
         if description.exports.is_empty() && description.imports.is_empty() {
             return;
         }
-        let composites = self.shelf.namespaces(root);
+        let composites = self.index.namespaces(root);
         let own = composites;
         let named = |entries: &[Entry]| -> BTreeSet<String> {
             entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
@@ -57,7 +57,7 @@ impl Finder {
             let shown = quoted(namespace);
             let mut all = others.iter();
             let holder = all.find(|(other, _)| {
-                self.candidates.admit(1) && self.shelf.namespaces(other).contains(namespace)
+                self.candidates.admit(1) && self.index.namespaces(other).contains(namespace)
             });
             if let Some((holder, _)) = holder {
                 let holder = quoted(&holder.display().to_string());

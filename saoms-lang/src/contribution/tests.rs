@@ -1,17 +1,18 @@
-//! How much is looked at to find what composites name.
+//! Limits on the files that a search reads.
 
 use std::fs;
 
-use super::super::head::LOOKED_AT;
-use super::super::shelf::Shelf;
+use super::head::LOOKED_AT;
+use super::index::Index;
 use super::*;
-use crate::model::{Contribution, Link, Naming};
+use crate::model::{Contribution, Link, Naming, Version};
 use crate::source::OpenTexts;
 
 fn composite(name: &str, includes: &[String]) -> String {
     let includes: String = includes.iter().map(|name| format!("<include name='t:{name}'/>")).collect();
     format!(
-        "<composite xmlns='{OSOA}' xmlns:t='urn:t' name='{name}' targetNamespace='urn:t'>{includes}</composite>"
+        "<composite xmlns='{}' xmlns:t='urn:t' name='{name}' targetNamespace='urn:t'>{includes}</composite>",
+        Version::Osoa10.namespace()
     )
 }
 
@@ -72,11 +73,11 @@ fn what_lies_beyond_the_entries_that_are_looked_at_is_said_to() {
         fs::write(path, composite(&format!("c{number}"), &[])).unwrap();
     }
     for (entries, is_complete) in [(4, false), (5, true)] {
-        let mut shelf = Shelf::new(OpenTexts::default());
-        shelf.limit(entries);
-        assert_eq!(shelf.find(folder.path(), None, "hall"), None);
-        assert_eq!(shelf.is_complete(), is_complete);
-        assert_eq!(shelf.searched(folder.path()).contains("and not in all"), !is_complete);
-        assert_eq!(shelf.seen(folder.path()).heads.len(), entries);
+        let mut index = Index::new(OpenTexts::default());
+        index.limit(entries);
+        assert_eq!(index.find(folder.path(), None, "hall"), None);
+        assert_eq!(index.is_complete(), is_complete);
+        assert_eq!(index.searched(folder.path()).contains("and not in all"), !is_complete);
+        assert_eq!(index.seen(folder.path()).heads.len(), entries);
     }
 }

@@ -1,12 +1,13 @@
-//! What is known of the files around composites.
+//! The finder: one for all contributions of a check, so that each file is read once.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::component_types;
 use super::imports::Imports;
-use super::shelf::Shelf;
-use super::{component_type, load_file, read};
+use super::index::Index;
 use crate::diagnostic::{Candidates, Diagnostics, Severity, quoted};
+use crate::load::{load_file, read};
 use crate::source::{OpenTexts, Sources};
 
 /// Files of a folder that are read to say why they hold no composite.
@@ -21,7 +22,7 @@ const SHOWN: usize = 3;
 ///
 /// It does not see what changes on disk while it is used.
 pub struct Finder {
-    pub(super) shelf: Shelf,
+    pub(super) index: Index,
     pub(super) imports: Imports,
     /// The contributions around others, of whose descriptions nothing is told.
     pub(super) around: Option<Imports>,
@@ -44,7 +45,7 @@ impl Finder {
     /// Nothing is known yet but the texts that count in place of files.
     pub fn new(open: OpenTexts) -> Self {
         Self {
-            shelf: Shelf::new(open),
+            index: Index::new(open),
             imports: Imports::default(),
             around: None,
             candidates: Candidates::default(),
@@ -60,7 +61,7 @@ impl Finder {
         let folder = path.parent().unwrap_or(Path::new(""));
         let may_be = match self.folders.get(folder) {
             Some(known) => *known,
-            None => *self.folders.entry(folder.to_owned()).or_insert_with(|| component_type::any_in(folder)),
+            None => *self.folders.entry(folder.to_owned()).or_insert_with(|| component_types::any_in(folder)),
         };
         may_be && *self.side_files.entry(path.to_owned()).or_insert_with(|| path.is_file())
     }
@@ -68,7 +69,7 @@ impl Finder {
     /// Why files in a folder are not read that may hold a composite of this name, the one that is called as it first.
     pub(super) fn unread(&mut self, folder: &Path, local: &str, open: &OpenTexts) -> Vec<String> {
         if !self.unread.contains_key(folder) {
-            let all = self.shelf.unread(folder).into_iter().take(MOST_UNREAD);
+            let all = self.index.unread(folder).into_iter().take(MOST_UNREAD);
             let all = all.filter_map(|path| Some((reason(&path, open)?, path)));
             let all = all.map(|(reason, path)| (path, reason)).collect();
             self.unread.insert(folder.to_owned(), all);
