@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 // Its classes are found only where the crate is used.
 use saoms_components as _;
-use saoms_core::report::{RunReport, Status};
+use saoms_core::report::{RunReport, RunStatus};
 use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::check::{Options, check};
@@ -55,7 +55,7 @@ pub(crate) fn start(assembly: Assembly, settings: Settings) -> Outcome<Fleet> {
 pub(crate) fn finish(fleet: Fleet) -> Outcome<RunReport> {
     let report = fleet.run_to_end();
     match report.outcome.status {
-        Status::Failed => {
+        RunStatus::Failed => {
             let reasons = &report.outcome.reasons;
             let first = reasons.first().map_or("without a reason", String::as_str);
             Err(format!("the run failed: {first} ({} reasons)", reasons.len()).into())

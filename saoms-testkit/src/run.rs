@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use saoms_api::{Level, Time};
 use saoms_core::journal::Journal;
-use saoms_core::observe::{Event, Observer};
+use saoms_core::observe::{Observer, RunEvent};
 use saoms_core::report::RunReport;
 
 /// A run that has ended: its report, its journal and its log.
@@ -13,7 +13,7 @@ use saoms_core::report::RunReport;
 #[derive(Clone, Debug)]
 pub struct Run {
     report: RunReport,
-    log: Vec<Event>,
+    log: Vec<RunEvent>,
 }
 
 impl Run {
@@ -62,16 +62,16 @@ impl Deref for Run {
 
 /// Remembers what happens.
 #[derive(Debug, Default)]
-pub(crate) struct Log(Mutex<Vec<Event>>);
+pub(crate) struct Log(Mutex<Vec<RunEvent>>);
 
 impl Log {
-    fn events(&self) -> std::sync::MutexGuard<'_, Vec<Event>> {
+    fn events(&self) -> std::sync::MutexGuard<'_, Vec<RunEvent>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Observer for Log {
-    fn event(&self, event: &Event) {
+    fn event(&self, event: &RunEvent) {
         if event.what.level() <= Level::Info {
             self.events().push(event.clone());
         }

@@ -1,6 +1,6 @@
 //! The difference between the fleet that runs and the fleet that is wanted.
 //!
-//! A [`Plan`] names the components that end, that start, that are replaced and that stay. A run starts with the plan from nothing to
+//! A [`ChangePlan`] names the components that end, that start, that are replaced and that stay. A run starts with the plan from nothing to
 //! its assembly and ends with the plan back to nothing, so that changing a fleet and starting it are one thing. A plan is data: making
 //! it touches nothing, and needs neither a clock nor a running fleet.
 
@@ -10,7 +10,7 @@ mod plan;
 mod tests;
 
 pub(crate) use order::providers_first;
-pub use plan::{Difference, Plan, Replacement};
+pub use plan::{ChangePlan, Difference, Replacement};
 
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 

@@ -9,14 +9,14 @@ use saoms_lang::assembly::{ComponentSpec, LoopSpec, Target, Wire};
 /// The steps that turn one fleet into another. Components are the same when their paths are.
 ///
 /// ```
-/// use saoms_core::assemble::{Plan, members};
+/// use saoms_core::assemble::{ChangePlan, members};
 /// use saoms_lang::assembly::Assembly;
 ///
 /// let fleet = Assembly::default();
-/// assert!(Plan::between(&members(&fleet), &members(&fleet)).is_empty());
+/// assert!(ChangePlan::between(&members(&fleet), &members(&fleet)).is_empty());
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Plan {
+pub struct ChangePlan {
     /// Components of the current fleet that have to end, each before those whose services it calls.
     pub remove: Vec<usize>,
     /// Components that end and start again, because something about them differs; in the order in which they have to start.
@@ -53,14 +53,14 @@ pub enum Difference {
     Loops,
 }
 
-impl Plan {
+impl ChangePlan {
     /// The plan from the fleet that runs to the fleet that is wanted.
-    pub fn between(current: &Members<'_>, wanted: &Members<'_>) -> Plan {
+    pub fn between(current: &Members<'_>, wanted: &Members<'_>) -> ChangePlan {
         let present = current.iter().enumerate().filter_map(|(number, spec)| Some((number, (*spec)?)));
         let running: HashMap<&str, usize> =
             present.map(|(number, component)| (component.path.as_str(), number)).collect();
         let mut stays = vec![false; current.len()];
-        let mut plan = Plan::default();
+        let mut plan = ChangePlan::default();
         for number in providers_first(wanted) {
             let Some(component) = wanted[number] else { continue };
             let before = running.get(component.path.as_str()).copied();

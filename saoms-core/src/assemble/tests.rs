@@ -4,7 +4,7 @@ use std::time::Duration;
 use saoms_api::host::{PropertyValue, Registration};
 use saoms_api::{Class, Component, Failure, Properties};
 
-use super::{Difference, Plan, members};
+use super::{ChangePlan, Difference, members};
 use saoms_lang::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
 use saoms_lang::registry::Registry;
 
@@ -79,7 +79,7 @@ fn assembly(text: &str) -> Assembly {
 /// A plan in words, with the names of both assemblies.
 fn plan(current: &str, wanted: &str) -> String {
     let (current, wanted) = (assembly(current), assembly(wanted));
-    let plan = Plan::between(&members(&current), &members(&wanted));
+    let plan = ChangePlan::between(&members(&current), &members(&wanted));
     let old = |place: &usize| current.components[*place].path.clone();
     let new = |place: &usize| wanted.components[*place].path.clone();
     let mut words: Vec<String> = plan.remove.iter().map(|place| format!("-{}", old(place))).collect();
@@ -123,16 +123,19 @@ fn what_differs_is_replaced_and_says_why() {
     assert_eq!(plan("A box >B\nB box\nC box", "A box >C\nB box\nC box"), "~A(Reference(\"r0\")) =C =B");
     assert_eq!(plan("A box >B\nB box", "A box >B"), "-B ~A(Reference(\"r0\"))");
     let (before, mut after) = (assembly("A belt"), assembly("A belt"));
-    assert!(Plan::between(&members(&before), &members(&after)).is_empty());
+    assert!(ChangePlan::between(&members(&before), &members(&after)).is_empty());
     after.components[0].task.as_mut().unwrap().period = Duration::from_millis(11);
-    assert_eq!(Plan::between(&members(&before), &members(&after)).replace[0].differences, [Difference::Task]);
+    assert_eq!(
+        ChangePlan::between(&members(&before), &members(&after)).replace[0].differences,
+        [Difference::Task]
+    );
 }
 
 #[test]
 fn cycles_and_long_chains_of_wires_end() {
     assert_eq!(plan("", "A box >B\nB box >C\nC box >A"), "+C +B +A");
     let chain: String = (0..20_000).map(|n| format!("A{n} box >A{}\n", n + 1)).collect();
-    let order = Plan::between(&[], &members(&assembly_of_chain(&chain))).add;
+    let order = ChangePlan::between(&[], &members(&assembly_of_chain(&chain))).add;
     assert!(order.iter().rev().copied().eq(0..20_000));
 }
 

@@ -10,13 +10,13 @@ pub(super) struct EventLog {
     /// The number of the first message held.
     first: u64,
     pub(super) messages: VecDeque<SharedMessage>,
-    readers: Vec<Reader>,
+    readers: Vec<EventReader>,
     free: Vec<u32>,
     /// The length at which to look for messages that nobody needs any more.
     tidy_at: usize,
 }
 
-struct Reader {
+struct EventReader {
     /// The number of the next message to read.
     next: u64,
     /// How many messages may wait; 0 marks a free place.
@@ -24,7 +24,7 @@ struct Reader {
     lost: u64,
 }
 
-impl Reader {
+impl EventReader {
     /// Gives up the oldest messages that do not fit into the queue.
     #[inline]
     fn overflow(&mut self, end: u64) {
@@ -42,7 +42,7 @@ impl EventLog {
     }
 
     pub(super) fn join(&mut self, queue: usize) -> u32 {
-        let reader = Reader { next: self.end(), queue: queue.max(1) as u64, lost: 0 };
+        let reader = EventReader { next: self.end(), queue: queue.max(1) as u64, lost: 0 };
         match self.free.pop() {
             Some(place) => {
                 self.readers[place as usize] = reader;

@@ -20,12 +20,12 @@ use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
-use topic::{Reader, Topic};
+use topic::{BusTopic, ReadPosition};
 
 /// All topics of a fleet, by the names that they have after renaming.
 #[derive(Default)]
 pub struct Bus {
-    topics: Vec<Topic>,
+    topics: Vec<BusTopic>,
     names: HashMap<Arc<str>, TopicId>,
 }
 
@@ -35,9 +35,9 @@ pub struct TopicId(u32);
 
 /// One reader's place in a topic. Give it back with [`Bus::unsubscribe`].
 #[derive(Debug)]
-pub struct Subscription {
+pub struct TopicReader {
     topic: TopicId,
-    reader: Reader,
+    reader: ReadPosition,
 }
 
 /// Two ends of a topic that do not fit together.
@@ -105,14 +105,14 @@ impl Bus {
         declared: &TopicDeclaration<'_>,
         by: &Arc<str>,
         queue: usize,
-    ) -> Result<Subscription, Mismatch> {
+    ) -> Result<TopicReader, Mismatch> {
         let topic = self.user(name, declared, by)?;
         let reader = self.topics[topic.0 as usize].reader(queue);
-        Ok(Subscription { topic, reader })
+        Ok(TopicReader { topic, reader })
     }
 
     /// Takes a reader off its topic. Returns how many messages it has lost since it last collected.
-    pub fn unsubscribe(&mut self, subscription: Subscription) -> u64 {
+    pub fn unsubscribe(&mut self, subscription: TopicReader) -> u64 {
         let topic = &mut self.topics[subscription.topic.0 as usize];
         topic.users -= 1;
         topic.leave(subscription.reader)
@@ -126,22 +126,22 @@ impl Bus {
 
     /// Appends the messages that are new to a reader, oldest first. Returns how many it has lost since it last collected.
     #[inline]
-    pub fn collect(&mut self, subscription: &mut Subscription, inbox: &mut Vec<SharedMessage>) -> u64 {
+    pub fn collect(&mut self, subscription: &mut TopicReader, inbox: &mut Vec<SharedMessage>) -> u64 {
         self.topics[subscription.topic.0 as usize].collect(&mut subscription.reader, inbox)
     }
 
     /// Lets a reader start over: of a state topic it gets everything that is retained again, of an event topic it has missed nothing.
-    pub fn rewind(&mut self, subscription: &mut Subscription) {
+    pub fn rewind(&mut self, subscription: &mut TopicReader) {
         subscription.reader.rewind();
     }
 
     /// Gives a reader another bound for the events that wait for it.
-    pub fn resize(&mut self, subscription: &Subscription, queue: usize) {
+    pub fn resize(&mut self, subscription: &TopicReader, queue: usize) {
         self.topics[subscription.topic.0 as usize].resize(&subscription.reader, queue);
     }
 
     /// The topic that a subscription reads.
-    pub fn topic_of(&self, subscription: &Subscription) -> TopicId {
+    pub fn topic_of(&self, subscription: &TopicReader) -> TopicId {
         subscription.topic
     }
 
@@ -188,7 +188,7 @@ impl Bus {
         }
         let id = TopicId(u32::try_from(self.topics.len()).unwrap_or(u32::MAX));
         let name: Arc<str> = Arc::from(name);
-        self.topics.push(Topic::new(Arc::clone(&name), declared, by));
+        self.topics.push(BusTopic::new(Arc::clone(&name), declared, by));
         self.names.insert(name, id);
         Ok(id)
     }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use saoms_api::host::SharedMessage;
 use saoms_api::{Cause, Header, Message, Time, Topic};
 
-use super::{Bus, Subscription};
+use super::{Bus, TopicReader};
 
 #[derive(Clone, Debug, PartialEq, Message)]
 #[message(key = "key")]
@@ -31,7 +31,7 @@ fn header(sender: u32) -> Header {
     Header { sender, sent: Time::START, cause: Cause::default() }
 }
 
-fn collect(bus: &mut Bus, subscription: &mut Subscription) -> (Vec<SharedMessage>, u64) {
+fn collect(bus: &mut Bus, subscription: &mut TopicReader) -> (Vec<SharedMessage>, u64) {
     let mut inbox = Vec::new();
     let lost = bus.collect(subscription, &mut inbox);
     (inbox, lost)
@@ -61,7 +61,7 @@ proptest! {
     fn each_reader_of_events_has_a_queue_of_its_own(steps in steps()) {
         let mut bus = Bus::default();
         let topic = bus.publisher("T", &EVENT.declaration(), &who()).unwrap();
-        let mut readers: Vec<(Subscription, usize, VecDeque<u32>, u64)> = Vec::new();
+        let mut readers: Vec<(TopicReader, usize, VecDeque<u32>, u64)> = Vec::new();
         let mut number = 0;
         for step in steps {
             match step {
@@ -102,7 +102,7 @@ proptest! {
         let mut bus = Bus::default();
         let topic = bus.publisher("T", &STATE.declaration(), &who()).unwrap();
         let mut all: Vec<Keyed> = Vec::new();
-        let mut readers: Vec<(Subscription, usize)> = Vec::new();
+        let mut readers: Vec<(TopicReader, usize)> = Vec::new();
         for step in steps {
             match step {
                 Step::Publish(key) => {

@@ -8,7 +8,7 @@ use super::state::StateTable;
 use crate::hash::fold;
 
 /// One topic: what it carries, and what it holds at present.
-pub(super) struct Topic {
+pub(super) struct BusTopic {
     pub(super) name: Arc<str>,
     pub(super) name_hash: u64,
     /// Publishers and subscribers together. A topic without any may change its type.
@@ -28,24 +28,24 @@ enum Store {
 
 /// A reader's place in a topic.
 #[derive(Debug)]
-pub(super) enum Reader {
+pub(super) enum ReadPosition {
     /// In a state topic: up to which change it has read.
     State(u64),
     /// In an event topic: its place among the readers.
     Event(u32),
 }
 
-impl Reader {
+impl ReadPosition {
     pub(super) fn rewind(&mut self) {
-        if let Reader::State(read) = self {
+        if let ReadPosition::State(read) = self {
             *read = 0;
         }
     }
 }
 
-impl Topic {
-    pub(super) fn new(name: Arc<str>, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> Topic {
-        Topic {
+impl BusTopic {
+    pub(super) fn new(name: Arc<str>, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> BusTopic {
+        BusTopic {
             name_hash: name.bytes().fold(0, |hash, byte| fold(hash, u64::from(byte))),
             name,
             users: 1,
@@ -107,22 +107,22 @@ impl Topic {
         }
     }
 
-    pub(super) fn reader(&mut self, queue: usize) -> Reader {
+    pub(super) fn reader(&mut self, queue: usize) -> ReadPosition {
         match &mut self.store {
-            Store::State(_) => Reader::State(0),
-            Store::Event(log) => Reader::Event(log.join(queue)),
+            Store::State(_) => ReadPosition::State(0),
+            Store::Event(log) => ReadPosition::Event(log.join(queue)),
         }
     }
 
-    pub(super) fn resize(&mut self, reader: &Reader, queue: usize) {
-        if let (Store::Event(log), Reader::Event(place)) = (&mut self.store, reader) {
+    pub(super) fn resize(&mut self, reader: &ReadPosition, queue: usize) {
+        if let (Store::Event(log), ReadPosition::Event(place)) = (&mut self.store, reader) {
             log.resize(*place, queue);
         }
     }
 
-    pub(super) fn leave(&mut self, reader: Reader) -> u64 {
+    pub(super) fn leave(&mut self, reader: ReadPosition) -> u64 {
         match (&mut self.store, reader) {
-            (Store::Event(log), Reader::Event(place)) => log.leave(place),
+            (Store::Event(log), ReadPosition::Event(place)) => log.leave(place),
             _ => 0,
         }
     }
@@ -145,13 +145,13 @@ impl Topic {
     }
 
     #[inline]
-    pub(super) fn collect(&mut self, reader: &mut Reader, inbox: &mut Vec<SharedMessage>) -> u64 {
+    pub(super) fn collect(&mut self, reader: &mut ReadPosition, inbox: &mut Vec<SharedMessage>) -> u64 {
         match (&mut self.store, reader) {
-            (Store::State(table), Reader::State(read)) => {
+            (Store::State(table), ReadPosition::State(read)) => {
                 table.collect(read, inbox);
                 0
             }
-            (Store::Event(log), Reader::Event(place)) => log.collect(*place, inbox),
+            (Store::Event(log), ReadPosition::Event(place)) => log.collect(*place, inbox),
             // A reader keeps its topic's kind: the kind changes only when nobody uses the topic.
             _ => 0,
         }

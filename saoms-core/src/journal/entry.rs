@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 /// A record of the journal: what a component saw, decided or did.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct JournalEntry {
     pub(super) id: Cause,
     pub(super) time: Time,
     pub(super) component: Arc<str>,
@@ -39,10 +39,10 @@ pub struct Change {
     pub after: Value,
 }
 
-impl Entry {
+impl JournalEntry {
     /// A symptom from outside the fleet.
-    pub(crate) fn from_outside(id: Cause, time: Time, source: &str, text: String) -> Entry {
-        Entry {
+    pub(crate) fn from_outside(id: Cause, time: Time, source: &str, text: String) -> JournalEntry {
+        JournalEntry {
             id,
             time,
             component: Arc::from(source),
@@ -124,8 +124,8 @@ impl Entry {
 }
 
 /// Two records are equal when they tell the same.
-impl PartialEq for Entry {
-    fn eq(&self, other: &Entry) -> bool {
+impl PartialEq for JournalEntry {
+    fn eq(&self, other: &JournalEntry) -> bool {
         (self.id, self.time, self.phase, self.cause, self.change)
             == (other.id, other.time, other.phase, other.cause, other.change)
             && (&self.component, &self.loop_name) == (&other.component, &other.loop_name)
@@ -135,9 +135,9 @@ impl PartialEq for Entry {
 }
 
 /// Time, component, loop, phase and text, in one line.
-impl fmt::Display for Entry {
+impl fmt::Display for JournalEntry {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Entry { time, component, .. } = self;
+        let JournalEntry { time, component, .. } = self;
         let (by, phase) = (self.loop_name().unwrap_or("-"), phase_name(self.phase));
         write!(formatter, "{time} {component} {by} {phase}: ")?;
         match &self.what {

@@ -11,7 +11,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
 
 use super::entry::{What, phase_name};
-use super::{Entry, Journal, LoopCounts};
+use super::{Journal, JournalEntry, LoopCounts};
 
 /// A record as it is written. What is not there says nothing.
 #[derive(Serialize)]
@@ -48,7 +48,7 @@ impl Serialize for Text<'_> {
     }
 }
 
-impl Serialize for Entry {
+impl Serialize for JournalEntry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut values = self.values();
         let entry = if self.change { values.remove("entry") } else { None };
@@ -93,8 +93,8 @@ enum PhaseName {
     Effect,
 }
 
-impl<'de> Deserialize<'de> for Entry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Entry, D::Error> {
+impl<'de> Deserialize<'de> for JournalEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<JournalEntry, D::Error> {
         let mut line = ReadLine::deserialize(deserializer)?;
         let ReadLine { id, cause, .. } = line;
         if cause >= id {
@@ -103,7 +103,7 @@ impl<'de> Deserialize<'de> for Entry {
         }
         let change = line.entry.is_some();
         line.values.extend(line.entry.map(|entry| ("entry".to_owned(), Value::from(entry))));
-        Ok(Entry {
+        Ok(JournalEntry {
             id: Cause(id),
             time: time(line.time_s).map_err(D::Error::custom)?,
             component: Arc::from(line.component),
@@ -140,8 +140,8 @@ pub(super) fn time(seconds: f64) -> Result<Time, Wrong> {
 }
 
 /// Brings records into their order.
-pub(super) fn in_order(mut entries: Vec<Entry>) -> Result<Vec<Entry>, Wrong> {
-    entries.sort_by_key(Entry::id);
+pub(super) fn in_order(mut entries: Vec<JournalEntry>) -> Result<Vec<JournalEntry>, Wrong> {
+    entries.sort_by_key(JournalEntry::id);
     match entries.windows(2).find(|pair| pair[0].id == pair[1].id) {
         Some(pair) => Err(Wrong(format!("there are two records with the number {}", pair[0].id.0))),
         None => Ok(entries),
@@ -176,7 +176,7 @@ fn in_lines<T: Serialize, E: serde::ser::Error>(values: &[T]) -> Result<Vec<Box<
 
 impl<'de> Deserialize<'de> for Journal {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Journal, D::Error> {
-        let Section::<LoopCounts, Entry> { records, overwritten, lost, loops, entries } =
+        let Section::<LoopCounts, JournalEntry> { records, overwritten, lost, loops, entries } =
             Section::deserialize(deserializer)?;
         let entries = in_order(entries).map_err(D::Error::custom)?;
         Ok(Journal { records, overwritten, lost, loops, entries })

@@ -4,7 +4,7 @@ use saoms_api::Cause;
 use serde::{Deserialize, Serialize};
 
 use super::entry::What;
-use super::{Entry, OutsideRing, Ring, Selection};
+use super::{JournalEntry, OutsideRing, Ring, Selection};
 
 /// What is left of the records of a run, and counts of all that were written.
 ///
@@ -32,7 +32,7 @@ pub struct Journal {
     /// Counts of the records of each loop that wrote any.
     pub loops: Vec<LoopCounts>,
     /// Ordered by number.
-    pub(super) entries: Vec<Entry>,
+    pub(super) entries: Vec<JournalEntry>,
 }
 
 /// How many records a loop wrote.
@@ -81,7 +81,7 @@ impl Journal {
                 });
             }
             for batch in ring.batches() {
-                journal.entries.extend(batch.heads().iter().map(|head| Entry {
+                journal.entries.extend(batch.heads().iter().map(|head| JournalEntry {
                     id: head.id,
                     time: head.time(),
                     component: Arc::clone(component),
@@ -106,7 +106,7 @@ impl Journal {
     }
 
     /// All records that are left, oldest first.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[JournalEntry] {
         &self.entries
     }
 
@@ -121,13 +121,13 @@ impl Journal {
     }
 
     /// The record with this number, if it is left.
-    pub fn entry(&self, id: Cause) -> Option<&Entry> {
-        self.entries.binary_search_by_key(&id, Entry::id).ok().map(|place| &self.entries[place])
+    pub fn entry(&self, id: Cause) -> Option<&JournalEntry> {
+        self.entries.binary_search_by_key(&id, JournalEntry::id).ok().map(|place| &self.entries[place])
     }
 
     /// What led to a record: the record that it follows from, the one that this follows from, and so on back to the root. The number is that
     /// of the record at which the way back is lost, because it was overwritten.
-    pub fn reasons(&self, entry: &Entry) -> (Vec<&Entry>, Option<Cause>) {
+    pub fn reasons(&self, entry: &JournalEntry) -> (Vec<&JournalEntry>, Option<Cause>) {
         let mut reasons = Vec::new();
         let mut next = entry.cause();
         while next != Cause::default() {

@@ -20,12 +20,12 @@ mod tests;
 mod why;
 
 pub(crate) use batch::Head;
-pub use entry::{Change, Entry};
+pub use entry::{Change, JournalEntry};
 pub use kept::{Journal, LoopCounts};
 pub(crate) use outside::OutsideRing;
 pub(crate) use queue::RecordQueue;
-pub use read::{Document, Named, ReadError, read};
+pub use read::{ComponentName, JournalDocument, JournalReadError, read};
 pub(crate) use recorder::{Recorder, Stamp};
 pub(crate) use ring::Ring;
 pub use select::Selection;
-pub use why::{Chain, Known, Why, WhyError};
+pub use why::{Chain, KnowledgeEntry, Why, WhyError};

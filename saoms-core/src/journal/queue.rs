@@ -6,8 +6,8 @@ use saoms_api::Time;
 use super::batch::Batch;
 use super::entry::What;
 use super::recorder::{Notice, Recorder};
-use super::ring::Names;
-use super::{Entry, Named};
+use super::ring::LoopNames;
+use super::{ComponentName, JournalEntry};
 
 /// How many records may wait for their reader.
 const CAPACITY: usize = 65_536;
@@ -33,9 +33,9 @@ struct Waiting {
     /// Names of loops, by component and place.
     names: Vec<(u32, u16, String)>,
     /// Components in the order of their numbers; the flag says that they joined a running fleet.
-    joined: Vec<(Named, bool)>,
+    joined: Vec<(ComponentName, bool)>,
     /// Records of what came from outside.
-    outside: Vec<Entry>,
+    outside: Vec<JournalEntry>,
     lost: u64,
     writers_sleep: bool,
     /// When the run ended.
@@ -47,7 +47,7 @@ struct Waiting {
 struct Reader {
     batch: Batch,
     /// Components and their loops, by their numbers.
-    components: Vec<(Arc<str>, Names)>,
+    components: Vec<(Arc<str>, LoopNames)>,
 }
 
 impl RecordQueue {
@@ -66,12 +66,12 @@ impl RecordQueue {
     }
 
     /// A component has the next number from now on. `later` says that the fleet runs already.
-    pub(crate) fn join(&self, component: Named, later: bool) {
+    pub(crate) fn join(&self, component: ComponentName, later: bool) {
         self.lock().joined.push((component, later));
     }
 
     /// Takes a record of what came from outside.
-    pub(crate) fn put_outside(&self, entry: Entry) {
+    pub(crate) fn put_outside(&self, entry: JournalEntry) {
         self.lock().outside.push(entry);
     }
 
@@ -117,7 +117,11 @@ impl RecordQueue {
 
     /// Waits until there is something to tell, and takes all of it. Returns how many records found no room, and when the run ended, where
     /// these are the last ones. `joined` are the components that joined a running fleet.
-    pub(crate) fn next(&self, entries: &mut Vec<Entry>, joined: &mut Vec<Named>) -> (u64, Option<Time>) {
+    pub(crate) fn next(
+        &self,
+        entries: &mut Vec<JournalEntry>,
+        joined: &mut Vec<ComponentName>,
+    ) -> (u64, Option<Time>) {
         let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
         let Reader { batch, components } = &mut *reader;
         batch.clear();
@@ -136,7 +140,7 @@ impl RecordQueue {
         }
         drop(waiting);
         components
-            .extend(members.iter().map(|(named, _)| (Arc::from(named.name.as_str()), Names::default())));
+            .extend(members.iter().map(|(named, _)| (Arc::from(named.name.as_str()), LoopNames::default())));
         joined.clear();
         joined.extend(members.into_iter().filter_map(|(named, later)| later.then_some(named)));
         for (component, place, name) in names {
@@ -146,7 +150,7 @@ impl RecordQueue {
         entries.extend(outside);
         entries.extend(batch.heads().iter().map(|head| {
             let (component, loops) = &components[head.component as usize];
-            Entry {
+            JournalEntry {
                 id: head.id,
                 time: head.time(),
                 component: Arc::clone(component),

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::json::{in_order, time};
-use super::{Entry, Journal};
+use super::{Journal, JournalEntry};
 
 /// A component of the fleet whose journal it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Named {
+pub struct ComponentName {
     /// Its path in the composite.
     pub name: String,
     /// Its `ID`; a passive component has none.
@@ -18,19 +18,19 @@ pub struct Named {
     pub id: Option<String>,
 }
 
-impl Named {
-    pub(crate) fn of(spec: &ComponentSpec) -> Named {
-        Named { name: spec.path.clone(), id: spec.task.as_ref().map(|task| task.id.clone()) }
+impl ComponentName {
+    pub(crate) fn of(spec: &ComponentSpec) -> ComponentName {
+        ComponentName { name: spec.path.clone(), id: spec.task.as_ref().map(|task| task.id.clone()) }
     }
 }
 
 /// What a file tells about a run: the report that `saoms run --report` writes, or the lines of `--journal`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Document {
+pub struct JournalDocument {
     /// The records.
     pub journal: Journal,
     /// The components of the fleet, in document order.
-    pub components: Vec<Named>,
+    pub components: Vec<ComponentName>,
     /// When the run ended; `None` in a file whose run has not ended, or not properly.
     pub end: Option<Time>,
     /// Whether it is a report, which holds the newest records alone.
@@ -39,7 +39,7 @@ pub struct Document {
 
 /// Why a file could not be read as a journal.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ReadError {
+pub enum JournalReadError {
     /// Something in it is not as it should be.
     Malformed {
         /// The line, from 1.
@@ -55,28 +55,30 @@ pub enum ReadError {
     NoJournal,
 }
 
-impl fmt::Display for ReadError {
+impl fmt::Display for JournalReadError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            ReadError::Malformed { line, column: 0, message } => write!(formatter, "line {line}: {message}"),
-            ReadError::Malformed { line, column, message } => {
+            JournalReadError::Malformed { line, column: 0, message } => {
+                write!(formatter, "line {line}: {message}")
+            }
+            JournalReadError::Malformed { line, column, message } => {
                 write!(formatter, "line {line}, column {column}: {message}")
             }
-            ReadError::Other => formatter.write_str(
+            JournalReadError::Other => formatter.write_str(
                 "this is neither a report of `saoms run --report` nor a file of `saoms run --journal`",
             ),
-            ReadError::NoJournal => formatter.write_str("this report holds no journal"),
+            JournalReadError::NoJournal => formatter.write_str("this report holds no journal"),
         }
     }
 }
 
-impl std::error::Error for ReadError {}
+impl std::error::Error for JournalReadError {}
 
 /// What is needed of a report.
 #[derive(Deserialize)]
 struct Report {
     time_s: f64,
-    components: Vec<Named>,
+    components: Vec<ComponentName>,
     journal: Option<Journal>,
 }
 
@@ -85,13 +87,13 @@ struct Report {
 struct Head {
     /// The version of the form.
     journal: u32,
-    components: Vec<Named>,
+    components: Vec<ComponentName>,
 }
 
 /// A line about a component that joined the running fleet.
 #[derive(Deserialize)]
 struct Joined {
-    joined: Named,
+    joined: ComponentName,
 }
 
 /// The last line.
@@ -110,9 +112,9 @@ struct End {
 ///
 /// # Errors
 /// The text is neither, or not whole.
-pub fn read(text: &str) -> Result<Document, ReadError> {
+pub fn read(text: &str) -> Result<JournalDocument, JournalReadError> {
     if !text.trim_start().starts_with('{') {
-        return Err(ReadError::Other);
+        return Err(JournalReadError::Other);
     }
     let first = text.lines().next().unwrap_or_default();
     match serde_json::from_str::<Value>(first) {
@@ -121,16 +123,16 @@ pub fn read(text: &str) -> Result<Document, ReadError> {
     }
 }
 
-fn report(text: &str) -> Result<Document, ReadError> {
+fn report(text: &str) -> Result<JournalDocument, JournalReadError> {
     let report: Report = serde_json::from_str(text).map_err(|error| malformed(0, &error, REPORT))?;
-    let journal = report.journal.ok_or(ReadError::NoJournal)?;
+    let journal = report.journal.ok_or(JournalReadError::NoJournal)?;
     let end = time(report.time_s).map_err(|wrong| whole(1, wrong.to_string()))?;
-    Ok(Document { journal, components: report.components, end: Some(end), is_report: true })
+    Ok(JournalDocument { journal, components: report.components, end: Some(end), is_report: true })
 }
 
 const REPORT: &str = "this is no whole report of `saoms run --report`, and no file of `saoms run --journal`";
 
-fn lines(text: &str) -> Result<Document, ReadError> {
+fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
     let mut lines = text.lines().enumerate().peekable();
     let head = lines.next().map_or("", |(_, line)| line);
     let mut head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
@@ -156,7 +158,7 @@ fn lines(text: &str) -> Result<Document, ReadError> {
             head.components.push(joined.joined);
             continue;
         }
-        match serde_json::from_str::<Entry>(line) {
+        match serde_json::from_str::<JournalEntry>(line) {
             Ok(entry) => entries.push(entry),
             // A run that goes on, or was killed, may have written half of its last line.
             Err(error) if error.is_eof() && lines.peek().is_none() && !text.ends_with('\n') => {}
@@ -164,7 +166,7 @@ fn lines(text: &str) -> Result<Document, ReadError> {
         }
     }
     let entries = in_order(entries).map_err(|wrong| whole(1, wrong.to_string()))?;
-    let newest = entries.last().map_or(0, |entry: &Entry| entry.id().0);
+    let newest = entries.last().map_or(0, |entry: &JournalEntry| entry.id().0);
     let lost = newest - entries.len() as u64;
     let journal = Journal {
         records: newest.max(entries.len() as u64),
@@ -173,17 +175,17 @@ fn lines(text: &str) -> Result<Document, ReadError> {
         ..Journal::default()
     };
     let end = end.map(|end| time(end.time_s)).transpose().map_err(|wrong| whole(1, wrong.to_string()))?;
-    Ok(Document { journal, components: head.components, end, is_report: false })
+    Ok(JournalDocument { journal, components: head.components, end, is_report: false })
 }
 
 /// What the reader of JSON says, with the place in the whole text.
-fn malformed(lines_before: usize, error: &serde_json::Error, about: &str) -> ReadError {
+fn malformed(lines_before: usize, error: &serde_json::Error, about: &str) -> JournalReadError {
     let text = error.to_string();
     let what = text.rfind(" at line ").map_or(text.as_str(), |end| &text[..end]);
     let line = lines_before + error.line().max(1);
-    ReadError::Malformed { line, column: error.column(), message: format!("{about}: {what}") }
+    JournalReadError::Malformed { line, column: error.column(), message: format!("{about}: {what}") }
 }
 
-fn whole(line: usize, message: String) -> ReadError {
-    ReadError::Malformed { line, column: 0, message }
+fn whole(line: usize, message: String) -> JournalReadError {
+    JournalReadError::Malformed { line, column: 0, message }
 }

@@ -16,14 +16,14 @@ pub(crate) struct Ring {
     pub(super) overwritten: u64,
     /// Those of each loop by its place, first those of none.
     pub(super) tallies: Vec<Tally>,
-    names: Names,
+    names: LoopNames,
 }
 
 /// What a component's loops are called.
 #[derive(Debug, Default)]
-pub(super) struct Names(Vec<Option<Arc<str>>>);
+pub(super) struct LoopNames(Vec<Option<Arc<str>>>);
 
-impl Names {
+impl LoopNames {
     pub(super) fn set(&mut self, place: u16, name: &str) {
         let place = usize::from(place);
         if self.0.len() <= place {

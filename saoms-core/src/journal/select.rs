@@ -4,18 +4,18 @@ use std::ops::RangeInclusive;
 use saoms_api::Time;
 use saoms_api::host::Phase;
 
-use super::Entry;
+use super::JournalEntry;
 
 /// Records of a journal, oldest first: all, or those that are left after some were filtered out.
 ///
 /// It shows as one line for each record, so that a test can compare all of them with a text.
 #[derive(Clone, Debug, Default)]
 pub struct Selection<'a> {
-    entries: Vec<&'a Entry>,
+    entries: Vec<&'a JournalEntry>,
 }
 
 impl<'a> Selection<'a> {
-    pub(super) fn new(entries: impl Iterator<Item = &'a Entry>) -> Selection<'a> {
+    pub(super) fn new(entries: impl Iterator<Item = &'a JournalEntry>) -> Selection<'a> {
         Selection { entries: entries.collect() }
     }
 
@@ -69,7 +69,7 @@ impl<'a> Selection<'a> {
 
     /// Those for which this holds.
     #[must_use]
-    pub fn only(mut self, holds: impl Fn(&Entry) -> bool) -> Selection<'a> {
+    pub fn only(mut self, holds: impl Fn(&JournalEntry) -> bool) -> Selection<'a> {
         self.entries.retain(|entry| holds(entry));
         self
     }
@@ -85,23 +85,23 @@ impl<'a> Selection<'a> {
     }
 
     /// The oldest.
-    pub fn first(&self) -> Option<&'a Entry> {
+    pub fn first(&self) -> Option<&'a JournalEntry> {
         self.entries.first().copied()
     }
 
     /// The newest.
-    pub fn last(&self) -> Option<&'a Entry> {
+    pub fn last(&self) -> Option<&'a JournalEntry> {
         self.entries.last().copied()
     }
 
     /// Each of them, oldest first.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &'a Entry> {
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &'a JournalEntry> {
         self.entries.iter().copied()
     }
 
     /// Their texts, oldest first.
     pub fn texts(&self) -> Vec<String> {
-        self.iter().map(Entry::text).collect()
+        self.iter().map(JournalEntry::text).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use saoms_api::host::Phase;
 use saoms_api::{Cause, Time, Value, record};
 
 use super::recorder::{Recorder, Stamp};
-use super::{Journal, ReadError, read};
+use super::{Journal, JournalReadError, read};
 
 /// A recorder in its first execution, and what stamps its records.
 fn recorder() -> (Recorder, AtomicU64) {
@@ -69,9 +69,9 @@ fn refused(text: &str) -> String {
 
 #[test]
 fn files_that_are_no_journal_are_told_apart() {
-    assert_eq!(read(""), Err(ReadError::Other));
-    assert_eq!(read("[1]"), Err(ReadError::Other));
-    assert_eq!(read(r#"{"time_s": 1.0, "components": []}"#), Err(ReadError::NoJournal));
+    assert_eq!(read(""), Err(JournalReadError::Other));
+    assert_eq!(read("[1]"), Err(JournalReadError::Other));
+    assert_eq!(read(r#"{"time_s": 1.0, "components": []}"#), Err(JournalReadError::NoJournal));
     assert_eq!(
         refused("{\n\"a\": 1"),
         "line 2, column 6: this is no whole report of `saoms run --report`, and no file of `saoms run --journal`: \
@@ -151,7 +151,7 @@ fn what_was_done_for_one_reason_is_one_chain_and_what_was_known_is_told() {
     );
     let told = |at: Option<u64>| {
         let why = journal.why("A", at.map(|at| Time::from_nanos(at * 1_000_000_000))).unwrap();
-        let texts = |entries: &[&super::Entry]| {
+        let texts = |entries: &[&super::JournalEntry]| {
             entries.iter().map(|entry| entry.text()).collect::<Vec<_>>().join(", ")
         };
         let chains: Vec<_> = why

@@ -6,7 +6,7 @@ use saoms_api::{Cause, Time};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
-use super::{Entry, Journal};
+use super::{Journal, JournalEntry};
 
 /// Why a component did what it did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,16 +17,16 @@ pub struct Why<'a> {
     /// What it did then, and what led to it: one chain for each reason that it had.
     pub chains: Vec<Chain<'a>>,
     /// What it knew at the time that was asked about, as far as that ever changed.
-    pub knowledge: Vec<Known>,
+    pub knowledge: Vec<KnowledgeEntry>,
 }
 
 /// What was done for one reason, and what led to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chain<'a> {
     /// What was done.
-    pub acts: Vec<&'a Entry>,
+    pub acts: Vec<&'a JournalEntry>,
     /// What led to it, from the last reason back to the first.
-    pub reasons: Vec<&'a Entry>,
+    pub reasons: Vec<&'a JournalEntry>,
     /// The record at which the way back is lost, because it is not in the journal any more.
     #[serde(serialize_with = "number")]
     pub missing: Option<Cause>,
@@ -34,7 +34,7 @@ pub struct Chain<'a> {
 
 /// The value of an entry of what a component knows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Known {
+pub struct KnowledgeEntry {
     /// The entry.
     pub entry: String,
     /// Its value.
@@ -72,7 +72,7 @@ fn number<S: Serializer>(cause: &Option<Cause>, serializer: S) -> Result<S::Ok, 
     cause.map(|cause| cause.0).serialize(serializer)
 }
 
-impl Known {
+impl KnowledgeEntry {
     /// The value as records show it.
     pub fn shown(&self) -> String {
         shown(&self.value)
@@ -99,7 +99,7 @@ impl Journal {
     /// # Errors
     /// What it did then is not in the journal any more.
     pub fn why(&self, component: &str, at: Option<Time>) -> Result<Why<'_>, WhyError> {
-        let own: Vec<&Entry> = self.of(component).iter().collect();
+        let own: Vec<&JournalEntry> = self.of(component).iter().collect();
         let until = own.iter().filter(|entry| at.is_none_or(|at| entry.time() <= at));
         let acted = until.clone().filter(|entry| is_act(entry)).map(|entry| entry.time()).max();
         let time = acted.or_else(|| until.map(|entry| entry.time()).max());
@@ -112,8 +112,8 @@ impl Journal {
     }
 
     /// The records of one execution as acts with their reasons.
-    fn chains<'a>(&'a self, then: &[&'a Entry]) -> Vec<Chain<'a>> {
-        let acts: Vec<&Entry> = then.iter().copied().filter(|entry| is_act(entry)).collect();
+    fn chains<'a>(&'a self, then: &[&'a JournalEntry]) -> Vec<Chain<'a>> {
+        let acts: Vec<&JournalEntry> = then.iter().copied().filter(|entry| is_act(entry)).collect();
         let told = if acts.is_empty() { then } else { &acts };
         let ends = told.iter().filter(|entry| !told.iter().any(|other| other.cause() == entry.id()));
         let mut chains: Vec<Chain<'a>> = Vec::new();
@@ -140,7 +140,7 @@ impl Journal {
     }
 }
 
-fn is_act(entry: &Entry) -> bool {
+fn is_act(entry: &JournalEntry) -> bool {
     match entry.phase() {
         Phase::Symptom => false,
         Phase::Decision => true,
@@ -149,16 +149,16 @@ fn is_act(entry: &Entry) -> bool {
 }
 
 /// The newest values at a time. Of what changed only later, the first change tells what it was before.
-fn knowledge(own: &[&Entry], at: Option<Time>) -> Vec<Known> {
-    let mut known: BTreeMap<String, Known> = BTreeMap::new();
+fn knowledge(own: &[&JournalEntry], at: Option<Time>) -> Vec<KnowledgeEntry> {
+    let mut known: BTreeMap<String, KnowledgeEntry> = BTreeMap::new();
     for entry in own {
         let Some(change) = entry.change() else { continue };
         let name = change.entry;
         if at.is_none_or(|at| entry.time() <= at) {
-            let now = Known { entry: name.clone(), value: change.after, since: Some(entry.time()) };
+            let now = KnowledgeEntry { entry: name.clone(), value: change.after, since: Some(entry.time()) };
             known.insert(name, now);
         } else {
-            let before = Known { entry: name.clone(), value: change.before, since: None };
+            let before = KnowledgeEntry { entry: name.clone(), value: change.before, since: None };
             known.entry(name).or_insert(before);
         }
     }

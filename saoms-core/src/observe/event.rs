@@ -7,7 +7,7 @@ use saoms_api::{Level, Time};
 
 /// Something that happened in a fleet.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Event {
+pub struct RunEvent {
     /// When, in the time of the run.
     pub time: Time,
     /// The path of the component that it concerns; `None` is the fleet as a whole.
@@ -58,7 +58,7 @@ pub enum Occurrence {
         /// The watchdog's budget.
         budget: Duration,
     },
-    /// An event queue of the component was full. Told once for each burst.
+    /// An event queue of the component was full. Reported once for each burst.
     Dropped {
         /// The topic.
         topic: Arc<str>,
@@ -141,7 +141,7 @@ impl fmt::Display for Occurrence {
     }
 }
 
-impl fmt::Display for Event {
+impl fmt::Display for RunEvent {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.component {
             Some(component) => write!(formatter, "[{}] {component}: {}", self.time, self.what),
@@ -152,7 +152,7 @@ impl fmt::Display for Event {
 
 /// A message that a component sent.
 #[derive(Clone, Debug)]
-pub struct Sent {
+pub struct SentMessage {
     /// The topic, by the name that it has after renaming.
     pub topic: Arc<str>,
     /// The path of the component that sent it.
@@ -163,7 +163,7 @@ pub struct Sent {
 
 /// The progress of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Progress {
+pub struct RunProgress {
     /// The time of the run.
     pub time: Time,
     /// Executions of all components so far.

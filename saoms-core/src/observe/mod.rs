@@ -12,9 +12,9 @@ mod records;
 #[cfg(test)]
 mod tests;
 
-pub use event::{Event, Occurrence, Progress, Sent};
+pub use event::{Occurrence, RunEvent, RunProgress, SentMessage};
 pub use journal_file::JournalFile;
 pub(crate) use observer::Observers;
 pub use observer::{Beginning, Interest, Observer, Records};
 pub(crate) use queue::{EventQueue, News};
-pub(crate) use records::{Told, tell_records};
+pub(crate) use records::{RecordDelivery, deliver_records};

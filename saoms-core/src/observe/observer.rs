@@ -5,8 +5,8 @@ use std::time::Duration;
 use saoms_api::host::TopicDeclaration;
 use saoms_api::{Failure, Level, Time};
 
-use super::{Event, Occurrence, Progress, Sent};
-use crate::journal::{Entry, Named};
+use super::{Occurrence, RunEvent, RunProgress, SentMessage};
+use crate::journal::{ComponentName, JournalEntry};
 use crate::report::RunReport;
 
 /// A program that sees what happens in a fleet.
@@ -30,7 +30,7 @@ pub trait Observer: Send + Sync + 'static {
     }
 
     /// Something happened.
-    fn event(&self, event: &Event) {
+    fn event(&self, event: &RunEvent) {
         let _ = event;
     }
 
@@ -42,12 +42,12 @@ pub trait Observer: Send + Sync + 'static {
     }
 
     /// A component sent a message on a topic that is wanted. All messages are told, those that no reader gets as well.
-    fn message(&self, sent: &Sent) {
+    fn message(&self, sent: &SentMessage) {
         let _ = sent;
     }
 
     /// How far the run is.
-    fn progress(&self, progress: &Progress) {
+    fn progress(&self, progress: &RunProgress) {
         let _ = progress;
     }
 
@@ -99,16 +99,16 @@ pub struct Beginning<'a> {
     /// True if it runs in virtual time.
     pub is_virtual: bool,
     /// Its components in document order.
-    pub components: &'a [Named],
+    pub components: &'a [ComponentName],
 }
 
 /// Records of the journal, in the order in which executions handed them over.
 #[derive(Clone, Copy, Debug)]
 pub struct Records<'a> {
     /// The records.
-    pub entries: &'a [Entry],
+    pub entries: &'a [JournalEntry],
     /// Components that joined the running fleet since the last ones.
-    pub joined: &'a [Named],
+    pub joined: &'a [ComponentName],
     /// How many found no room since the last ones, and are lost.
     pub lost: u64,
     /// When the run ended; these are the last ones then.
@@ -159,7 +159,7 @@ impl Observers {
         self.all.iter().enumerate().filter(wants).map(|(number, _)| number as u32).collect()
     }
 
-    pub(crate) fn event(&self, event: &Event) {
+    pub(crate) fn event(&self, event: &RunEvent) {
         for (observer, interest) in &self.all {
             let is_wanted = match &event.what {
                 Occurrence::Log { level, .. } => interest.log.is_some_and(|most| *level <= most),
@@ -172,13 +172,13 @@ impl Observers {
         }
     }
 
-    pub(crate) fn message(&self, sent: &Sent, observers: &[u32]) {
+    pub(crate) fn message(&self, sent: &SentMessage, observers: &[u32]) {
         for (observer, _) in observers.iter().filter_map(|number| self.all.get(*number as usize)) {
             contained(|| observer.message(sent));
         }
     }
 
-    pub(crate) fn progress(&self, progress: &Progress) {
+    pub(crate) fn progress(&self, progress: &RunProgress) {
         for (observer, _) in self.all.iter().filter(|(_, interest)| interest.progress.is_some()) {
             contained(|| observer.progress(progress));
         }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use saoms_api::{Level, Time};
 
-use super::{Event, Interest, Observers, Occurrence, Progress, Sent};
+use super::{Interest, Observers, Occurrence, RunEvent, RunProgress, SentMessage};
 
 /// How many events may wait for the observers.
 const CAPACITY: usize = 65_536;
@@ -12,9 +12,9 @@ const CAPACITY: usize = 65_536;
 /// An event or a message on its way to the observers.
 pub(crate) enum News {
     /// Something happened.
-    Event(Event),
+    Event(RunEvent),
     /// A component sent a message on a topic that the observers of these numbers want.
-    Sent(Sent, Arc<[u32]>),
+    Sent(SentMessage, Arc<[u32]>),
 }
 
 impl News {
@@ -33,8 +33,8 @@ impl News {
     }
 }
 
-impl From<Event> for News {
-    fn from(event: Event) -> News {
+impl From<RunEvent> for News {
+    fn from(event: RunEvent) -> News {
         News::Event(event)
     }
 }
@@ -114,7 +114,7 @@ impl EventQueue {
     }
 
     /// Tells events as they come, until the queue is closed and empty.
-    pub(crate) fn tell(&self, observers: &Observers, progress: impl Fn() -> Progress) {
+    pub(crate) fn tell(&self, observers: &Observers, progress: impl Fn() -> RunProgress) {
         let every = self.interest.progress;
         let mut next_progress = every.map(|every| Instant::now() + every);
         let mut batch = VecDeque::new();
@@ -128,7 +128,7 @@ impl EventQueue {
             if lost > 0 {
                 let text = format!("{lost} events came faster than they could be shown, and are lost");
                 let what = Occurrence::Note { level: Level::Warning, text };
-                observers.event(&Event { time: last, component: None, what });
+                observers.event(&RunEvent { time: last, component: None, what });
             }
             if next_progress.is_some_and(|next| closed || Instant::now() >= next) {
                 next_progress = every.map(|every| Instant::now() + every);

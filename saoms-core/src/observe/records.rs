@@ -4,20 +4,24 @@ use super::observer::contained;
 use super::{Observers, Records};
 use crate::journal::RecordQueue;
 
-/// How the telling of records ended.
+/// Result of the delivery of records.
 #[derive(Debug, Default)]
-pub(crate) struct Told {
+pub(crate) struct RecordDelivery {
     /// Records that did not reach all observers of the journal.
     pub(crate) lost: u64,
-    /// Why observers could not take them.
+    /// Failures of the observers that could not take them.
     pub(crate) failures: Vec<Failure>,
 }
 
-/// Tells records as they come, until the queue is closed and empty. `failed` is told the first failure of each observer, when it happens;
+/// Delivers records as they come, until the queue is closed and empty. `failed` is called with the first failure of each observer, when it happens;
 /// after that, its records are only counted.
-pub(crate) fn tell_records(queue: &RecordQueue, observers: &Observers, failed: impl Fn(&Failure)) -> Told {
+pub(crate) fn deliver_records(
+    queue: &RecordQueue,
+    observers: &Observers,
+    failed: impl Fn(&Failure),
+) -> RecordDelivery {
     let mut listeners: Vec<_> = observers.of_journal().map(|observer| (observer, 0_u64, true)).collect();
-    let mut told = Told::default();
+    let mut delivery = RecordDelivery::default();
     let (mut entries, mut joined) = (Vec::new(), Vec::new());
     loop {
         let (lost, end): (u64, Option<Time>) = queue.next(&mut entries, &mut joined);
@@ -35,12 +39,12 @@ pub(crate) fn tell_records(queue: &RecordQueue, observers: &Observers, failed: i
                 *missing += entries.len() as u64;
                 *is_well = false;
                 failed(&failure);
-                told.failures.push(failure);
+                delivery.failures.push(failure);
             }
         }
         if end.is_some() {
-            told.lost = listeners.iter().map(|(_, missing, _)| *missing).max().unwrap_or(0);
-            return told;
+            delivery.lost = listeners.iter().map(|(_, missing, _)| *missing).max().unwrap_or(0);
+            return delivery;
         }
     }
 }

@@ -7,10 +7,10 @@ use saoms_api::host::Phase;
 use saoms_api::{Cause, Failure, Level, Time, record};
 
 use super::{
-    Beginning, Event, EventQueue, Interest, JournalFile, Observer, Observers, Occurrence, Progress, Records,
-    tell_records,
+    Beginning, EventQueue, Interest, JournalFile, Observer, Observers, Occurrence, Records, RunEvent,
+    RunProgress, deliver_records,
 };
-use crate::journal::{Named, RecordQueue, Recorder, Stamp};
+use crate::journal::{ComponentName, RecordQueue, Recorder, Stamp};
 
 /// Listens slowly.
 #[derive(Default)]
@@ -20,7 +20,7 @@ struct Listener {
 }
 
 impl Observer for Listener {
-    fn event(&self, event: &Event) {
+    fn event(&self, event: &RunEvent) {
         self.told.lock().unwrap().push(event.to_string());
     }
 
@@ -28,14 +28,14 @@ impl Observer for Listener {
         Interest { progress: Some(Duration::from_millis(1)), ..Interest::default() }
     }
 
-    fn progress(&self, _: &Progress) {
+    fn progress(&self, _: &RunProgress) {
         self.progress.fetch_add(1, Ordering::Relaxed);
     }
 }
 
-fn event(number: usize) -> Event {
+fn event(number: usize) -> RunEvent {
     let what = Occurrence::Log { level: Level::Info, text: number.to_string() };
-    Event { time: Time::START, component: Some(Arc::from("A")), what }
+    RunEvent { time: Time::START, component: Some(Arc::from("A")), what }
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn events_beyond_the_bound_are_counted_and_lost_in_real_time() {
         queue.put(event(number));
     }
     queue.close();
-    queue.tell(&observers, Progress::default);
+    queue.tell(&observers, RunProgress::default);
     let told = listener.told.lock().unwrap();
     assert_eq!(told.len(), 65_536 + 1);
     assert_eq!(told[65_535], "[0.000 s] A: 65535");
@@ -62,7 +62,7 @@ fn events_beyond_the_bound_wait_in_virtual_time() {
     let queue = Arc::new(EventQueue::new(observers.interest(), true));
     let teller = {
         let queue = Arc::clone(&queue);
-        thread::spawn(move || queue.tell(&observers, Progress::default))
+        thread::spawn(move || queue.tell(&observers, RunProgress::default))
     };
     for number in 0..200_000 {
         queue.put(event(number));
@@ -82,7 +82,7 @@ fn an_observer_gets_the_lines_that_it_wants_and_panics_alone() {
             Interest { log: Some(Level::Debug), console: true, ..Interest::NONE }
         }
 
-        fn event(&self, _: &Event) {
+        fn event(&self, _: &RunEvent) {
             // Not `panic!`, whose message would be shown among those of the tests.
             std::panic::resume_unwind(Box::new("clumsy"));
         }
@@ -97,7 +97,7 @@ fn an_observer_gets_the_lines_that_it_wants_and_panics_alone() {
         Occurrence::Log { level: Level::Info, text: "asked".to_owned() },
         Occurrence::Started,
     ] {
-        observers.event(&Event { time: Time::START, component: None, what });
+        observers.event(&RunEvent { time: Time::START, component: None, what });
     }
     assert_eq!(*listener.told.lock().unwrap(), ["[0.000 s] asked", "[0.000 s] started"]);
 }
@@ -136,11 +136,11 @@ fn an_observer_that_takes_no_records_is_told_once_and_all_that_is_missing_is_cou
     let large = Arc::new(Shelf { room: 99, records: AtomicUsize::new(0) });
     let observers = Observers::new(vec![small, large.clone()]);
     let queue = RecordQueue::new(true);
-    queue.join(Named { name: "A".to_owned(), id: None }, false);
+    queue.join(ComponentName { name: "A".to_owned(), id: None }, false);
     queue.put(0, &recorder(5));
     queue.close(Time::START);
     let said = AtomicU64::new(0);
-    let told = tell_records(&queue, &observers, |_| {
+    let told = deliver_records(&queue, &observers, |_| {
         said.fetch_add(1, Ordering::Relaxed);
     });
     assert_eq!((told.lost, told.failures), (5, vec![Failure::new("full")]));
@@ -153,16 +153,16 @@ fn in_real_time_records_that_find_no_room_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("journal");
     let file = Arc::new(JournalFile::new(&path));
-    let components = [Named { name: "A".to_owned(), id: None }];
+    let components = [ComponentName { name: "A".to_owned(), id: None }];
     file.begin(&Beginning { seed: 1, is_virtual: false, components: &components }).unwrap();
     let queue = RecordQueue::new(false);
-    queue.join(Named { name: "A".to_owned(), id: None }, false);
+    queue.join(ComponentName { name: "A".to_owned(), id: None }, false);
     let recorder = recorder(1000);
     for _ in 0..70 {
         queue.put(0, &recorder);
     }
     queue.close(Time::from_nanos(5));
-    let told = tell_records(&queue, &Observers::new(vec![file]), |_| {});
+    let told = deliver_records(&queue, &Observers::new(vec![file]), |_| {});
     assert_eq!((told.lost, told.failures), (4000, Vec::new()));
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(text.lines().last(), Some(r#"{"end":{"lost":4000,"records":70000,"time_s":5e-9}}"#));

@@ -22,7 +22,7 @@ use smol_str::SmolStr;
 pub use boundary::{ImportedClass, ImportedLoopClass, ImportedRule};
 pub use error::PluginError;
 pub use metadata::Metadata;
-pub use search::{Found, Search};
+pub use search::{FoundLibraries, Search};
 
 use saoms_lang::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};
 

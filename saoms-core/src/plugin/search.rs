@@ -22,7 +22,7 @@ pub struct Search {
 
 /// What a search came to.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct FoundLibraries {
     /// The plugins, in the order of the places and by name within a folder; each file once.
     pub plugins: Vec<Arc<Plugin>>,
     /// What is wrong with those that somebody named.
@@ -57,10 +57,10 @@ impl Search {
     }
 
     /// Reads the metadata of all libraries; nothing in them runs.
-    pub fn run(&self) -> Found {
-        let mut found = Found::default();
+    pub fn run(&self) -> FoundLibraries {
+        let mut found = FoundLibraries::default();
         let mut seen = BTreeSet::new();
-        let mut look = |path: &Path, named: bool, found: &mut Found| {
+        let mut look = |path: &Path, named: bool, found: &mut FoundLibraries| {
             // The same file by another way is no second plugin.
             if !seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())) {
                 return;

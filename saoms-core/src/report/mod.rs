@@ -7,5 +7,5 @@ mod sections;
 mod tests;
 
 pub use lateness::{Lateness, LatenessSummary};
-pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, Status, Votes};
+pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, RunStatus, Votes};
 pub use sections::Sections;

@@ -97,7 +97,7 @@ pub struct Votes {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outcome {
     /// In one word.
-    pub status: Status,
+    pub status: RunStatus,
     /// What went wrong, and what ended the run where that is not evident.
     pub reasons: Vec<String>,
 }
@@ -105,7 +105,7 @@ pub struct Outcome {
 /// How a run ended, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Status {
+pub enum RunStatus {
     /// All work was done.
     Done,
     /// The time given for the run was over.

@@ -6,7 +6,7 @@ use saoms_api::{CallError, Cause, Chance, Context, Failure, Work};
 
 use super::host::ComponentHost;
 use super::shared::Shared;
-use crate::bus::{Subscription, TopicId};
+use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
 use saoms_api::host::contain::contained;
@@ -28,9 +28,9 @@ pub(super) struct Part {
     pub(super) publishers: Vec<TopicId>,
     /// Of topics on which bytes were sent.
     pub(super) schemas: Vec<(TopicId, Arc<Schema>)>,
-    pub(super) subscriptions: Vec<Subscription>,
+    pub(super) subscriptions: Vec<TopicReader>,
     /// Subscriptions of a failed instance, for the one that takes its place.
-    pub(super) kept: Vec<Subscription>,
+    pub(super) kept: Vec<TopicReader>,
     pub(super) outbox: Vec<(TopicId, SharedMessage)>,
     pub(super) chance: Chance,
     pub(super) cancelled: Arc<AtomicBool>,

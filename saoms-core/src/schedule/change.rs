@@ -12,14 +12,14 @@ use saoms_api::Failure;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 
 use super::body::{Body, Job};
-use super::engine::{Engine, Phase};
+use super::engine::{Engine, RunPhase};
 use super::lifecycle::Request;
 use super::shared::Shared;
-use super::slot::{NEVER, Policy, Slot, State, Wish};
+use super::slot::{NEVER, Slot, SlotState, TaskPolicy, Wish};
 use super::takeover::{Predecessor, Refusal, Takeover};
-use super::trace::Step;
-use crate::assemble::{Difference, Plan, providers_first};
-use crate::journal::Named;
+use super::trace::TraceStep;
+use crate::assemble::{ChangePlan, Difference, providers_first};
+use crate::journal::ComponentName;
 use crate::observe::Occurrence;
 
 /// How long a change waits for code that runs.
@@ -81,7 +81,7 @@ pub(super) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, C
     let _one_at_a_time = shared.lock_changes();
     let current = shared.lock().specs();
     let wanted: Vec<_> = wanted.components.into_iter().map(|spec| Some(Arc::new(spec))).collect();
-    let plan = Plan::between(&as_members(&current), &as_members(&wanted));
+    let plan = ChangePlan::between(&as_members(&current), &as_members(&wanted));
     Change::new(shared).make(&plan, wanted)
 }
 
@@ -99,7 +99,7 @@ pub(super) fn replace(shared: &Arc<Shared>, spec: ComponentSpec) -> Result<Takeo
     let replace = vec![crate::assemble::Replacement { current: number, wanted: number, differences }];
     let others = (0..wanted.len()).filter(|one| *one != number && wanted[*one].is_some());
     let keep = others.map(|one| (one, one)).collect();
-    let changed = Change::new(shared).make(&Plan { replace, keep, ..Plan::default() }, wanted)?;
+    let changed = Change::new(shared).make(&ChangePlan { replace, keep, ..ChangePlan::default() }, wanted)?;
     Ok(changed.replaced.first().map_or(Takeover::Awaited, |(_, done)| *done))
 }
 
@@ -147,7 +147,7 @@ impl<'a> Change<'a> {
 
     fn make(
         mut self,
-        plan: &Plan,
+        plan: &ChangePlan,
         mut wanted: Vec<Option<Arc<ComponentSpec>>>,
     ) -> Result<Changed, ChangeError> {
         let order = providers_first(&as_members(&wanted));
@@ -205,7 +205,7 @@ impl<'a> Change<'a> {
         let deadline = Instant::now() + WAIT;
         let mut engine = self.shared.lock();
         loop {
-            if matches!(engine.phase, Phase::Stopping | Phase::Ended) {
+            if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
                 return Err(ChangeError::Ending);
             }
             let mut all = removed.iter().copied().chain(replaced.clone());
@@ -232,7 +232,7 @@ impl<'a> Change<'a> {
             }
         }
         for &number in replaced {
-            if engine.slots[number as usize].state == State::Active
+            if engine.slots[number as usize].state == SlotState::Active
                 && let Some(body) = engine.take(number)
             {
                 self.present.push((number, body));
@@ -258,7 +258,7 @@ impl<'a> Change<'a> {
     fn initialize(&self, number: u32) -> Result<(), (u32, Failure)> {
         let mut engine = self.shared.lock();
         let now = engine.time_of_change(self.shared);
-        engine.slots[number as usize].state = State::Starting;
+        engine.slots[number as usize].state = SlotState::Starting;
         let Some(mut body) = engine.begin(number, Job::Start, now) else {
             return Err((number, Failure::new("it is in use")));
         };
@@ -272,7 +272,7 @@ impl<'a> Change<'a> {
             }
             Err(failure) => {
                 engine.put_back(number, body);
-                engine.slots[number as usize].state = State::Failed;
+                engine.slots[number as usize].state = SlotState::Failed;
                 Err((number, failure))
             }
         };
@@ -326,7 +326,7 @@ impl<'a> Change<'a> {
         for (number, predecessor, _) in std::mem::take(&mut self.taken).into_iter().rev() {
             if let Some(mut body) = engine.take(number) {
                 body.give_back(&mut engine.bus, predecessor);
-                engine.slots[number as usize].state = State::Active;
+                engine.slots[number as usize].state = SlotState::Active;
                 engine.return_unchanged(number, body, now);
             }
         }
@@ -343,7 +343,7 @@ impl<'a> Change<'a> {
     /// Shuts down a new component of a change that is not made after all.
     fn take_back(&self, number: u32) {
         let mut engine = self.shared.lock();
-        if engine.slots[number as usize].state != State::Active {
+        if engine.slots[number as usize].state != SlotState::Active {
             return;
         }
         let now = engine.time_of_change(self.shared);
@@ -363,15 +363,15 @@ impl<'a> Change<'a> {
     /// All have initialized: what they sent leaves, and what is not wanted any more shuts down.
     fn commit(mut self, removed: &[u32]) -> Result<Changed, ChangeError> {
         let mut engine = self.shared.lock();
-        if matches!(engine.phase, Phase::Stopping | Phase::Ended) {
+        if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
             self.shared.release(engine);
             self.undo();
             return Err(ChangeError::Ending);
         }
         let now = engine.time_of_change(self.shared);
-        if engine.phase == Phase::Starting {
+        if engine.phase == RunPhase::Starting {
             self.shared.clock.start();
-            engine.phase = Phase::Running;
+            engine.phase = RunPhase::Running;
             // The timer sleeps without a term so far; where nobody is due, the end of the run still is.
             engine.wake = true;
         }
@@ -413,8 +413,8 @@ impl<'a> Change<'a> {
     fn shut_down(&self, number: u32, mut body: Box<Body>, now: u64) {
         let mut engine = self.shared.lock();
         let slot = &mut engine.slots[number as usize];
-        if slot.state != State::Abandoned {
-            (slot.state, slot.wish) = (State::Leaving, Wish::None);
+        if slot.state != SlotState::Abandoned {
+            (slot.state, slot.wish) = (SlotState::Leaving, Wish::None);
         }
         self.shared.release(engine);
         (body.part.now, body.part.due) = (now, now);
@@ -448,7 +448,7 @@ impl Engine {
 
     /// The time at which a change happens.
     fn time_of_change(&self, shared: &Shared) -> u64 {
-        if self.phase == Phase::Starting { 0 } else { shared.clock.now() }
+        if self.phase == RunPhase::Starting { 0 } else { shared.clock.now() }
     }
 
     /// The numbers of new components. One that was removed and comes again has its number again.
@@ -473,7 +473,7 @@ impl Engine {
                 continue;
             }
             if let Some(records) = &self.records {
-                records.join(Named::of(&spec), self.phase != Phase::Starting);
+                records.join(ComponentName::of(&spec), self.phase != RunPhase::Starting);
             }
             let slot = Slot::new(number, spec);
             names.push(Arc::clone(&slot.name));
@@ -481,7 +481,7 @@ impl Engine {
             self.slots.push(slot);
         }
         shared.names.add(names);
-        if self.phase == Phase::Starting {
+        if self.phase == RunPhase::Starting {
             self.journal_capacity /= self.slots.len().max(1);
         }
     }
@@ -516,8 +516,8 @@ impl Engine {
     /// A component is not part of the fleet any more.
     fn forget(&mut self, number: u32) {
         let slot = &mut self.slots[number as usize];
-        if slot.state != State::Abandoned {
-            slot.state = State::Removed;
+        if slot.state != SlotState::Abandoned {
+            slot.state = SlotState::Removed;
             (slot.entry, slot.wish, slot.vote) = (NEVER, Wish::None, None);
         }
     }
@@ -533,12 +533,12 @@ impl Engine {
     fn join(&mut self, number: u32, now: u64) {
         let slot = &mut self.slots[number as usize];
         (slot.joined, slot.held) = (true, false);
-        let is_active = slot.state == State::Active;
+        let is_active = slot.state == SlotState::Active;
         let Some(mut body) = slot.body.take() else { return };
         body.part.held = false;
         if is_active {
             self.deliver(&mut body.part, now);
-            self.step(now, number, Step::Started);
+            self.step(now, number, TraceStep::Started);
             self.tell(now, number, Occurrence::Started);
         }
         let slot = &mut self.slots[number as usize];
@@ -588,7 +588,7 @@ impl Engine {
     fn await_spec(&mut self, number: u32, spec: Arc<ComponentSpec>, now: u64) {
         let slot = &mut self.slots[number as usize];
         slot.renew(Arc::clone(&spec));
-        let has_failed = slot.state == State::Failed;
+        let has_failed = slot.state == SlotState::Failed;
         if let Some(body) = &mut slot.body {
             (body.part.spec, body.part.period) = (spec, slot.policy.period);
         }
@@ -601,14 +601,14 @@ impl Engine {
 impl Slot {
     /// The component is made of something else.
     fn renew(&mut self, spec: Arc<ComponentSpec>) {
-        self.policy = Policy::of(&spec);
+        self.policy = TaskPolicy::of(&spec);
         self.spec = spec;
     }
 
     /// A component that was removed comes again.
     fn revive(&mut self, spec: Arc<ComponentSpec>) {
         self.renew(Arc::clone(&spec));
-        (self.state, self.held) = (State::Idle, true);
+        (self.state, self.held) = (SlotState::Idle, true);
         (self.due, self.last_due, self.until) = (NEVER, None, NEVER);
         if let Some(body) = &mut self.body {
             (body.part.spec, body.part.period, body.part.held) = (spec, self.policy.period, true);

@@ -1,18 +1,18 @@
 use std::sync::atomic::Ordering;
 
-use super::engine::{Engine, Phase};
-use super::slot::State;
+use super::engine::{Engine, RunPhase};
+use super::slot::SlotState;
 use super::sys;
-use crate::assemble::Plan;
+use crate::assemble::ChangePlan;
 use crate::journal::Journal;
 use crate::observe::Occurrence;
 use crate::report::{
-    ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, Sections, Status, Votes,
+    ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes,
 };
 
 /// What ended a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cause {
+pub(super) enum EndCause {
     /// All who voted see no work left.
     Done,
     /// The time given for the run is over.
@@ -27,11 +27,11 @@ pub(super) enum Cause {
 
 impl Engine {
     /// Begins the end of the run: every component that is alive is asked to end early and will shut down.
-    pub(super) fn begin_stop(&mut self, cause: Cause, now: u64) {
-        if self.phase != Phase::Running {
+    pub(super) fn begin_stop(&mut self, cause: EndCause, now: u64) {
+        if self.phase != RunPhase::Running {
             return;
         }
-        self.phase = Phase::Stopping;
+        self.phase = RunPhase::Stopping;
         self.cause = Some(cause);
         self.ended = (now, sys::monotonic());
         self.queue.clear();
@@ -44,12 +44,13 @@ impl Engine {
         }
         // The end of a run is the change to a fleet without components.
         let members: Vec<_> = self.slots.iter().map(|slot| slot.is_member().then_some(&*slot.spec)).collect();
-        self.ending = Plan::between(&members, &[]).remove.into_iter().map(|number| number as u32).collect();
+        self.ending =
+            ChangePlan::between(&members, &[]).remove.into_iter().map(|number| number as u32).collect();
     }
 
     /// The engine itself is at fault: nothing can go on.
     pub(super) fn break_down(&mut self) {
-        self.phase = Phase::Ended;
+        self.phase = RunPhase::Ended;
         self.reasons.push("a fault of the program itself, told on standard error, ended the run".to_owned());
     }
 
@@ -58,7 +59,7 @@ impl Engine {
         while let Some(index) = self.ending.pop_front() {
             let slot = &mut self.slots[index as usize];
             if slot.body.is_some() && slot.is_alive() {
-                slot.state = State::Leaving;
+                slot.state = SlotState::Leaving;
                 return Some(index);
             }
         }
@@ -69,9 +70,9 @@ impl Engine {
     pub(super) fn abandon(&mut self, only: Option<u32>, why: &str, now: u64) {
         for index in 0..self.slots.len() as u32 {
             let slot = &mut self.slots[index as usize];
-            let stuck = slot.body.is_none() && slot.state != State::Abandoned;
+            let stuck = slot.body.is_none() && slot.state != SlotState::Abandoned;
             if stuck && only.is_none_or(|only| only == index) {
-                slot.state = State::Abandoned;
+                slot.state = SlotState::Abandoned;
                 self.reasons.push(format!("component `{}` {why}", slot.name));
                 self.came_back();
                 self.tell(now, index, Occurrence::Abandoned);
@@ -134,15 +135,15 @@ impl Engine {
     fn outcome(&self) -> Outcome {
         let mut reasons = self.reasons.clone();
         let status = match self.cause {
-            Some(Cause::Interrupted) => Status::Interrupted,
-            _ if !reasons.is_empty() => Status::Failed,
-            Some(Cause::Elapsed) => Status::Elapsed,
-            Some(Cause::Idle) => {
+            Some(EndCause::Interrupted) => RunStatus::Interrupted,
+            _ if !reasons.is_empty() => RunStatus::Failed,
+            Some(EndCause::Elapsed) => RunStatus::Elapsed,
+            Some(EndCause::Idle) => {
                 reasons
                     .push("no component is scheduled, and in virtual time nothing else happens".to_owned());
-                Status::Done
+                RunStatus::Done
             }
-            Some(Cause::Done | Cause::Lost) | None => Status::Done,
+            Some(EndCause::Done | EndCause::Lost) | None => RunStatus::Done,
         };
         Outcome { status, reasons }
     }

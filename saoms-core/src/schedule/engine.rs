@@ -6,18 +6,18 @@ use saoms_api::host::SharedMessage;
 use saoms_api::{Chance, Failure, Time, Work};
 
 use super::body::{Body, Job, Part};
-use super::ending::Cause;
+use super::ending::EndCause;
 use super::inject::Injections;
 use super::overrun::Decision;
 use super::queue::Queue;
 use super::settings::{ClockKind, Settings, nanos};
-use super::slot::{NEVER, Slot, State, Wish};
-use super::trace::{Step, Trace};
+use super::slot::{NEVER, Slot, SlotState, Wish};
+use super::trace::{Trace, TraceStep};
 use crate::bus::{Bus, TopicId};
 use crate::fault::{Faults, MessageFaultKind};
 use crate::hash::fold;
 use crate::journal::{OutsideRing, RecordQueue};
-use crate::observe::{Event, News, Occurrence, Sent};
+use crate::observe::{News, Occurrence, RunEvent, SentMessage};
 use saoms_lang::assembly::Loss;
 
 /// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives
@@ -27,7 +27,7 @@ pub(super) struct Engine {
     pub(super) slots: Vec<Slot>,
     pub(super) queue: Queue,
     pub(super) bus: Bus,
-    pub(super) phase: Phase,
+    pub(super) phase: RunPhase,
     pub(super) roles: Roles,
     /// Events for the program, told when the lock is free.
     pub(super) news: Vec<News>,
@@ -60,11 +60,11 @@ pub(super) struct Engine {
     pub(super) numbers: HashMap<Arc<str>, u32>,
     /// The component of a change that failed in a call, before the change was committed.
     pub(super) held_failure: Option<(u32, Failure)>,
-    pub(super) cause: Option<Cause>,
+    pub(super) cause: Option<EndCause>,
     pub(super) reasons: Vec<String>,
     /// When the end began, in the time of the run and on the machine's clock.
     pub(super) ended: (u64, u64),
-    pub(super) votes: Votes,
+    pub(super) votes: VoteTally,
     /// When the run ends at the latest.
     pub(super) limit: u64,
     /// How far virtual time may go for now.
@@ -76,7 +76,7 @@ pub(super) struct Engine {
 
 /// Where a run is in its life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Phase {
+pub(super) enum RunPhase {
     /// Components initialize; what they send is held back.
     Starting,
     /// Time goes on.
@@ -106,7 +106,7 @@ pub(super) struct Roles {
 
 /// What components said about the work that is left.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Votes {
+pub(super) struct VoteTally {
     pub(super) voters: usize,
     pub(super) done: usize,
 }
@@ -130,7 +130,7 @@ impl Engine {
             slots: Vec::new(),
             queue: Queue::default(),
             bus: Bus::default(),
-            phase: Phase::Starting,
+            phase: RunPhase::Starting,
             roles: Roles::default(),
             news: Vec::new(),
             wake: false,
@@ -152,7 +152,7 @@ impl Engine {
             cause: None,
             reasons: Vec::new(),
             ended: (0, 0),
-            votes: Votes::default(),
+            votes: VoteTally::default(),
             limit: settings.limit.map_or(NEVER, nanos),
             pause: 0,
             real: settings.clock == ClockKind::Real,
@@ -165,10 +165,10 @@ impl Engine {
     pub(super) fn next(&mut self, now: u64) -> Next {
         loop {
             match self.phase {
-                Phase::Running => {
+                RunPhase::Running => {
                     // What was due before the limit still runs, however late it is.
                     if now >= self.limit && self.earliest().is_none_or(|when| when >= self.limit) {
-                        self.begin_stop(Cause::Elapsed, self.limit);
+                        self.begin_stop(EndCause::Elapsed, self.limit);
                         continue;
                     }
                     if self.injections.earliest().is_some_and(|when| when <= now && when < self.limit) {
@@ -193,13 +193,13 @@ impl Engine {
                         return Next::Run(index, job);
                     }
                 }
-                Phase::Stopping => match self.next_to_end() {
+                RunPhase::Stopping => match self.next_to_end() {
                     Some(index) => return Next::Run(index, Job::Shutdown),
-                    None if self.out == 0 => self.phase = Phase::Ended,
+                    None if self.out == 0 => self.phase = RunPhase::Ended,
                     None => return Next::Wait(NEVER),
                 },
-                Phase::Starting => return Next::Wait(NEVER),
-                Phase::Ended => return Next::Ended,
+                RunPhase::Starting => return Next::Wait(NEVER),
+                RunPhase::Ended => return Next::Ended,
             }
         }
     }
@@ -213,25 +213,25 @@ impl Engine {
     pub(super) fn job(&mut self, index: u32, now: u64) -> Option<Job> {
         let slot = &mut self.slots[index as usize];
         match slot.state {
-            State::Starting => Some(Job::Start),
-            State::Leaving => Some(Job::Shutdown),
-            State::Active if now >= slot.until => {
-                slot.state = State::Leaving;
+            SlotState::Starting => Some(Job::Start),
+            SlotState::Leaving => Some(Job::Shutdown),
+            SlotState::Active if now >= slot.until => {
+                slot.state = SlotState::Leaving;
                 Some(Job::Shutdown)
             }
-            State::Active if now < slot.due => {
+            SlotState::Active if now < slot.due => {
                 let when = slot.due.min(slot.until);
                 self.enqueue(index, when);
                 None
             }
-            State::Active => match slot.decide(now, self.limit) {
+            SlotState::Active => match slot.decide(now, self.limit) {
                 Decision::Stop { missed } => {
                     self.condemn(index, missed, now);
                     Some(Job::Shutdown)
                 }
                 Decision::Execute { .. } => Some(Job::Execute),
             },
-            State::Idle | State::Failed | State::Abandoned | State::Removed => None,
+            SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => None,
         }
     }
 
@@ -239,7 +239,7 @@ impl Engine {
     fn condemn(&mut self, index: u32, missed: u64, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.statistics.missed += missed;
-        slot.state = State::Leaving;
+        slot.state = SlotState::Leaving;
         slot.wish = Wish::None;
         let what = Occurrence::Overrun { missed };
         slot.condemned = Some(format!("component `{}` {what}", slot.name));
@@ -380,11 +380,11 @@ impl Engine {
     pub(super) fn came_back(&mut self) {
         self.out -= 1;
         self.has_returned |= self.awaited > 0;
-        self.wake |= self.phase == Phase::Stopping && self.roles.asleep_until != 0;
+        self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
     }
 
     pub(super) fn is_abandoned(&self, index: u32) -> bool {
-        self.slots[index as usize].state == State::Abandoned
+        self.slots[index as usize].state == SlotState::Abandoned
     }
 
     /// Takes over what a component has written to the journal.
@@ -416,10 +416,10 @@ impl Engine {
             }
             if let Some(observers) = self.bus.observers(topic) {
                 let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(&part.name));
-                let sent = Sent { topic, component, message: message.clone() };
+                let sent = SentMessage { topic, component, message: message.clone() };
                 self.news.push(News::Sent(sent, Arc::clone(observers)));
             }
-            if self.phase == Phase::Running {
+            if self.phase == RunPhase::Running {
                 if self.faults.is_empty() {
                     self.bus.publish(topic, message);
                 } else {
@@ -450,7 +450,7 @@ impl Engine {
     fn executed(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.waiting = false;
-        if self.phase == Phase::Running && slot.wish == Wish::None {
+        if self.phase == RunPhase::Running && slot.wish == Wish::None {
             let when = slot.due.min(slot.until).max(now);
             self.enqueue(index, when);
         } else {
@@ -486,23 +486,23 @@ impl Engine {
             Work::Done => self.votes.done += 1,
             Work::Open => self.votes.done -= usize::from(before.is_some()),
         }
-        self.step(now, index, Step::Voted);
+        self.step(now, index, TraceStep::Voted);
     }
 
     /// Ends the run when all who voted see no work left, and none can come from outside.
     pub(super) fn end_if_done(&mut self, now: u64) {
         if self.votes.voters > 0 && self.votes.done == self.votes.voters && self.injections.are_over() {
-            self.begin_stop(Cause::Done, now);
+            self.begin_stop(EndCause::Done, now);
         }
     }
 
     /// Tells the program something about a component, as soon as the lock is free.
     pub(super) fn tell(&mut self, now: u64, index: u32, what: Occurrence) {
         let component = Some(Arc::clone(&self.slots[index as usize].name));
-        self.news.push(Event { time: Time::from_nanos(now), component, what }.into());
+        self.news.push(RunEvent { time: Time::from_nanos(now), component, what }.into());
     }
 
-    pub(super) fn step(&mut self, now: u64, index: u32, step: Step) {
+    pub(super) fn step(&mut self, now: u64, index: u32, step: TraceStep) {
         if let Some(trace) = &mut self.trace {
             trace.step(now, index, step);
         }

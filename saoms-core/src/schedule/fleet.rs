@@ -11,7 +11,7 @@ use saoms_api::{Level, Time};
 use super::change::{self, ChangeError, Changed};
 use super::clock::Clock;
 use super::drive;
-use super::engine::Phase;
+use super::engine::RunPhase;
 use super::inject::{self, InjectError, Injection};
 use super::lifecycle::Request;
 use super::realtime;
@@ -20,8 +20,8 @@ use super::shared::Shared;
 use super::slot::NEVER;
 use super::start::StartError;
 use super::takeover::Takeover;
-use crate::journal::Named;
-use crate::observe::{Beginning, Observer, Progress, Told, tell_records};
+use crate::journal::ComponentName;
+use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;
 use saoms_api::host::contain;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
@@ -32,13 +32,13 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 /// use std::time::Duration;
 ///
 /// use saoms_lang::assembly::Assembly;
-/// use saoms_core::report::Status;
+/// use saoms_core::report::RunStatus;
 /// use saoms_core::schedule::{Fleet, Settings};
 ///
 /// let settings = Settings { limit: Some(Duration::from_secs(3600)), ..Settings::simulated(7) };
 /// let fleet = Fleet::start(Assembly::default(), settings, Vec::new())?;
 /// let report = fleet.run_to_end();
-/// assert_eq!(report.outcome.status, Status::Elapsed);
+/// assert_eq!(report.outcome.status, RunStatus::Elapsed);
 /// assert_eq!(report.time_s, 3600.0);
 /// # Ok::<(), saoms_core::schedule::StartError>(())
 /// ```
@@ -53,7 +53,7 @@ pub struct Fleet {
     /// Tells observers what happens.
     teller: Option<JoinHandle<()>>,
     /// Tells observers the records of the journal.
-    journal: Option<JoinHandle<Told>>,
+    journal: Option<JoinHandle<RecordDelivery>>,
 }
 
 /// A remote control of a fleet. It may be cloned and used from any thread; after the end of the run it does nothing.
@@ -107,7 +107,7 @@ impl Fleet {
         let awake = realtime.then(realtime::keep_awake).transpose();
         let clock = if simulated { Clock::simulated() } else { Clock::real() };
         let shared = Arc::new(Shared::new(settings, clock, observers));
-        let components: Vec<Named> = assembly.components.iter().map(Named::of).collect();
+        let components: Vec<ComponentName> = assembly.components.iter().map(ComponentName::of).collect();
         let (seed, is_virtual) = (shared.settings.seed, simulated);
         let beginning = Beginning { seed, is_virtual, components: &components };
         shared.observers.begin(&beginning).map_err(StartError::Observer)?;
@@ -150,7 +150,7 @@ impl Fleet {
         let deadline = shared.clock.on_machine(time);
         loop {
             let ticket = shared.end.ticket();
-            if shared.lock().phase == Phase::Ended || shared.clock.now() >= time {
+            if shared.lock().phase == RunPhase::Ended || shared.clock.now() >= time {
                 return;
             }
             shared.end.wait(ticket, Some(deadline));
@@ -213,11 +213,11 @@ impl Fleet {
 }
 
 /// Starts the thread that tells observers the records of the journal, where one wants them.
-fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<Told>>> {
+fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDelivery>>> {
     let Some(records) = shared.lock().records.clone() else { return Ok(None) };
     let shared = Arc::clone(shared);
     let tell = move || {
-        tell_records(&records, &shared.observers, |failure| shared.note(Level::Error, failure.to_string()))
+        deliver_records(&records, &shared.observers, |failure| shared.note(Level::Error, failure.to_string()))
     };
     thread::Builder::new().name("saoms-journal".to_owned()).spawn(tell).map(Some)
 }
@@ -229,8 +229,8 @@ impl Drop for Fleet {
         }
         let shared = &self.handle.shared;
         let mut engine = shared.lock();
-        if engine.phase == Phase::Starting {
-            engine.phase = Phase::Ended;
+        if engine.phase == RunPhase::Starting {
+            engine.phase = RunPhase::Ended;
             shared.release(engine);
             drive::announce_end(shared);
         } else {
@@ -333,7 +333,7 @@ impl Handle {
     }
 
     /// How far the run is.
-    pub fn progress(&self) -> Progress {
+    pub fn progress(&self) -> RunProgress {
         self.shared.progress()
     }
 

@@ -11,7 +11,7 @@ use super::inject::{OUTSIDE, OUTSIDE_NAME};
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::journal::Stamp;
-use crate::observe::{Event, Occurrence};
+use crate::observe::{Occurrence, RunEvent};
 use crate::report::Sections;
 use saoms_lang::assembly::{ComponentSpec, TaskSettings, Wire};
 use saoms_lang::registry::{ClassDeclaration, LoopDeclaration, TopicDeclaration as DeclaredTopic};
@@ -210,7 +210,7 @@ impl Host for ComponentHost<'_> {
             .subscribe(name, topic, &self.part.name, task.queue)
             .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
         // An instance that takes the place of a failed one gets the events that came meanwhile.
-        let same = |kept: &crate::bus::Subscription| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
+        let same = |kept: &crate::bus::TopicReader| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
         let subscription = match self.part.kept.iter().position(same) {
             Some(place) => {
                 let mut kept = self.part.kept.swap_remove(place);
@@ -360,7 +360,7 @@ impl Host for ComponentHost<'_> {
 
 impl ComponentHost<'_> {
     fn tell(&self, what: Occurrence) {
-        self.shared.events.put(Event {
+        self.shared.events.put(RunEvent {
             time: self.now(),
             component: Some(Arc::clone(&self.part.name)),
             what,

@@ -10,11 +10,11 @@ use saoms_api::{Cause, Header, Time};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
-use super::engine::{Engine, Phase};
+use super::engine::{Engine, RunPhase};
 use super::shared::Shared;
 use crate::bus::TopicId;
-use crate::journal::Entry;
-use crate::observe::{News, Sent};
+use crate::journal::JournalEntry;
+use crate::observe::{News, SentMessage};
 
 /// The number of the sender of messages from outside.
 pub(super) const OUTSIDE: u32 = u32::MAX;
@@ -30,7 +30,7 @@ pub struct Injection {
     /// The topic, by the name that it has after renaming.
     pub topic: String,
     /// The message.
-    pub content: Content,
+    pub content: InjectedContent,
     /// When it takes effect, in the time of the run; `None`, or a time that is over, is the next instant.
     pub at: Option<Time>,
     /// What it means, for the journal.
@@ -39,7 +39,7 @@ pub struct Injection {
 
 /// The content of a message from outside, which is checked against the schema of the topic.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Content {
+pub enum InjectedContent {
     /// Its fields, as JSON.
     Fields(Value),
     /// Its CDR form (see [`saoms_api::host::cdr`]).
@@ -148,7 +148,7 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
     let Injection { topic, content, at, text } = injection;
     let (id, schema) = {
         let engine = shared.lock();
-        if matches!(engine.phase, Phase::Stopping | Phase::Ended) {
+        if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
             return Err(InjectError::Ending);
         }
         let Some(id) = engine.bus.find(&topic) else {
@@ -165,11 +165,11 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
     };
     let schema = Schema::parse(&schema).map_err(|error| refused("", error.to_string()))?;
     let (bytes, key) = match content {
-        Content::Fields(fields) => {
+        InjectedContent::Fields(fields) => {
             let bytes = schema.encode(&fields).map_err(|error| refused(schema.name(), error.to_string()))?;
             (bytes, schema.key(&fields))
         }
-        Content::Bytes(bytes) => {
+        InjectedContent::Bytes(bytes) => {
             let fields = schema.decode(&bytes).map_err(|error| refused(schema.name(), error.to_string()))?;
             (bytes, schema.key(&fields))
         }
@@ -223,7 +223,7 @@ impl Engine {
         }
         if let Some(observers) = self.bus.observers(topic) {
             let component = Arc::from(OUTSIDE_NAME);
-            let sent = Sent { topic: name, component, message: message.clone() };
+            let sent = SentMessage { topic: name, component, message: message.clone() };
             self.news.push(News::Sent(sent, Arc::clone(observers)));
         }
         self.bus.publish(topic, message);
@@ -232,7 +232,7 @@ impl Engine {
     fn record_outside(&mut self, time: u64, text: String) -> Cause {
         // Components draw the numbers of their records from the same counter.
         let id = Cause(self.record_ids.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
-        let entry = Entry::from_outside(id, Time::from_nanos(time), OUTSIDE_NAME, text);
+        let entry = JournalEntry::from_outside(id, Time::from_nanos(time), OUTSIDE_NAME, text);
         if let Some(records) = &self.records {
             records.put_outside(entry.clone());
         }

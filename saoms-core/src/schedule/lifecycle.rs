@@ -3,11 +3,11 @@ use std::sync::atomic::Ordering;
 use saoms_api::{Failure, Work};
 
 use super::body::{Body, Job};
-use super::ending::Cause;
-use super::engine::{Engine, Phase};
+use super::ending::EndCause;
+use super::engine::{Engine, RunPhase};
 use super::settings::nanos;
-use super::slot::{NEVER, State, Wish};
-use super::trace::Step;
+use super::slot::{NEVER, SlotState, Wish};
+use super::trace::TraceStep;
 use crate::observe::Occurrence;
 use saoms_lang::assembly::Restart;
 
@@ -24,7 +24,7 @@ pub(super) enum Request {
 impl Engine {
     /// Notes a request.
     pub(super) fn request(&mut self, index: u32, request: Request, now: u64) {
-        let running = matches!(self.phase, Phase::Starting | Phase::Running);
+        let running = matches!(self.phase, RunPhase::Starting | RunPhase::Running);
         if !running || !self.slots[index as usize].policy.periodic {
             return;
         }
@@ -38,16 +38,16 @@ impl Engine {
         let until = now.saturating_add(lasting);
         let slot = &mut self.slots[index as usize];
         match (slot.state, slot.wish) {
-            (State::Idle | State::Failed, _) => {
-                slot.state = State::Starting;
+            (SlotState::Idle | SlotState::Failed, _) => {
+                slot.state = SlotState::Starting;
                 slot.until = until;
                 self.enqueue(index, now);
             }
-            (State::Leaving, _) | (_, Wish::Leave | Wish::Return { .. }) => {
+            (SlotState::Leaving, _) | (_, Wish::Leave | Wish::Return { .. }) => {
                 slot.wish = Wish::Return { lasting }
             }
-            (State::Starting, Wish::None) => slot.until = until,
-            (State::Active, Wish::None) => {
+            (SlotState::Starting, Wish::None) => slot.until = until,
+            (SlotState::Active, Wish::None) => {
                 // One that runs goes on; only for how long may be new.
                 slot.until = until;
                 if slot.entry != NEVER {
@@ -55,24 +55,24 @@ impl Engine {
                     self.enqueue(index, when);
                 }
             }
-            (State::Abandoned | State::Removed, _) => {}
+            (SlotState::Abandoned | SlotState::Removed, _) => {}
         }
     }
 
     fn unschedule(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         match slot.state {
-            State::Idle | State::Failed | State::Abandoned | State::Removed => {}
-            State::Leaving => slot.wish = Wish::None,
-            State::Starting if slot.body.is_some() => {
-                slot.state = State::Idle;
+            SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => {}
+            SlotState::Leaving => slot.wish = Wish::None,
+            SlotState::Starting if slot.body.is_some() => {
+                slot.state = SlotState::Idle;
                 slot.entry = NEVER;
                 slot.restarting = false;
                 self.leave_topics(index, now);
                 self.forget_vote(index, now);
             }
-            State::Active if slot.body.is_some() => self.leave(index, now),
-            State::Starting | State::Active => {
+            SlotState::Active if slot.body.is_some() => self.leave(index, now),
+            SlotState::Starting | SlotState::Active => {
                 slot.wish = Wish::Leave;
                 if slot.policy.interrupt {
                     slot.cancelled.store(true, Ordering::Relaxed);
@@ -84,7 +84,7 @@ impl Engine {
     /// Lets a component shut down as soon as possible.
     fn leave(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
-        slot.state = State::Leaving;
+        slot.state = SlotState::Leaving;
         if !slot.queued {
             self.enqueue(index, now);
         }
@@ -93,7 +93,7 @@ impl Engine {
     /// What comes next for a component that is alive and whose code has just returned.
     pub(super) fn resume(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
-        if self.phase == Phase::Stopping {
+        if self.phase == RunPhase::Stopping {
             self.ending.push_back(index);
             return;
         }
@@ -113,12 +113,12 @@ impl Engine {
     pub(super) fn started(&mut self, index: u32, now: u64) {
         self.release_kept(index, now);
         let slot = &mut self.slots[index as usize];
-        slot.state = State::Active;
+        slot.state = SlotState::Active;
         let (number, again) = (slot.restarts, std::mem::take(&mut slot.restarting));
         if slot.held {
             return;
         }
-        self.step(now, index, Step::Started);
+        self.step(now, index, TraceStep::Started);
         self.tell(now, index, if again { Occurrence::Restarted { number } } else { Occurrence::Started });
         let slot = &mut self.slots[index as usize];
         slot.due = now.saturating_add(slot.policy.delay);
@@ -126,7 +126,7 @@ impl Engine {
             // One that schedules itself anew without a delay would never let time go on.
             slot.due = last.saturating_add(slot.policy.period);
         }
-        if self.phase == Phase::Running && slot.wish == Wish::None {
+        if self.phase == RunPhase::Running && slot.wish == Wish::None {
             let when = slot.due.min(slot.until).max(now);
             self.enqueue(index, when);
         } else {
@@ -137,13 +137,13 @@ impl Engine {
     /// A component has shut down.
     pub(super) fn left(&mut self, index: u32, now: u64) {
         self.leave_topics(index, now);
-        self.step(now, index, Step::Left);
+        self.step(now, index, TraceStep::Left);
         let slot = &mut self.slots[index as usize];
         let wish = std::mem::replace(&mut slot.wish, Wish::None);
-        slot.state = State::Idle;
+        slot.state = SlotState::Idle;
         slot.waiting = false;
         if let Some(reason) = slot.condemned.take() {
-            slot.state = State::Failed;
+            slot.state = SlotState::Failed;
             self.reasons.push(reason);
             self.lost(index, now);
             return;
@@ -171,19 +171,19 @@ impl Engine {
         if unsent > 0 {
             message.push_str(&format!(" (messages of this execution that are not sent: {unsent})"));
         }
-        self.step(now, index, Step::Failed);
+        self.step(now, index, TraceStep::Failed);
         let slot = &mut self.slots[index as usize];
         slot.statistics.failures += 1;
         slot.waiting = false;
         if body.part.held {
             // Its change is not made.
-            slot.state = State::Failed;
+            slot.state = SlotState::Failed;
             let reason = format!("component `{}` failed: {message}", slot.name);
             self.held_failure = Some((index, Failure::new(reason)));
             self.tell(now, index, Occurrence::Failed { message, restart: None });
             return;
         }
-        let stays = self.phase == Phase::Running && job != Job::Shutdown && slot.wish == Wish::None;
+        let stays = self.phase == RunPhase::Running && job != Job::Shutdown && slot.wish == Wish::None;
         let pause = match slot.policy.restart {
             Restart::OnFailure { backoff, limit } if stays && slot.restarts < limit => {
                 Some(backoff.saturating_mul(1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX)))
@@ -197,12 +197,12 @@ impl Engine {
             Some(pause) => {
                 slot.restarts += 1;
                 slot.restarting = true;
-                slot.state = State::Starting;
+                slot.state = SlotState::Starting;
                 self.tell(now, index, Occurrence::Failed { message, restart: Some(pause) });
                 self.enqueue(index, now.saturating_add(nanos(pause)));
             }
             None => {
-                slot.state = State::Failed;
+                slot.state = SlotState::Failed;
                 slot.restarting = false;
                 self.reasons.extend(slot.condemned.take());
                 self.reasons.push(format!("component `{}` failed: {message}", slot.name));
@@ -218,7 +218,7 @@ impl Engine {
 
     /// A component is gone for good: does the run still have a meaning?
     fn lost(&mut self, index: u32, now: u64) {
-        if self.phase != Phase::Running {
+        if self.phase != RunPhase::Running {
             return;
         }
         let voted = self.slots[index as usize].vote.is_some();
@@ -226,15 +226,15 @@ impl Engine {
         if voted && self.votes.voters == 0 {
             let name = &self.slots[index as usize].name;
             self.reasons.push(format!("component `{name}`, which could say when the work is done, is gone"));
-            self.begin_stop(Cause::Lost, now);
+            self.begin_stop(EndCause::Lost, now);
         } else if !self.slots.iter().any(|slot| slot.policy.periodic && slot.is_scheduled()) {
-            self.begin_stop(Cause::Lost, now);
+            self.begin_stop(EndCause::Lost, now);
         }
     }
 
     /// A component that does not take part has no say about the work that is left.
     pub(super) fn forget_vote(&mut self, index: u32, now: u64) {
-        if self.phase != Phase::Running {
+        if self.phase != RunPhase::Running {
             return;
         }
         if let Some(vote) = self.slots[index as usize].vote.take() {

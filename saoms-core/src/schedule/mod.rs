@@ -36,7 +36,7 @@ mod trace;
 
 pub use change::{ChangeError, Changed};
 pub use fleet::{Fleet, Handle, Hold, UnknownComponent};
-pub use inject::{Content, InjectError, Injection};
+pub use inject::{InjectError, InjectedContent, Injection};
 pub use realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
 pub use start::StartError;

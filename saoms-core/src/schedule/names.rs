@@ -3,15 +3,15 @@ use std::sync::{Arc, OnceLock};
 
 /// The paths of components by their numbers: numbers are only added, and read without a lock.
 #[derive(Default)]
-pub(super) struct Names {
+pub(super) struct SlotNames {
     page: Vec<Arc<str>>,
-    next: OnceLock<Box<Names>>,
+    next: OnceLock<Box<SlotNames>>,
 }
 
-impl Names {
+impl SlotNames {
     /// Gives the next numbers to these components.
     pub(super) fn add(&self, names: Vec<Arc<str>>) {
-        let mut rest = Box::new(Names { page: names, next: OnceLock::new() });
+        let mut rest = Box::new(SlotNames { page: names, next: OnceLock::new() });
         let mut last = self;
         while let Err(back) = last.next.set(rest) {
             rest = back;
@@ -33,7 +33,7 @@ impl Names {
     }
 }
 
-impl fmt::Debug for Names {
+impl fmt::Debug for SlotNames {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_list().entries((0..).map_while(|number| self.get(number))).finish()
     }
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn names_are_found_by_number_on_all_pages() {
-        let names = Names::default();
+        let names = SlotNames::default();
         assert_eq!(names.get(0), None);
         for page in [vec!["A", "B"], vec![], vec!["C"]] {
             names.add(page.into_iter().map(Arc::from).collect());

@@ -7,12 +7,12 @@ use saoms_api::extension::RunSummary;
 
 use super::clock::Clock;
 use super::engine::Engine;
-use super::names::Names;
+use super::names::SlotNames;
 use super::pulse::Pulse;
 use super::settings::Settings;
 use super::sys::Gate;
 use crate::journal::RecordQueue;
-use crate::observe::{Event, EventQueue, Observer, Observers, Occurrence, Progress};
+use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunProgress};
 use crate::report::Sections;
 
 /// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while component code runs or a
@@ -21,7 +21,7 @@ pub(super) struct Shared {
     engine: Mutex<Engine>,
     sections: Mutex<Sections>,
     /// The paths of components by their numbers.
-    pub(super) names: Names,
+    pub(super) names: SlotNames,
     /// Held by who changes the fleet: one change at a time.
     changes: Mutex<()>,
     /// A body that somebody waits for has returned.
@@ -67,7 +67,7 @@ impl Shared {
             executions: Arc::clone(&engine.executions),
             engine: Mutex::new(engine),
             sections: Mutex::new(Sections::with_registered_counts()),
-            names: Names::default(),
+            names: SlotNames::default(),
             changes: Mutex::default(),
             returned: Condvar::new(),
             settings,
@@ -160,16 +160,16 @@ impl Shared {
     /// Something about the fleet as a whole.
     pub(super) fn note(&self, level: saoms_api::Level, text: String) {
         let time = Time::from_nanos(self.clock.now());
-        self.events.put(Event { time, component: None, what: Occurrence::Note { level, text } });
+        self.events.put(RunEvent { time, component: None, what: Occurrence::Note { level, text } });
     }
 
-    pub(super) fn progress(&self) -> Progress {
+    pub(super) fn progress(&self) -> RunProgress {
         let time = Time::from_nanos(self.clock.now());
         let periods = self.executions.load(Ordering::Relaxed);
         let sections = self.sections();
         let count = |path: &str| sections.integer(path).unwrap_or(0);
         let summaries = RunSummary::linked().into_iter().filter_map(|summary| (summary.progress)(&count));
-        Progress { time, periods, summaries: summaries.collect() }
+        RunProgress { time, periods, summaries: summaries.collect() }
     }
 }
 

@@ -17,7 +17,7 @@ pub(super) const NEVER: u64 = u64::MAX;
 pub(super) struct Slot {
     /// What runs; absent while its code runs.
     pub(super) body: Option<Box<Body>>,
-    pub(super) state: State,
+    pub(super) state: SlotState,
     /// What the component is made of, as its body has it.
     pub(super) spec: Arc<ComponentSpec>,
     /// Its instance is part of a change that is not committed: it is not executed.
@@ -43,7 +43,7 @@ pub(super) struct Slot {
     /// Messages were lost in its last period, too.
     pub(super) dropping: bool,
     pub(super) apart: Apart,
-    pub(super) policy: Policy,
+    pub(super) policy: TaskPolicy,
     pub(super) vote: Option<Work>,
     pub(super) statistics: Statistics,
     pub(super) journal: Ring,
@@ -60,7 +60,7 @@ pub(super) struct Slot {
 
 /// Where a component is in its life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum State {
+pub(super) enum SlotState {
     /// It does not take part: not scheduled yet, or unscheduled.
     Idle,
     /// It will be constructed and initialized when its entry in the queue is due.
@@ -118,7 +118,7 @@ impl Apart {
 
 /// What the composite says about running a component, in the engine's terms.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Policy {
+pub(super) struct TaskPolicy {
     pub(super) periodic: bool,
     pub(super) on_startup: bool,
     pub(super) interrupt: bool,
@@ -130,10 +130,10 @@ pub(super) struct Policy {
     pub(super) loss: Loss,
 }
 
-impl Policy {
-    pub(super) fn of(spec: &ComponentSpec) -> Policy {
+impl TaskPolicy {
+    pub(super) fn of(spec: &ComponentSpec) -> TaskPolicy {
         match &spec.task {
-            Some(task) => Policy {
+            Some(task) => TaskPolicy {
                 periodic: true,
                 on_startup: task.run_on_startup,
                 interrupt: task.may_interrupt_if_running,
@@ -144,7 +144,7 @@ impl Policy {
                 restart: task.restart,
                 loss: task.loss,
             },
-            None => Policy {
+            None => TaskPolicy {
                 periodic: false,
                 on_startup: true,
                 interrupt: true,
@@ -177,7 +177,7 @@ pub(super) struct Statistics {
 impl Slot {
     pub(super) fn new(index: u32, spec: Arc<ComponentSpec>) -> Slot {
         let name: Arc<str> = Arc::from(spec.path.as_str());
-        let policy = Policy::of(&spec);
+        let policy = TaskPolicy::of(&spec);
         let cancelled = Arc::new(AtomicBool::new(false));
         let body =
             Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
@@ -186,7 +186,7 @@ impl Slot {
             spec,
             held: true,
             joined: false,
-            state: State::Idle,
+            state: SlotState::Idle,
             entry: NEVER,
             due: NEVER,
             last_due: None,
@@ -218,20 +218,20 @@ impl Slot {
 
     /// True if it is part of the fleet, or is about to be.
     pub(super) fn is_member(&self) -> bool {
-        self.state != State::Removed
+        self.state != SlotState::Removed
     }
 
     /// True if it is scheduled, or about to be.
     pub(super) fn is_scheduled(&self) -> bool {
         match self.state {
-            State::Starting | State::Active => self.wish != Wish::Leave,
-            State::Leaving => matches!(self.wish, Wish::Return { .. }),
-            State::Idle | State::Failed | State::Abandoned | State::Removed => false,
+            SlotState::Starting | SlotState::Active => self.wish != Wish::Leave,
+            SlotState::Leaving => matches!(self.wish, Wish::Return { .. }),
+            SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => false,
         }
     }
 
     /// True if its instance is initialized and not shut down.
     pub(super) fn is_alive(&self) -> bool {
-        matches!(self.state, State::Active | State::Leaving)
+        matches!(self.state, SlotState::Active | SlotState::Leaving)
     }
 }

@@ -7,7 +7,7 @@ use saoms_lang::assembly::ComponentSpec;
 
 use super::body::{Body, Part};
 use super::shared::Shared;
-use crate::bus::{Bus, Subscription, TopicId};
+use crate::bus::{Bus, TopicId, TopicReader};
 use crate::journal::Recorder;
 
 /// The outcome of a replacement.
@@ -40,7 +40,7 @@ pub(super) struct Predecessor {
 struct Ties {
     spec: Arc<ComponentSpec>,
     publishers: Vec<TopicId>,
-    subscriptions: Vec<Subscription>,
+    subscriptions: Vec<TopicReader>,
     recorder: Recorder,
 }
 

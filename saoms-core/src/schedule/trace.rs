@@ -16,7 +16,7 @@ pub(super) struct Trace {
 
 /// Changes in the life of a component, as the trace counts them.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Step {
+pub(super) enum TraceStep {
     Started = 1,
     Left = 2,
     Failed = 3,
@@ -24,7 +24,7 @@ pub(super) enum Step {
 }
 
 impl Trace {
-    pub(super) fn step(&mut self, time: u64, component: u32, step: Step) {
+    pub(super) fn step(&mut self, time: u64, component: u32, step: TraceStep) {
         self.effect(time, component, step as u64);
     }
 

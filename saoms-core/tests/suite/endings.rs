@@ -1,5 +1,5 @@
 use saoms_api::extension::{RunSummary, submit};
-use saoms_core::report::Status;
+use saoms_core::report::RunStatus;
 use serde_json::json;
 
 use crate::fleet::{check, of, outcome, run, simulated, start};
@@ -71,7 +71,7 @@ fn a_fleet_of_passive_components_lasts_until_it_is_stopped() {
         handle.stop();
     });
     let report = fleet.run_to_end();
-    assert_eq!(report.outcome.status, Status::Interrupted);
+    assert_eq!(report.outcome.status, RunStatus::Interrupted);
     assert!(diary.lines().ends_with("A: last\n"));
     stopper.join().unwrap();
 }
@@ -80,7 +80,7 @@ fn a_fleet_of_passive_components_lasts_until_it_is_stopped() {
 fn in_virtual_time_nothing_happens_to_passive_components_and_the_run_ends() {
     let (fleet, diary) = start("A callee last=[log last]", saoms_core::schedule::Settings::simulated(1));
     let report = fleet.unwrap().run_to_end();
-    assert_eq!(report.outcome.status, Status::Done);
+    assert_eq!(report.outcome.status, RunStatus::Done);
     assert!(diary.lines().ends_with("A: last\n"));
 }
 
@@ -183,7 +183,7 @@ fn what_is_sent_at_the_end_overflows_no_queue() {
 fn a_program_that_listens_slowly_does_not_make_a_component_look_stuck() {
     struct Slow(std::sync::atomic::AtomicUsize);
     impl saoms_core::observe::Observer for Slow {
-        fn event(&self, _: &saoms_core::observe::Event) {
+        fn event(&self, _: &saoms_core::observe::RunEvent) {
             if self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) == 0 {
                 std::thread::sleep(std::time::Duration::from_millis(1500));
             }

@@ -83,7 +83,7 @@ fn a_restart_that_fails_counts_too() {
     assert_eq!(of(&report, "A").restarts, 2);
     assert_eq!(of(&report, "A").failures, 3);
     assert_eq!(diary.count(|event| matches!(event.what, Occurrence::Restarted { .. })), 2);
-    let pause = |event: &saoms_core::observe::Event| match event.what {
+    let pause = |event: &saoms_core::observe::RunEvent| match event.what {
         Occurrence::Failed { restart, .. } => restart,
         _ => None,
     };

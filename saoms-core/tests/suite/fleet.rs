@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use saoms_api::host::{PropertyValue, Registration, parse_duration};
-use saoms_core::observe::{Event, Interest, Observer, Occurrence};
+use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use saoms_core::report::{ComponentReport, RunReport};
 use saoms_core::schedule::{Fleet, Settings, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, Target, TaskSettings, Wire};
@@ -123,11 +123,11 @@ fn pairs(mut text: &str) -> Vec<(&str, &str)> {
 /// Remembers what happened.
 #[derive(Default)]
 pub(crate) struct Diary {
-    pub(crate) events: Mutex<Vec<Event>>,
+    pub(crate) events: Mutex<Vec<RunEvent>>,
 }
 
 impl Observer for Diary {
-    fn event(&self, event: &Event) {
+    fn event(&self, event: &RunEvent) {
         self.events.lock().unwrap().push(event.clone());
     }
 
@@ -158,7 +158,7 @@ impl Diary {
     }
 
     /// How many events are such.
-    pub(crate) fn count(&self, is_such: impl Fn(&Event) -> bool) -> usize {
+    pub(crate) fn count(&self, is_such: impl Fn(&RunEvent) -> bool) -> usize {
         self.events.lock().unwrap().iter().filter(|event| is_such(event)).count()
     }
 }

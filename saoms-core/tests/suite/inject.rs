@@ -4,9 +4,9 @@ use std::sync::{Arc, Mutex};
 
 use saoms_api::Time;
 use saoms_api::host::cdr;
-use saoms_core::observe::{Observer, Sent};
-use saoms_core::report::Status;
-use saoms_core::schedule::{Content, Fleet, Handle, InjectError, Injection, Settings};
+use saoms_core::observe::{Observer, SentMessage};
+use saoms_core::report::RunStatus;
+use saoms_core::schedule::{Fleet, Handle, InjectError, InjectedContent, Injection, Settings};
 use serde_json::{Value, json};
 
 use crate::actor::Words;
@@ -20,7 +20,7 @@ fn say(handle: &Handle, topic: &str, content: Value, time: Option<u64>) -> Resul
     let text = format!("somebody says {content}");
     handle.inject(Injection {
         topic: topic.to_owned(),
-        content: Content::Fields(content),
+        content: InjectedContent::Fields(content),
         at: time.map(at),
         text,
     })
@@ -74,7 +74,7 @@ fn messages_are_checked_against_the_schema_of_their_topic() {
     );
     let bytes = |bytes| {
         let (topic, text) = ("TALK".to_owned(), String::new());
-        fleet.handle().inject(Injection { topic, content: Content::Bytes(bytes), at: None, text })
+        fleet.handle().inject(Injection { topic, content: InjectedContent::Bytes(bytes), at: None, text })
     };
     assert_eq!(bytes(cdr::encode(&Words { text: "fine".to_owned() })), Ok(()));
     assert!(matches!(bytes(vec![1, 2, 3]), Err(InjectError::Content { .. })));
@@ -102,7 +102,7 @@ impl Observer for Reader {
         true
     }
 
-    fn message(&self, sent: &Sent) {
+    fn message(&self, sent: &SentMessage) {
         self.0.lock().unwrap().push(format!("{} on {}", sent.component, sent.topic));
     }
 }
@@ -138,6 +138,6 @@ fn a_run_does_not_end_while_somebody_holds_it() {
     fleet.run_until(at(60));
     drop(hold);
     let report = fleet.run_to_end();
-    assert_eq!(report.outcome.status, Status::Done);
+    assert_eq!(report.outcome.status, RunStatus::Done);
     assert!(report.time_s >= 0.06, "{}", report.time_s);
 }

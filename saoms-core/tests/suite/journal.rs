@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use saoms_core::journal::{Journal, LoopCounts, read};
 use saoms_core::observe::JournalFile;
-use saoms_core::report::{RunReport, Status};
+use saoms_core::report::{RunReport, RunStatus};
 use saoms_core::schedule::{Fleet, Settings};
 
 use crate::fleet::{simulated, unindent};
@@ -128,7 +128,7 @@ fn what_was_decided_before_a_failure_is_kept() {
          Robot robot period=100 delay=50 fails=1 restart=50/1",
         simulated(900),
     );
-    assert_eq!(report.outcome.status, Status::Failed);
+    assert_eq!(report.outcome.status, RunStatus::Failed);
     let texts = report.journal.of("Robot").decisions().texts();
     // The first instance fails when it has decided; the second one, which knows nothing of that, in its second execution.
     assert_eq!(texts, ["takes it"]);

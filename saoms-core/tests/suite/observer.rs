@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use saoms_api::Message;
 use saoms_api::host::TopicDeclaration;
-use saoms_core::observe::{Event, Observer, Occurrence, Sent};
+use saoms_core::observe::{Observer, Occurrence, RunEvent, SentMessage};
 use saoms_core::schedule::{Fleet, Settings};
 
 use crate::actor::Words;
@@ -18,7 +18,7 @@ struct Reader {
 }
 
 impl Observer for Reader {
-    fn event(&self, event: &Event) {
+    fn event(&self, event: &RunEvent) {
         if let Occurrence::Log { .. } = event.what {
             writeln!(self.told.lock().unwrap(), "{event}").unwrap();
         }
@@ -28,7 +28,7 @@ impl Observer for Reader {
         name == self.topic && declared.schema == Words::SCHEMA
     }
 
-    fn message(&self, sent: &Sent) {
+    fn message(&self, sent: &SentMessage) {
         let header = sent.message.header();
         let words = sent.message.get::<Words>().unwrap();
         writeln!(

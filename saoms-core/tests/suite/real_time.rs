@@ -4,7 +4,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use saoms_core::observe::Occurrence;
-use saoms_core::report::Status;
+use saoms_core::report::RunStatus;
 use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::Assembly;
 
@@ -30,7 +30,7 @@ fn wait_for(what: &str, happened: impl Fn() -> bool) {
 #[test]
 fn executions_follow_the_clock() {
     let (report, _) = run("A actor period=10\nB actor period=25 delay=30\nC actor period=500us", real(200));
-    assert_eq!(report.outcome.status, Status::Elapsed);
+    assert_eq!(report.outcome.status, RunStatus::Elapsed);
     assert_eq!(report.time_s, 0.2);
     for (name, due) in [("A", 20), ("B", 7), ("C", 400)] {
         // Each due execution has run or is counted as missed; the last one may have been so late that later ones are counted, too.
@@ -99,7 +99,7 @@ fn stop_on_overrun_ends_the_component_and_fails_the_run() {
          B actor period=5",
         real(300),
     );
-    assert_eq!(report.outcome.status, Status::Failed);
+    assert_eq!(report.outcome.status, RunStatus::Failed);
     assert!(report.outcome.reasons[0].starts_with("component `A` stopped, because "), "{:?}", report.outcome);
     assert!(diary.lines().contains("A: last"));
     assert!(of(&report, "A").missed > 0);
@@ -143,7 +143,7 @@ fn a_slow_start_at_run_time_does_not_hold_up_the_others() {
     wait_for("executions of others", || fleet.handle().progress().periods > before + 10);
     wait_for("the first execution", || diary.lines().contains("A: a"));
     fleet.handle().stop();
-    assert_eq!(fleet.run_to_end().outcome.status, Status::Interrupted);
+    assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Interrupted);
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn who_is_in_the_middle_of_a_long_execution_is_busy() {
     wait_for("a busy provider", || diary.lines().contains(busy));
     wait_for("an answer", || diary.lines().contains("B: is told \"something from A\""));
     fleet.handle().stop();
-    assert_eq!(fleet.run_to_end().outcome.status, Status::Interrupted);
+    assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Interrupted);
 }
 
 #[test]
@@ -236,7 +236,7 @@ fn the_end_waits_for_executions_and_lets_everybody_shut_down() {
     wait_for("takeovers", || takeovers(&diary, "A") + takeovers(&diary, "B") == 2);
     fleet.handle().stop();
     let report = fleet.run_to_end();
-    assert_eq!(report.outcome.status, Status::Interrupted);
+    assert_eq!(report.outcome.status, RunStatus::Interrupted);
     assert_eq!(report.outcome.reasons, Vec::<String>::new());
     let told = diary.lines();
     for line in ["A: interrupted", "A: last", "B: last", "C: last", "D: last"] {
@@ -249,7 +249,7 @@ fn who_does_not_end_in_time_is_left_behind_when_the_time_of_the_run_is_over() {
     let settings = Settings { grace: Duration::from_millis(100), ..real(100) };
     let (report, _) =
         run("A actor period=10 each=[sleep 20000]\nB actor period=10 last=[log last]", settings);
-    assert_eq!(report.outcome.status, Status::Failed);
+    assert_eq!(report.outcome.status, RunStatus::Failed);
     assert!(report.outcome.reasons.iter().any(|why| why.contains('A')), "{:?}", report.outcome.reasons);
 }
 
@@ -272,7 +272,7 @@ fn who_does_not_end_in_time_is_named_and_left_behind() {
         outcome(&report).lines().skip(1).collect::<Vec<_>>(),
         ["- component `A` did not end within 150ms", "- component `B` did not end within 150ms"]
     );
-    assert_eq!(report.outcome.status, Status::Interrupted);
+    assert_eq!(report.outcome.status, RunStatus::Interrupted);
     assert!(diary.lines().contains("C: last"), "{}", diary.lines());
     assert!(diary.lines().contains("A: did not end in time and is left behind"));
 }
@@ -291,7 +291,7 @@ fn a_fleet_that_is_too_much_for_the_machine_says_so_and_ends() {
 #[test]
 fn a_real_run_ends_when_the_work_is_done() {
     let (report, _) = run("A actor period=5 each=[0: open; 6: done]\nB actor period=1", Settings::default());
-    assert_eq!(report.outcome.status, Status::Done);
+    assert_eq!(report.outcome.status, RunStatus::Done);
     assert_eq!(of(&report, "A").executions, 7);
 }
 
@@ -299,7 +299,7 @@ fn a_real_run_ends_when_the_work_is_done() {
 fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
     struct Clumsy;
     impl saoms_core::observe::Observer for Clumsy {
-        fn event(&self, _: &saoms_core::observe::Event) {
+        fn event(&self, _: &saoms_core::observe::RunEvent) {
             // Not `panic!`, whose message would be shown among those of the tests.
             std::panic::resume_unwind(Box::new("clumsy"));
         }
@@ -307,7 +307,7 @@ fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
     let assembly = crate::fleet::assembly("A actor period=5 each=[log a]");
     let fleet =
         saoms_core::schedule::Fleet::start(assembly, real(60), vec![std::sync::Arc::new(Clumsy)]).unwrap();
-    assert_eq!(fleet.run_to_end().outcome.status, Status::Elapsed);
+    assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed);
 }
 
 /// The timer already sleeps when the fleet starts, and nobody who is due wakes it.
@@ -316,6 +316,6 @@ fn a_fleet_without_tasks_ends_when_its_time_is_over() {
     for _ in 0..50 {
         let settings = Settings { limit: Some(Duration::from_millis(1)), ..Settings::default() };
         let fleet = Fleet::start(Assembly::default(), settings, Vec::new()).unwrap();
-        assert_eq!(fleet.run_to_end().outcome.status, Status::Elapsed);
+        assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed);
     }
 }

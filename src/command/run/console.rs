@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use saoms_api::Level;
-use saoms_core::observe::{Event, Interest, Observer, Occurrence, Progress};
+use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent, RunProgress};
 use saoms_core::report::RunReport;
 use saoms_lang::assembly::Assembly;
 
@@ -65,7 +65,7 @@ impl Console {
 }
 
 impl Observer for Console {
-    fn event(&self, event: &Event) {
+    fn event(&self, event: &RunEvent) {
         let level = event.what.level();
         match (self.shown, &event.what) {
             (Shown::Classic, Occurrence::Console { text }) => print(&format!("{text}\n")),
@@ -91,9 +91,9 @@ impl Observer for Console {
         }
     }
 
-    fn progress(&self, progress: &Progress) {
+    fn progress(&self, progress: &RunProgress) {
         if let Some(bar) = &self.bar {
-            let Progress { time, periods, summaries } = progress;
+            let RunProgress { time, periods, summaries } = progress;
             let summaries: String = summaries.iter().map(|summary| format!(" · {summary}")).collect();
             bar.set_message(format!("{time} · {periods} executions{summaries}"));
             bar.tick();
@@ -111,7 +111,7 @@ impl Observer for Console {
 }
 
 /// An event as one line: when, who, what.
-fn plain(event: &Event, width: usize) -> String {
+fn plain(event: &RunEvent, width: usize) -> String {
     let mark = match event.what.level() {
         Level::Error => "error: ",
         Level::Warning => "warning: ",

@@ -7,7 +7,7 @@ use std::thread;
 
 use saoms_api::extension::{EventLanguage, EventReader, LineFault};
 use saoms_api::{Level, Time};
-use saoms_core::schedule::{Content, Handle, Hold, Injection};
+use saoms_core::schedule::{Handle, Hold, InjectedContent, Injection};
 
 /// The most bytes of a line.
 const LONGEST: usize = 65_536;
@@ -107,7 +107,7 @@ impl Events {
                 Ok(messages) => {
                     let count = i64::try_from(messages.len()).unwrap_or(i64::MAX);
                     for message in messages {
-                        let (topic, content) = ((*topic).to_owned(), Content::Bytes(message.bytes));
+                        let (topic, content) = ((*topic).to_owned(), InjectedContent::Bytes(message.bytes));
                         let injection = Injection { topic, content, at: message.at, text: message.text };
                         handle.inject(injection).map_err(|error| error.to_string())?;
                     }

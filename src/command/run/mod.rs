@@ -17,7 +17,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use saoms_api::extension::PictureRegistration;
 use saoms_core::observe::{JournalFile, Observer};
-use saoms_core::report::Status;
+use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Severity;
@@ -179,9 +179,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         return Exit::Failed;
     }
     match outcome.status {
-        Status::Done | Status::Elapsed => Exit::Done,
-        Status::Failed => Exit::Failed,
-        Status::Interrupted => Exit::Interrupted,
+        RunStatus::Done | RunStatus::Elapsed => Exit::Done,
+        RunStatus::Failed => Exit::Failed,
+        RunStatus::Interrupted => Exit::Interrupted,
     }
 }
 

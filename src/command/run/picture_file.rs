@@ -3,7 +3,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use saoms_api::extension::{PictureRegistration, RunPicture};
 use saoms_api::host::TopicDeclaration;
-use saoms_core::observe::{Interest, Observer, Sent};
+use saoms_core::observe::{Interest, Observer, SentMessage};
 use saoms_core::report::RunReport;
 
 use super::outputs::Output;
@@ -35,7 +35,7 @@ impl Observer for PictureFile {
         self.picture().wants_topic(name, declared)
     }
 
-    fn message(&self, sent: &Sent) {
+    fn message(&self, sent: &SentMessage) {
         self.picture().message(&sent.topic, &sent.component, &sent.message);
     }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use saoms_api::extension::RunSummary;
 use saoms_core::journal::Journal;
-use saoms_core::report::{ComponentReport, RunReport, Status};
+use saoms_core::report::{ComponentReport, RunReport, RunStatus};
 
 use crate::output::counted;
 
@@ -30,10 +30,10 @@ pub(crate) fn summary(report: &RunReport) -> String {
 /// The outcome of the run and its results, in one line.
 pub(crate) fn outcome(report: &RunReport) -> String {
     let how = match report.outcome.status {
-        Status::Done => "done",
-        Status::Elapsed => "time is over",
-        Status::Failed => "failed",
-        Status::Interrupted => "interrupted",
+        RunStatus::Done => "done",
+        RunStatus::Elapsed => "time is over",
+        RunStatus::Failed => "failed",
+        RunStatus::Interrupted => "interrupted",
     };
     let mut text = format!("{how} after {:.3} s", report.time_s);
     let count = |path: &str| report.count(path);

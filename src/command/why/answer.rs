@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use saoms_api::host::Phase;
 use saoms_api::{Cause, Time};
-use saoms_core::journal::{Chain, Document, Entry, Why};
+use saoms_core::journal::{Chain, JournalDocument, JournalEntry, Why};
 
 /// Reasons that are shown at most; of a longer chain, the first and the last ones.
 const SHOWN: usize = 40;
@@ -13,7 +13,12 @@ const SHOWN: usize = 40;
 const LAST: usize = 8;
 
 /// The answer: actions, the reasons for them, and the knowledge at that time.
-pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, document: &Document) -> String {
+pub(super) fn human(
+    component: &str,
+    asked: Option<Time>,
+    why: &Why<'_>,
+    document: &JournalDocument,
+) -> String {
     let Some(time) = why.time else { return nothing(component, asked, document) };
     let mut text = match asked.filter(|asked| *asked != time) {
         Some(asked) => {
@@ -45,7 +50,7 @@ pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, documen
     text
 }
 
-fn nothing(component: &str, asked: Option<Time>, document: &Document) -> String {
+fn nothing(component: &str, asked: Option<Time>, document: &JournalDocument) -> String {
     let own = document.journal.of(component);
     match (asked, own.first()) {
         (Some(asked), Some(first)) => {
@@ -62,7 +67,7 @@ fn nothing(component: &str, asked: Option<Time>, document: &Document) -> String 
 /// One line in the table.
 struct Row<'a> {
     number: String,
-    entry: Option<&'a Entry>,
+    entry: Option<&'a JournalEntry>,
     text: String,
 }
 
@@ -129,7 +134,7 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     text
 }
 
-fn loop_of(entry: &Entry) -> &str {
+fn loop_of(entry: &JournalEntry) -> &str {
     entry.loop_name().unwrap_or("-")
 }
 

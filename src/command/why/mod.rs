@@ -9,7 +9,7 @@ use std::time::Duration;
 use clap::Args;
 use saoms_api::Time;
 use saoms_api::host::format_duration;
-use saoms_core::journal::{Document, Named, ReadError, Why, read};
+use saoms_core::journal::{ComponentName, JournalDocument, JournalReadError, Why, read};
 use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
 
@@ -95,7 +95,7 @@ fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
 }
 
 /// Advice about records that are missing.
-fn advice(document: &Document) -> String {
+fn advice(document: &JournalDocument) -> String {
     if document.is_report {
         "A report holds the newest records of each component: run with `--journal FILE` to keep all of them"
             .to_owned()
@@ -104,7 +104,7 @@ fn advice(document: &Document) -> String {
     }
 }
 
-fn document(path: &Path) -> Result<Document, String> {
+fn document(path: &Path) -> Result<JournalDocument, String> {
     let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
@@ -117,21 +117,21 @@ fn document(path: &Path) -> Result<Document, String> {
         format!("`{name}` is not text: byte {} is no UTF-8", error.utf8_error().valid_up_to() + 1)
     })?;
     read(&text).map_err(|error| match error {
-        ReadError::NoJournal => {
+        JournalReadError::NoJournal => {
             format!("`{name}` holds no journal: write the report anew with `saoms run --report FILE`")
         }
-        ReadError::Other => format!("`{name}` cannot be read: {error}"),
-        ReadError::Malformed { .. } => format!("`{name}`, {error}"),
+        JournalReadError::Other => format!("`{name}` cannot be read: {error}"),
+        JournalReadError::Malformed { .. } => format!("`{name}`, {error}"),
     })
 }
 
 /// The component that is meant: by its path, its ID, or an ending of its path that no other has.
-fn find<'a>(components: &'a [Named], component: &str) -> Result<&'a Named, String> {
-    let is_id = |one: &Named| one.id.as_deref() == Some(component);
+fn find<'a>(components: &'a [ComponentName], component: &str) -> Result<&'a ComponentName, String> {
+    let is_id = |one: &ComponentName| one.id.as_deref() == Some(component);
     if let Some(found) = components.iter().find(|one| one.name == component) {
         return Ok(found);
     }
-    let ids: Vec<&Named> = components.iter().filter(|one| is_id(one)).collect();
+    let ids: Vec<&ComponentName> = components.iter().filter(|one| is_id(one)).collect();
     let found = if ids.is_empty() && !component.is_empty() {
         components.iter().filter(|one| one.name.ends_with(component)).collect()
     } else {
@@ -147,7 +147,7 @@ fn find<'a>(components: &'a [Named], component: &str) -> Result<&'a Named, Strin
     }
 }
 
-fn unknown(components: &[Named], component: &str) -> String {
+fn unknown(components: &[ComponentName], component: &str) -> String {
     let names = components.iter().map(|one| one.name.as_str());
     let ids = components.iter().filter_map(|one| one.id.as_deref());
     let endings = components.iter().filter_map(|one| one.name.rsplit('/').next());

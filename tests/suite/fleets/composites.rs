@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use saoms_core::report::Status;
+use saoms_core::report::RunStatus;
 use saoms_testkit::{Fleet, expect_diagnostics};
 
 use crate::support::{composites, root};
@@ -41,6 +41,12 @@ fn each_says_what_it_shows() {
 fn each_runs_for_a_minute_and_fails_nowhere() {
     for path in shipped() {
         let report = Fleet::of_file(&path).run(1, Duration::from_secs(60));
-        assert_ne!(report.outcome.status, Status::Failed, "{}: {:?}", path.display(), report.outcome.reasons);
+        assert_ne!(
+            report.outcome.status,
+            RunStatus::Failed,
+            "{}: {:?}",
+            path.display(),
+            report.outcome.reasons
+        );
     }
 }

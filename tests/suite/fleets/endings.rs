@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use saoms_api::Chance;
-use saoms_core::report::{RunReport, Status};
+use saoms_core::report::{RunReport, RunStatus};
 use saoms_testkit::Fleet;
 
 /// A robot gives up after some hundred executions of at most 2 s, one after the other.
@@ -36,7 +36,13 @@ fn luggage(report: &RunReport, what: &str) -> u64 {
 
 /// The run ended by itself, without a collision, and whatever was not delivered is given up.
 fn assert_ended(report: &RunReport, context: &str) {
-    assert_eq!(report.outcome.status, Status::Done, "{context}: {:?}, {:?}", report.outcome, report.sections);
+    assert_eq!(
+        report.outcome.status,
+        RunStatus::Done,
+        "{context}: {:?}, {:?}",
+        report.outcome,
+        report.sections
+    );
     assert_eq!(
         luggage(report, "delivered") + luggage(report, "open"),
         luggage(report, "requested"),

@@ -6,7 +6,7 @@ use std::time::Duration;
 use saoms_api::{Class, Component, Context, Failure, Publisher};
 use saoms_components::grid::Block;
 use saoms_components::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, Fault, LuggageStage};
-use saoms_core::report::{RunReport, Status};
+use saoms_core::report::{RunReport, RunStatus};
 use saoms_testkit::Fleet;
 use serde_json::{Value, json};
 
@@ -90,7 +90,7 @@ fn impossible_events_are_ignored_and_the_run_ends_by_itself() {
     let scenario =
         "<property name=\"scenario\">at 1s luggage (1,0) to (4,3); at 3s luggage (1,1) to (4,1)</property>";
     let report = Fleet::of_text(fleet(scenario, prankster)).run(1, HOUR);
-    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
+    assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
     let luggage = json!({"requested": 3, "delivered": 3, "open": 0, "ignored": 5});
     assert_eq!(section(&report, "luggage"), &luggage);
     assert_eq!(section(&report, "faults"), &json!({"ignored": 2}));
@@ -101,7 +101,7 @@ fn impossible_events_are_ignored_and_the_run_ends_by_itself() {
 fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends() {
     let scenario = "at 1s luggage (1,0) to (4,3); at 2s breakdown 1; at 2s breakdown Robot2; at 3s luggage (1,1) to (4,1)";
     let report = Fleet::of_text(with_scenario(scenario)).run(1, HOUR);
-    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
+    assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
     let luggage = json!({"requested": 2, "delivered": 0, "open": 2, "ignored": 0});
     assert_eq!(section(&report, "luggage"), &luggage);
     assert_eq!(section(&report, "robots")["broken"], json!(2));
@@ -111,7 +111,7 @@ fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends() {
 fn a_scenario_is_drawn_from_the_seed_within_the_map() {
     let fleet = Fleet::of_text(with_scenario("from 1s every 1s..4s 20 times luggage random to (3,0)..(4,3)"));
     let report = fleet.run(5, HOUR);
-    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
+    assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
     let luggage = json!({"requested": 20, "delivered": 20, "open": 0, "ignored": 0});
     assert_eq!(section(&report, "luggage"), &luggage);
     assert_eq!(report.trace_hash, fleet.run(5, HOUR).trace_hash);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::Duration;
 
-use saoms_core::report::{RunReport, Status};
+use saoms_core::report::{RunReport, RunStatus};
 use saoms_testkit::Fleet;
 use serde_json::{Value, json};
 
@@ -28,7 +28,7 @@ fn section<'a>(report: &'a RunReport, name: &str) -> &'a Value {
 /// The run ended by itself with all luggage delivered, and nothing went wrong.
 fn assert_delivered(report: &RunReport, pieces: u32, context: &str) {
     let sections = &report.sections;
-    assert_eq!(report.outcome.status, Status::Done, "{context}: {:?}, {sections:?}", report.outcome);
+    assert_eq!(report.outcome.status, RunStatus::Done, "{context}: {:?}, {sections:?}", report.outcome);
     let luggage = json!({"requested": pieces, "delivered": pieces, "open": 0, "ignored": 0});
     assert_eq!(section(report, "luggage"), &luggage, "{context}");
     assert_eq!(section(report, "collisions"), &json!({"vertex": 0, "swap": 0}), "{context}");
@@ -123,7 +123,7 @@ fn the_classic_rules_deliver_and_collide_once_as_in_figure_8_19() {
         composite = with(&composite, &old, &format!(r#"{id}<property name="period">50</property>"#));
     }
     let report = Fleet::of_text(composite).run(1, HOUR);
-    assert_eq!(report.outcome.status, Status::Done, "{:?}", report.outcome);
+    assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
     assert_eq!(
         section(&report, "luggage"),
         &json!({"requested": 4, "delivered": 4, "open": 0, "ignored": 0})
@@ -156,7 +156,7 @@ fn a_wrong_scenario_is_found_before_anything_runs() {
 fn the_navigator_drives_the_robot_of_figure_3_2_home() {
     let path = root().join("composites/manual/robotenvironment-wired.composite");
     let report = Fleet::of_file(path).run(1, HOUR);
-    assert_eq!(report.outcome.status, Status::Done);
+    assert_eq!(report.outcome.status, RunStatus::Done);
     // Four sides of two metres, a metre in each period from the start on.
     assert_eq!(report.time_s, 0.7);
 }

@@ -10,7 +10,7 @@ use saoms_components::messages::{
     EnvironmentEvent, EventLuggage, FAULT, Fault, LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE,
     RobotList, RobotState,
 };
-use saoms_core::report::Status;
+use saoms_core::report::RunStatus;
 use saoms_testkit::{Fleet, Run};
 use serde_json::json;
 
@@ -214,7 +214,7 @@ fn ignored(topic: &str, readers: &[(&str, &[&str])]) {
     for policy in ["safe", "classic"] {
         let report = run(policy, topic);
         let log = report.log();
-        assert_eq!(report.outcome.status, Status::Done, "{policy} {:?}\n{log}", report.outcome);
+        assert_eq!(report.outcome.status, RunStatus::Done, "{policy} {:?}\n{log}", report.outcome);
         assert!(report.components.iter().all(|component| component.failures == 0), "{log}");
         let luggage = report.sections.get("luggage").cloned().unwrap_or_default();
         assert_eq!((&luggage["delivered"], &luggage["open"]), (&json!(2), &json!(0)), "{policy}\n{log}");

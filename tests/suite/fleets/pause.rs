@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterface, TaskInterfaceReference};
-use saoms_core::report::Status;
+use saoms_core::report::RunStatus;
 use saoms_testkit::Fleet;
 use serde_json::json;
 
@@ -80,7 +80,7 @@ fn a_robot_that_pauses_at_any_moment_loses_nothing() {
             let run = paused(robots, from, length).run(from, Duration::from_secs(600));
             let log = run.log();
             let context = format!("{robots} robots, paused from execution {from} for {length}:\n{log}");
-            assert_eq!(run.outcome.status, Status::Done, "{context}");
+            assert_eq!(run.outcome.status, RunStatus::Done, "{context}");
             assert_eq!(run.sections["collisions"], json!({"vertex": 0, "swap": 0}), "{context}");
             let count = |name: &str| run.sections["luggage"][name].as_u64().unwrap();
             // While the only robot is away nobody is left: that is told.

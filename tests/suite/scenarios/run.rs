@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use saoms_api::Time;
-use saoms_core::observe::{Event, Interest, Observer, Occurrence};
+use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use saoms_core::report::RunReport;
 use saoms_testkit::Fleet;
 
@@ -30,7 +30,7 @@ struct Line {
 struct Listener(Mutex<Vec<Line>>);
 
 impl Observer for Listener {
-    fn event(&self, event: &Event) {
+    fn event(&self, event: &RunEvent) {
         let (log, text) = match &event.what {
             Occurrence::Console { text } => (false, text),
             Occurrence::Log { text, .. } => (true, text),

@@ -14,7 +14,7 @@ use std::thread;
 
 use saoms_api::Level;
 
-use super::ending::Cause;
+use super::ending::EndCause;
 use super::engine::Engine;
 use super::settings::{ClockKind, nanos};
 use super::shared::Shared;
@@ -70,7 +70,7 @@ fn prepare_thread(shared: &Shared, priority: i32) {
 #[inline]
 fn heed_stop(shared: &Shared, engine: &mut Engine, now: u64) {
     if shared.stop.load(Ordering::Relaxed) {
-        engine.begin_stop(Cause::Interrupted, now);
+        engine.begin_stop(EndCause::Interrupted, now);
     }
 }
 

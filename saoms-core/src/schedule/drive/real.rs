@@ -3,7 +3,7 @@ use std::sync::atomic::{Ordering, fence};
 
 use saoms_api::Level;
 
-use super::super::engine::{Engine, Next, Phase};
+use super::super::engine::{Engine, Next, RunPhase};
 use super::super::realtime::TIMER_PRIORITY;
 use super::super::settings::nanos;
 use super::super::shared::Shared;
@@ -74,11 +74,11 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
 fn sleep(shared: &Shared, mut engine: std::sync::MutexGuard<'_, Engine>, until: u64) {
     // Whoever has something new for the timer does it under the lock, and then changes the ticket.
     let ticket = shared.timer.ticket();
-    if shared.stop.load(Ordering::SeqCst) && engine.phase == Phase::Running {
+    if shared.stop.load(Ordering::SeqCst) && engine.phase == RunPhase::Running {
         // That came after the last look, and before the ticket.
         return shared.release(engine);
     }
-    if engine.phase == Phase::Stopping {
+    if engine.phase == RunPhase::Stopping {
         // From now on somebody has to see to it that all end in time; the limit of the run has told nobody.
         shared.end.wake();
     }

@@ -3,8 +3,8 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::host::format_duration;
 
-use super::super::ending::Cause;
-use super::super::engine::{Engine, Phase};
+use super::super::ending::EndCause;
+use super::super::engine::{Engine, RunPhase};
 use super::super::settings::nanos;
 use super::super::shared::Shared;
 use super::super::sys;
@@ -17,23 +17,23 @@ pub(in super::super) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engin
     loop {
         let ticket = shared.end.ticket();
         let mut engine = shared.lock();
-        if engine.phase == Phase::Ended || reached(&engine) {
+        if engine.phase == RunPhase::Ended || reached(&engine) {
             return shared.release(engine);
         }
         heed_stop(shared, &mut engine, shared.clock.now());
         let mut look_again = None;
         let mut replaced = None;
-        if shared.clock.is_virtual() && engine.phase == Phase::Running {
+        if shared.clock.is_virtual() && engine.phase == RunPhase::Running {
             let (until, culprit) = stuck.look(shared, &engine);
             look_again = Some(until);
             if let Some(index) = culprit {
                 let limit = format_duration(shared.settings.virtual_watchdog);
                 engine.abandon(Some(index), &format!("did not return within {limit}"), shared.clock.now());
-                engine.begin_stop(Cause::Lost, shared.clock.now());
+                engine.begin_stop(EndCause::Lost, shared.clock.now());
                 replaced = engine.replace_timer();
             }
         }
-        if engine.phase == Phase::Stopping {
+        if engine.phase == RunPhase::Stopping {
             let grace = nanos(shared.settings.grace);
             let now = sys::monotonic();
             if now >= engine.ended.1.saturating_add(grace) {
@@ -53,7 +53,7 @@ pub(in super::super) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engin
                 Level::Error,
                 format!("components could not shut down: the system gives no thread: {error}"),
             );
-            shared.lock().phase = Phase::Ended;
+            shared.lock().phase = RunPhase::Ended;
             return announce_end(shared);
         }
         shared.end.wait(ticket, look_again);

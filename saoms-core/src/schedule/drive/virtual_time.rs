@@ -3,8 +3,8 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::extension::RunSummary;
 
-use super::super::ending::Cause;
-use super::super::engine::{Engine, Next, Phase};
+use super::super::ending::EndCause;
+use super::super::engine::{Engine, Next, RunPhase};
 use super::super::shared::Shared;
 use super::super::slot::NEVER;
 use super::super::sys;
@@ -28,7 +28,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             engine = wait_for_journal(shared, engine);
             continue;
         }
-        if engine.phase == Phase::Running && now >= engine.pause {
+        if engine.phase == RunPhase::Running && now >= engine.pause {
             engine = sleep(shared, engine);
             continue;
         }
@@ -47,7 +47,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             }
             // Nothing runs apart in virtual time.
             Next::HandOver => {}
-            Next::Wait(until) if engine.phase == Phase::Running && until.min(engine.pause) < NEVER => {
+            Next::Wait(until) if engine.phase == RunPhase::Running && until.min(engine.pause) < NEVER => {
                 now = until.min(engine.pause);
                 shared.clock.jump(now);
                 if now >= endless && engine.pause == NEVER {
@@ -59,8 +59,8 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             }
             Next::Wait(_) => {
                 // Nobody will ever be due: no time passes that somebody could wait for.
-                if engine.phase == Phase::Running {
-                    engine.begin_stop(Cause::Idle, now);
+                if engine.phase == RunPhase::Running {
+                    engine.begin_stop(EndCause::Idle, now);
                 } else {
                     engine = sleep(shared, engine);
                 }

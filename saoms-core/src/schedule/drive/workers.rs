@@ -2,7 +2,7 @@ use std::sync::{Arc, MutexGuard};
 
 use saoms_api::Level;
 
-use super::super::engine::{Engine, Phase};
+use super::super::engine::{Engine, RunPhase};
 use super::super::shared::{Shared, relock};
 use super::super::sys;
 use super::spawn_thread;
@@ -19,7 +19,7 @@ pub(super) fn work(shared: &Arc<Shared>) {
         let _ = sys::set_normal(sys::thread_id());
     }
     let mut engine = shared.lock();
-    while engine.phase == Phase::Running {
+    while engine.phase == RunPhase::Running {
         let Some(index) = engine.roles.work.pop_front() else {
             if engine.roles.idle_workers >= IDLE_WORKERS {
                 break;
