@@ -10,7 +10,7 @@ use std::time::Instant;
 use saoms_lang::diagnostic::Diagnostics;
 use saoms_lang::load::load_file;
 use saoms_lang::source::{FileId, Sources};
-use saoms_lang::xml;
+use saoms_lang::syntax;
 
 const ROUNDS: u32 = 5;
 
@@ -27,7 +27,7 @@ fn main() {
             continue;
         }
         let text: Arc<String> = Arc::new(composite(size, part));
-        let tree = fastest(|| drop(xml::parse(FileId(0), &text)));
+        let tree = fastest(|| drop(syntax::parse(FileId(0), &text)));
         let mut sources = Sources::new();
         let file = sources.add("bench", text.as_str());
         let mut found = 0;

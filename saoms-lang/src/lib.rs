@@ -13,5 +13,4 @@ pub mod project;
 pub mod registry;
 pub mod schema;
 pub mod source;
-#[expect(dead_code, reason = "shapes and forms of tags are of no use outside the parser")]
-pub mod xml;
+pub mod syntax;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::{env, fs};
 
 use saoms_lang::source::FileId;
-use saoms_lang::xml;
+use saoms_lang::syntax;
 use saoms_tools::format::{WIDTH, format};
 
 use crate::{Bench, Fleet};
@@ -24,9 +24,9 @@ impl Fleet {
     pub fn expect_expanded(&self, path: impl AsRef<Path>) {
         let path = path.as_ref();
         let text = self.expanded();
-        let text = match xml::parse(FileId(0), &std::sync::Arc::new(text.clone())).document {
-            Some(document) => format(&document, WIDTH),
-            None => text,
+        let text = match syntax::parse(FileId(0), &std::sync::Arc::new(text.clone())).well_formed() {
+            Ok(document) => format(&document, WIDTH),
+            Err(_) => text,
         };
         hold("the fleet comes to", &text, path);
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use clap::Args;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::source::FileId;
-use saoms_lang::xml;
+use saoms_lang::syntax;
 use saoms_tools::format::{Formatted, WIDTH};
 
 use super::EXIT_CODES;
@@ -35,9 +35,9 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
     };
     let text = Arc::new(text);
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
-    match xml::parse(FileId(0), &text).document {
-        Some(document) => print(&Formatted { document: &document, width: WIDTH }),
-        None => print(&text),
+    match syntax::parse(FileId(0), &text).well_formed() {
+        Ok(document) => print(&Formatted { document: &document, width: WIDTH }),
+        Err(_) => print(&text),
     }
     Exit::Done
 }

@@ -11,7 +11,7 @@ use saoms_lang::contribution::composites_below;
 use saoms_lang::diagnostic::{Diagnostics, human};
 use saoms_lang::project::{INPUT, read};
 use saoms_lang::source::{FileId, Sources};
-use saoms_lang::xml::{self, Document};
+use saoms_lang::syntax::{self, Document, Parse};
 use saoms_tools::format::Formatted;
 
 use crate::Exit;
@@ -121,14 +121,10 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
 
 /// The document, unless the file is not well-formed.
 fn well_formed(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Document> {
-    let parsed = xml::parse(file, sources.get(file).text());
-    match parsed.fault {
-        None => parsed.document,
-        Some(fault) => {
-            diagnostics.push(fault);
-            None
-        }
-    }
+    let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
+    let is_well_formed = faults.is_empty();
+    faults.into_iter().for_each(|fault| diagnostics.push(fault));
+    is_well_formed.then_some(document)
 }
 
 /// True if the value is displayed as this text, found without keeping it.

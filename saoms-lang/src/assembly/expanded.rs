@@ -9,7 +9,7 @@ use smol_str::SmolStr;
 use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};
 use crate::diagnostic::{Diagnostic, Level, SetBy, Severity, codes};
 use crate::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
-use crate::xml::Node;
+use crate::syntax::NewElement;
 
 /// Writes an assembly as one composite in which nothing is left to resolve: no includes, no inner composites, no sources of properties,
 /// every wire with its service. It has the name, the namespace and the version of SCA of `like`.
@@ -41,7 +41,9 @@ pub fn expanded<'d>(
         let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
             let uri = |target: &super::Target| format!("{}/{}", names[target.component], target.service);
             let targets: Vec<String> = wire.targets.iter().map(uri).collect();
-            Node::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "))
+            NewElement::new("reference")
+                .with("name", wire.reference.as_str())
+                .with("target", targets.join(" "))
         });
         component(one, name, references)
     });
@@ -54,11 +56,11 @@ pub fn expanded<'d>(
 }
 
 /// The severities that the composite sets.
-fn severities<'d>(like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Node> {
+fn severities<'d>(like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<NewElement> {
     let is_of_wiring = |rule: &&SeverityRule| rule.within.is_none() && codes::is_of_wiring(&rule.code);
     let of_wiring = like.severities.iter().filter(is_of_wiring);
     let severity = |code: &str, level: Level, reason: &str| {
-        let node = Node::new("s:severity").with("code", code).with("level", level.name());
+        let node = NewElement::new("s:severity").with("code", code).with("level", level.name());
         node.with("reason", reason).declare("s", SAOMS_NAMESPACE)
     };
     let lowered = lowered(found).into_iter().map(|(code, set)| {
@@ -68,9 +70,9 @@ fn severities<'d>(like: &Composite, found: impl IntoIterator<Item = &'d Diagnost
 }
 
 /// The root with the name and the namespace of a composite.
-fn root(like: &Composite) -> Node {
+fn root(like: &Composite) -> NewElement {
     let namespace = like.target_namespace.as_ref();
-    Node::new("composite")
+    NewElement::new("composite")
         .with("name", like.name.as_str())
         .maybe("targetNamespace", namespace.map(|namespace| namespace.as_str()))
 }
@@ -113,8 +115,12 @@ fn names(paths: &[&str]) -> Vec<String> {
 }
 
 /// A component of a class, with these references.
-fn component(component: &ComponentSpec, name: &str, references: impl IntoIterator<Item = Node>) -> Node {
-    let node = Node::new("component").with("name", name);
+fn component(
+    component: &ComponentSpec,
+    name: &str,
+    references: impl IntoIterator<Item = NewElement>,
+) -> NewElement {
+    let node = NewElement::new("component").with("name", name);
     let node = match component.path == name {
         true => node,
         false => node.with("s:path", component.path.as_str()).declare("s", SAOMS_NAMESPACE),
@@ -126,13 +132,13 @@ fn component(component: &ComponentSpec, name: &str, references: impl IntoIterato
 }
 
 /// What names the class of a component.
-fn implementation(component: &ComponentSpec) -> Node {
-    let node = Node::new("implementation.rust").with("class", component.class.name());
+fn implementation(component: &ComponentSpec) -> NewElement {
+    let node = NewElement::new("implementation.rust").with("class", component.class.name());
     node.maybe("library", component.library.as_deref())
 }
 
 /// The properties of a component of a class.
-fn valued(component: &ComponentSpec) -> Vec<Node> {
+fn valued(component: &ComponentSpec) -> Vec<NewElement> {
     let presets = component.class.presets();
     let values = component.values.iter().filter(|value| !presets.contains(value));
     let settings = component.task.iter().flat_map(task);
@@ -146,12 +152,12 @@ fn valued(component: &ComponentSpec) -> Vec<Node> {
 }
 
 /// What is said about the loops of a component of a class.
-fn looped(component: &ComponentSpec) -> Vec<Node> {
+fn looped(component: &ComponentSpec) -> Vec<NewElement> {
     loops(component).into_iter().map(looping).collect()
 }
 
-fn looping(said: Said<'_>) -> Node {
-    Node::new("s:loop")
+fn looping(said: Said<'_>) -> NewElement {
+    NewElement::new("s:loop")
         .declare("s", SAOMS_NAMESPACE)
         .with("name", said.name)
         .maybe("class", said.class)
@@ -160,8 +166,8 @@ fn looping(said: Said<'_>) -> Node {
         .children(said.values.iter().map(|(name, value)| property(name, value)))
 }
 
-fn property(name: &str, value: &PropertyValue) -> Node {
-    let node = Node::new("property").with("name", name);
+fn property(name: &str, value: &PropertyValue) -> NewElement {
+    let node = NewElement::new("property").with("name", name);
     match value {
         PropertyValue::Text(text) => text_of(node, text),
         PropertyValue::Many(values) => node.children(values.iter().flat_map(|one| part("value", one, false))),
@@ -170,20 +176,20 @@ fn property(name: &str, value: &PropertyValue) -> Node {
 }
 
 /// A property with a text. White space at the ends of a text inside an element does not count, and an empty one is none.
-fn text_of(property: Node, text: &str) -> Node {
-    if text.is_empty() { property.child(Node::new("value")) } else { property.text(text) }
+fn text_of(property: NewElement, text: &str) -> NewElement {
+    if text.is_empty() { property.child(NewElement::new("value")) } else { property.text(text) }
 }
 
 /// The named values of a complex property, in no namespace.
-fn inside(parts: &[(SmolStr, PropertyValue)]) -> impl Iterator<Item = Node> {
+fn inside(parts: &[(SmolStr, PropertyValue)]) -> impl Iterator<Item = NewElement> {
     parts.iter().flat_map(|(name, value)| part(name, value, true))
 }
 
 /// A value as elements of a name: several where it is a list. No declaration has lists of lists.
-fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<Node> {
+fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<NewElement> {
     let node = || match is_in_none {
-        true => Node::new(name.to_owned()).with("xmlns", ""),
-        false => Node::new(name.to_owned()),
+        true => NewElement::new(name.to_owned()).with("xmlns", ""),
+        false => NewElement::new(name.to_owned()),
     };
     match value {
         PropertyValue::Text(text) => vec![node().text(text)],

@@ -4,7 +4,7 @@ use super::fleet::Fleet;
 use super::report::replacing;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Location;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// What is probably meant by the name of a replica that there is not.
 pub(super) struct Beyond<'f> {

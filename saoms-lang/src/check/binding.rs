@@ -6,7 +6,7 @@ use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Binding, Callback, Part, Reference, Service, Version};
 use crate::source::{Location, Text};
-use crate::xml::Document;
+use crate::syntax::Document;
 
 /// The ends of `wsdlElement` that say where a service is.
 const ADDRESSES: &[&str] = &["#wsdl.port(", "#wsdl.service(", "#wsdl.endpoint("];

@@ -16,7 +16,7 @@ use crate::diagnostic::Diagnostics;
 use crate::model::{Contribution, Origin};
 use crate::registry::{Registry, TopicDeclaration};
 use crate::source::{FileId, Sources};
-use crate::xml::ElementId;
+use crate::syntax::ElementId;
 
 /// How many times each replicated or conditional part of the composites is in a fleet, and which topics its components use.
 #[derive(Clone, Debug, Default)]

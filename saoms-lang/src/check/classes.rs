@@ -16,7 +16,7 @@ use crate::registry::{
     TopicDeclaration,
 };
 use crate::source::{Sources, Text};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// How many names are offered in place of one that a library does not have.
 const OFFERED: usize = 3;

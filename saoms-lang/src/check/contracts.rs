@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, Diagnostic, Edit, codes, quoted};
 use crate::model::{Binding, Component, Interface, InterfaceKind, Multiplicity, Part, Reference, Service};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
-use crate::xml::{Document, escaped};
+use crate::syntax::{Document, escaped};
 
 /// Checks the services and references of every component.
 pub(super) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {

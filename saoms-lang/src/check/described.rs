@@ -20,7 +20,7 @@ use super::written::type_and_element;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::{Component, ComponentType, Multiplicity, Part, Property, Reference, Version};
 use crate::source::{Location, Text};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 impl<'a> Fleet<'a> {
     /// What a file beside the implementation of a component says about it.

@@ -10,7 +10,7 @@ use super::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::model::{Component, Property};
 use crate::source::Location;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// A component, or a loop of one, for findings about it.
 #[derive(Clone, Copy)]

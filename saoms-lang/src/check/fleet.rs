@@ -9,7 +9,7 @@ use super::names::Names;
 use crate::expression::has_expression;
 use crate::model::{Component, Composite, Contribution, Reference, Service, Wire};
 use crate::source::{FileId, Location};
-use crate::xml::ElementId;
+use crate::syntax::ElementId;
 
 /// The components of a fleet in document order, those of inner composites behind the component that each implements.
 ///

@@ -14,7 +14,7 @@ use super::value_type::{self, Match, Typed};
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{Component, ComponentType, ImplementationKind, Multiplicity, Part, Property, Reference};
 use crate::source::{Location, Text};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// What a file says of a component that is taken as given.
 #[derive(Clone, Copy)]

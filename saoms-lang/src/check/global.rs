@@ -6,7 +6,7 @@ use super::value_type::Typed;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::Property;
 use crate::source::Text;
-use crate::xml::{Document, Element, ElementId};
+use crate::syntax::{Document, Element, ElementId};
 
 impl<'a> Raw<'a> {
     /// What components take of a property of this declaration: where an `element` is its type, what is inside of each such element.

@@ -8,7 +8,7 @@ use crate::diagnostic::nearest;
 use crate::expression::{Fault, INDEX, Problem, Value, has_expression, render};
 use crate::model::{Component, Loop, Property, Table};
 use crate::source::Text;
-use crate::xml::Document;
+use crate::syntax::Document;
 
 /// One of the replicas.
 pub(super) struct Instance {

@@ -9,7 +9,7 @@ use crate::diagnostic::{Diagnostic, codes, nearest, nearest_equal, quoted};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::Element;
+use crate::syntax::Element;
 
 /// Reports a property that a class or a loop does not have.
 pub(super) fn unknown(

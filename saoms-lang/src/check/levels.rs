@@ -8,7 +8,7 @@ use std::rc::Rc;
 use super::instance::Instance;
 use super::path::{Fault, Place, Predicate, Test, attribute, ends, no_step, steps};
 use super::raw::{Piece, Raw};
-use crate::xml::Element;
+use crate::syntax::Element;
 
 /// Elements that are kept for the next path, of all paths together.
 const MOST_KEPT: usize = 4_000_000;

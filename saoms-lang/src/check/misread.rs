@@ -7,7 +7,7 @@ use super::target::parts;
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::expression::pattern;
 use crate::source::Text;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// What a URI means, as far as that is known, and why it does not say so.
 pub(super) struct Misread {

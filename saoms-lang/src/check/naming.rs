@@ -4,7 +4,7 @@ use super::report::replacing;
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, quoted};
 use crate::model::{Composite, Missing, Naming, Version};
 use crate::source::Span;
-use crate::xml::{Element, escaped};
+use crate::syntax::{Element, escaped};
 
 /// Whether a name means the very composite that it leads to. A name without a prefix is of the default namespace, as all QNames in values are
 /// (SCA Assembly 1.1, 5.6.1 and 5.7; XML Schema 1.0, part 2, 3.2.18).

@@ -22,7 +22,7 @@ use super::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::{Component, Composite, Property};
 use crate::source::{Location, Text};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// The properties of all composites of a fleet, with their values.
 pub(super) struct Parameters<'a> {

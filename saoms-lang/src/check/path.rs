@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::raw::{Piece, Raw};
 use super::report::list;
 use crate::diagnostic::{nearest, quoted};
-use crate::xml::{Attribute, Element};
+use crate::syntax::{Attribute, Element};
 
 /// The fault of a step of another form.
 const NO_STEP: &str = "no step of a path is written like this";

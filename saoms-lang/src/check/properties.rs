@@ -20,7 +20,7 @@ use crate::expression::has_expression;
 use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::{Document, escaped};
+use crate::syntax::{Document, escaped};
 
 /// Who gives values to properties: a component, or what it says about one of its loops.
 pub(super) struct Giver<'m, 'a> {

@@ -8,7 +8,7 @@ use super::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Part, Property, ValueDocument};
 use crate::source::{Located, Location, Text};
-use crate::xml::{Document, Element};
+use crate::syntax::{Document, Element};
 
 /// Every value that a property is given; none when it is given nothing.
 #[derive(Clone)]

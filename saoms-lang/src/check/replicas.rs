@@ -14,7 +14,7 @@ use crate::expression::{
 };
 use crate::model::{Component, Property, Replicas, Table};
 use crate::source::Text;
-use crate::xml::{Document, escaped};
+use crate::syntax::{Document, escaped};
 
 /// Replicas of a fleet in all: a slip of the finger must not take all memory.
 pub(super) const MOST_REPLICAS: u64 = 100_000;

@@ -10,7 +10,7 @@ use crate::diagnostic::{
 };
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
-use crate::xml::{Writing, escaped};
+use crate::syntax::{Writing, escaped};
 
 /// How many diagnostics are taken back.
 const WITHDRAWALS: usize = 1000;

@@ -14,7 +14,7 @@ use crate::expression::has_expression;
 use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// A service of a component of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -18,7 +18,7 @@ use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, Part};
 use crate::registry::TopicDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// How a component runs, and where its topics got their names.
 pub(super) struct Task<'a> {

@@ -10,7 +10,7 @@ use super::similar::{Name, Similar};
 use crate::assembly::{Assembly, End, Loss, Topic, Traffic};
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// Where a component stands, and where its topics got their names.
 pub(super) struct Place {

@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
 use crate::model::{Part, Property, Version};
 use crate::source::{Location, Span, Text};
-use crate::xml::{Document, Element};
+use crate::syntax::{Document, Element};
 
 /// What other languages call types of XML Schema.
 const OTHER_NAMES: &[(&str, &str)] = &[

@@ -15,7 +15,7 @@ use super::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Component, Composite, Contribution, Include, Link, Naming};
 use crate::source::Location;
-use crate::xml::Element;
+use crate::syntax::Element;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
 pub(super) const MOST_MEMBERS: usize = 1_000_000;

@@ -18,7 +18,7 @@ use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// The values of a component that others must not have, where each is, and which property has it.
 fn uses<'u, 'r>(

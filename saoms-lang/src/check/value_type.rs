@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::load::vocabulary::XML_SCHEMA;
 use crate::model::{Part, Property};
 use crate::source::{Location, Text};
-use crate::xml::Document;
+use crate::syntax::Document;
 
 /// Which type of XML Schema is made of which other one.
 const DERIVED: &[(&str, &str)] = &[

@@ -17,7 +17,7 @@ use crate::expression::{INDEX, has_expression, is_name};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
-use crate::xml::{Element, escaped};
+use crate::syntax::{Element, escaped};
 
 /// A property, or a part of a complex one: as in `charger.x`.
 #[derive(Clone, Copy)]

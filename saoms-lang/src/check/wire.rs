@@ -11,7 +11,7 @@ use super::room::Room;
 use super::target::{Uri, parts, spread, target};
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::source::Text;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// A `<wire>` that starts from a reference.
 #[derive(Clone, Copy)]

@@ -11,7 +11,7 @@ use crate::load::description::{Deployable, Description};
 use crate::load::{definitions, load_file, read};
 use crate::model::{Composite, Contribution, Link};
 use crate::source::{Sources, Span};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// Composites in a folder that form one fleet: no other composite there names them.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use crate::diagnostic::{Candidates, Diagnostics, quoted};
 use crate::load::MAX_SIZE;
 use crate::load::description::{self, Description, Kind};
 use crate::source::{OpenTexts, Sources, identity};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// Folders beside a contribution in which those that it imports from are looked for.
 const MOST_BESIDE: usize = 1_000;

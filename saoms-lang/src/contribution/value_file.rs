@@ -6,7 +6,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::load::renaming;
 use crate::model::{ValueDocument, Version};
 use crate::source::{FileId, Sources, Text};
-use crate::xml::{self, Element};
+use crate::syntax::{self, Element, Parse};
 
 /// The element of SCA that holds the values of a file.
 const VALUES: &str = "values";
@@ -26,16 +26,16 @@ pub(super) fn read(file: FileId, text: Text, sources: &Sources, diagnostics: &mu
     if !text.starts_with('<') {
         return FileValue { text: Some(text), document: None };
     }
-    let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
-    let document = match (document, fault) {
-        (Some(document), None) => Arc::new(document),
-        (_, fault) if is_meant_as_values(&text) => {
-            fault.into_iter().for_each(|fault| diagnostics.push(fault));
+    let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
+    if !faults.is_empty() {
+        if is_meant_as_values(&text) {
+            faults.into_iter().for_each(|fault| diagnostics.push(fault));
             return FileValue::default();
         }
         // A text that begins like XML and is none is a text.
-        _ => return FileValue { text: Some(text), document: None },
-    };
+        return FileValue { text: Some(text), document: None };
+    }
+    let document = Arc::new(document);
     let root = document.root();
     if root.local_name() != VALUES {
         let document = Some(ValueDocument { document: Arc::clone(&document), is_list: false });

@@ -167,6 +167,53 @@ codes! {
     LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "A loop is named, and nothing is said that changes it.";
 }
 
+/// The thing whose absence a diagnostic reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Absence {
+    /// A part of the component, or of another element, that the diagnostic is at.
+    OfPart,
+    /// A name, or a user of it, anywhere in the fleet.
+    OfName,
+}
+
+/// What is absent by a diagnostic of this code, if it says that something is.
+pub(crate) fn absence(code: &Code) -> Option<Absence> {
+    const OF_PARTS: [&Code; 6] = [
+        &PROPERTY_MISSING,
+        &CONSTRUCTION,
+        &CREDENTIALS,
+        &UNKNOWN_PROPERTY,
+        &MISSING_IMPLEMENTATION,
+        &REPLICAS,
+    ];
+    const OF_NAMES: [&Code; 19] = [
+        &UNKNOWN_COMPONENT,
+        &UNKNOWN_TARGET_SERVICE,
+        &UNKNOWN_BINDING,
+        &UNKNOWN_WIRE_SOURCE,
+        &UNKNOWN_PROMOTED,
+        &UNKNOWN_SOURCE,
+        &UNKNOWN_SETTING,
+        &UNUSED_PROPERTY,
+        &UNWIRED,
+        &PROMOTED_UNWIRED,
+        &COMPOSITE_PROPERTY_MISSING,
+        &INCLUDE_NOT_FOUND,
+        &COMPOSITE_NOT_FOUND,
+        &DEPLOYABLE_NOT_FOUND,
+        &EXCHANGE,
+        &SEVERITY_UNUSED,
+        &TOPIC_UNREAD,
+        &TOPIC_UNWRITTEN,
+        &TOPIC_NEAR,
+    ];
+    match code {
+        _ if OF_PARTS.contains(&code) => Some(Absence::OfPart),
+        _ if OF_NAMES.contains(&code) => Some(Absence::OfName),
+        _ => None,
+    }
+}
+
 /// Whether errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of every rule of a crate of
 /// components.
 pub fn is_judgement(code: &Code) -> bool {

@@ -1,7 +1,8 @@
 //! The collection of diagnostics.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
+use super::codes::Absence;
 use super::{Code, Diagnostic, Severity, codes};
 use crate::source::{FileId, Location};
 
@@ -23,6 +24,10 @@ pub struct Diagnostics {
     kept: HashMap<FileId, u32>,
     errors: usize,
     warnings: usize,
+    /// Stretches of files, each with its end, in which something may be missing because of a fault of the text; none overlaps another.
+    damaged: BTreeMap<(FileId, u32), u32>,
+    /// True if names that others refer to may be missing.
+    lacks_names: bool,
 }
 
 #[derive(Debug)]
@@ -40,9 +45,32 @@ impl Diagnostics {
         Self::default()
     }
 
-    /// Adds one.
+    /// Lets nobody conclude from what is missing in a stretch of a file: there, a fault of the text is reported. With `has_names`, nobody
+    /// concludes either from a name that is found nowhere.
+    pub(crate) fn add_damage(&mut self, stretch: Location, has_names: bool) {
+        self.damaged.insert((stretch.file, stretch.span.start), stretch.span.end);
+        self.lacks_names |= has_names;
+    }
+
+    /// True if a diagnostic says only what comes of a fault of the text.
+    fn is_follow_up(&self, code: &Code, at: Location) -> bool {
+        let is_inside = || {
+            let before = self.damaged.range(..=(at.file, at.span.start)).next_back();
+            before.is_some_and(|((file, _), end)| *file == at.file && at.span.end <= *end)
+        };
+        match codes::absence(code) {
+            None => false,
+            Some(Absence::OfName) => self.lacks_names || is_inside(),
+            Some(Absence::OfPart) => is_inside(),
+        }
+    }
+
+    /// Adds one, unless it says only that something is missing where a fault of the text is the reason.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         let Diagnostic { code, severity, location, .. } = diagnostic;
+        if !self.damaged.is_empty() && self.is_follow_up(code, location) {
+            return;
+        }
         if !self.skip(code, severity, location) {
             self.count(code, severity, location.file).kept += 1;
             *self.kept.entry(location.file).or_insert(0) += 1;

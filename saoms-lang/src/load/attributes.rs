@@ -7,7 +7,7 @@ use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Span, Text};
-use crate::xml::{Attribute, Element, escaped};
+use crate::syntax::{Attribute, Element, escaped};
 
 /// How long a list can be: a fleet has no more components.
 const MOST_WORDS: usize = 1_000_000;
@@ -16,7 +16,7 @@ impl Loader<'_> {
     /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
     pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
         let mut free: Option<Vec<&'static str>> = None;
-        for attribute in element.attributes() {
+        for attribute in element.named_attributes() {
             if attribute.namespace().is_empty()
                 && let Some(known) = kind.find(attribute.name(), self.version)
             {
@@ -198,6 +198,7 @@ impl Loader<'_> {
         let is_child = |child: Element<'_>| is_attribute_as_element(child) && child.local_name() == name;
         let is_inside = name == "class" && element.has_text() || element.children().any(is_child);
         if is_inside
+            || element.has_damaged_tag()
             || has_near_miss(element, name)
             || self.diagnostics.skip(&codes::MISSING_ATTRIBUTE, Severity::Error, location)
         {

@@ -8,7 +8,7 @@ use super::vocabulary::{self, EXTENSIONS, INTENTS, Kind, OPERATION, OWN_ELEMENTS
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
-use crate::xml::Element;
+use crate::syntax::Element;
 
 /// Elements that SCA 1.0 has, and 1.1 has no longer.
 const ONLY_1_0: &[&str] = &["operation"];
@@ -33,6 +33,9 @@ impl Loader<'_> {
     /// Whose an element is. One of no namespace, or of another version of SCA than the root, is reported.
     pub(super) fn family(&mut self, element: Element<'_>) -> Family {
         let root = element.document().root();
+        if element.is_unnamed() {
+            return Family::Nobody;
+        }
         let version = match element.namespace() {
             // The root is of SCA, or counts as that.
             namespace if namespace == self.namespace || namespace == root.namespace() => return Family::Sca,
@@ -97,7 +100,9 @@ impl Loader<'_> {
         let is_misplaced = is_own || (family == Family::Sca && is_of_sca);
         let code = if is_misplaced { &codes::MISPLACED_ELEMENT } else { &codes::UNKNOWN_ELEMENT };
         let location = element.name_location();
-        if self.is_swallowed(element) || self.diagnostics.skip(code, Severity::Error, location) {
+        // It may belong elsewhere.
+        let is_doubtful = element.is_unnamed() || element.parent().is_some_and(|parent| !parent.is_closed());
+        if is_doubtful || self.diagnostics.skip(code, Severity::Error, location) {
             return None;
         }
         let place = quoted(parent.name);
@@ -234,7 +239,7 @@ impl Loader<'_> {
     pub(super) fn no_text(&mut self, element: Element<'_>) {
         let Some(span) = element.text_span() else { return };
         let location = span.in_file(element.document().file());
-        if self.is_closed_early(element)
+        if element.has_damaged_content()
             || self.diagnostics.skip(&codes::MISPLACED_TEXT, Severity::Error, location)
         {
             return;
@@ -357,8 +362,9 @@ pub(crate) fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -
     let whole = prefix.map_or_else(|| name.to_owned(), |prefix| format!("{prefix}:{name}"));
     let file = element.document().file();
     let spans = [Some(element.name_span()), element.end_name_span()];
+    let is_other = |span: &Span| element.document().text()[span.start as usize..span.end as usize] != whole;
     let edit = |span: Span| Edit { location: span.in_file(file), replacement: whole.clone() };
-    spans.into_iter().flatten().map(edit).collect()
+    spans.into_iter().flatten().filter(is_other).map(edit).collect()
 }
 
 /// The types of SCA's schemas, as they stand in `xsi:type`, and the elements that they mean.

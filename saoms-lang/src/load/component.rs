@@ -12,7 +12,7 @@ use crate::model::{
     Component, ComponentDetails, Implementation, ImplementationKind, Origin, Replicas, SAOMS_NAMESPACE,
 };
 use crate::source::Text;
-use crate::xml::{Element, Tangle};
+use crate::syntax::Element;
 
 impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> Component {
@@ -45,9 +45,7 @@ impl Loader<'_> {
             has_faulty |= self.part_of(element, (child, family, name), &mut component);
         }
         self.is_replicated = false;
-        // An element that was not read to its end may have had one.
-        let is_whole = element.is_closed() && self.tangle != Some(Tangle::ClosedEarly(element.id()));
-        if component.implementation.is_none() && !has_faulty && is_whole {
+        if component.implementation.is_none() && !has_faulty && !element.has_damaged_content() {
             self.missing_implementation(element, &component.name);
         }
         component

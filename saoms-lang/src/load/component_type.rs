@@ -9,7 +9,7 @@ use super::vocabulary::{self, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPONENT_
 use crate::diagnostic::Diagnostics;
 use crate::model::{ComponentType, Origin, Version};
 use crate::source::{FileId, Sources};
-use crate::xml;
+use crate::syntax::{self, Parse};
 
 /// Makes the model of a component type that was read before. `None` when the text is no well-formed XML with a `componentType` of SCA as its
 /// root.
@@ -18,12 +18,12 @@ pub fn load_component_type(
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<ComponentType> {
-    let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
-    if let Some(fault) = fault {
-        diagnostics.push(fault);
+    let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
+    if !faults.is_empty() {
+        faults.into_iter().for_each(|fault| diagnostics.push(fault));
         return None;
     }
-    let document = Arc::new(document?);
+    let document = Arc::new(document);
     let root = document.root();
     let version = Version::from_namespace(root.namespace());
     let Some(version) = version.filter(|_| root.local_name() == COMPONENT_TYPE.name) else {

@@ -11,7 +11,7 @@ use crate::model::{
     Binding, Callback, Contract, Interface, InterfaceKind, Origin, Reference, ReferenceDetails, Service,
 };
 use crate::source::Text;
-use crate::xml::Element;
+use crate::syntax::Element;
 
 impl Loader<'_> {
     pub(super) fn service(&mut self, element: Element<'_>, kind: &'static Kind) -> Service {

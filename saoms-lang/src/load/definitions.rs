@@ -9,7 +9,7 @@ use super::{Loader, read};
 use crate::diagnostic::Diagnostics;
 use crate::model::Version;
 use crate::source::Sources;
-use crate::xml::{self, Element};
+use crate::syntax::{self, Element, Parse};
 
 /// Checks the file `path`. One of another kind, which may have the same name, is passed over unless it was asked for. True if it is one of
 /// definitions, or something is wrong with it.
@@ -24,12 +24,11 @@ pub(crate) fn check(
     let mut ignored = Diagnostics::new();
     let file = read(path, max_size, sources, if is_asked_for { &mut *diagnostics } else { &mut ignored });
     let Some(file) = file else { return diagnostics.len() > known };
-    let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
-    let Some(document) = document else { return false };
+    let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
     let root = document.root();
     let is_named_so = root.local_name() == DEFINITIONS.name;
     match Version::from_namespace(root.namespace()).filter(|_| is_named_so) {
-        Some(_) if fault.is_some() => fault.into_iter().for_each(|one| diagnostics.push(one)),
+        Some(_) if !faults.is_empty() => faults.into_iter().for_each(|one| diagnostics.push(one)),
         Some(version) => {
             Loader::new(version, root.namespace(), diagnostics).definitions(root);
             // The rule for composites is another one (SCA Assembly 1.1, 13).
@@ -38,7 +37,8 @@ pub(crate) fn check(
         }
         None if is_asked_for || is_named_so && meant(root.namespace()).is_some() => {
             let help = "a file of this name holds intents and policy sets";
-            diagnostics.push(fault.unwrap_or_else(|| of_another_kind(root, DEFINITIONS.name, help)));
+            let other = || of_another_kind(root, DEFINITIONS.name, help);
+            diagnostics.push(faults.into_iter().next().unwrap_or_else(other));
         }
         None => {}
     }

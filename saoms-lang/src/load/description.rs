@@ -10,7 +10,7 @@ use super::{Loader, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::Version;
 use crate::source::{FileId, Location, Sources, Text};
-use crate::xml::{self, Element};
+use crate::syntax::{self, Element, Parse};
 
 /// Where the description of a contribution is in its folder: what its author wrote, or else what a tool made.
 pub(crate) const DESCRIPTIONS: [&str; 3] =
@@ -131,13 +131,13 @@ impl Description {
             made.is_faulty = true;
             return made;
         };
-        let xml::Parsed { document, fault, .. } = xml::parse(file, sources.get(file).text());
-        if let Some(fault) = fault {
-            diagnostics.push(fault);
+        let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
+        if !faults.is_empty() {
+            faults.into_iter().for_each(|fault| diagnostics.push(fault));
             made.is_faulty = true;
             return made;
         }
-        let Some(document) = document.map(Arc::new) else { return made };
+        let document = Arc::new(document);
         let root = document.root();
         let version = Version::from_namespace(root.namespace());
         let Some(version) = version.filter(|_| root.local_name() == CONTRIBUTION.name) else {

@@ -5,7 +5,7 @@ use super::children::{Family, renaming};
 use super::vocabulary::{COMPONENT_PROPERTY, LOOP};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Loop, Origin};
-use crate::xml::Element;
+use crate::syntax::Element;
 
 impl Loader<'_> {
     pub(super) fn looping(&mut self, element: Element<'_>) -> Loop {

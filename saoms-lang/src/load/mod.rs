@@ -1,7 +1,8 @@
 //! From text to the model, with everything that is wrong in it.
 //!
-//! [`read`] reads a file and [`load_file`] makes a [`Composite`] of its text. All faults of the file are reported in one run. Nothing beyond
-//! the one file is looked at: [`contribution`](crate::contribution) finds what it names.
+//! [`read`] reads a file and [`load_file`] makes a [`Composite`] of its text. All faults of the file are reported in one run,
+//! faults of the XML and of the model side by side. Nothing beyond the one file is looked at: [`contribution`](crate::contribution)
+//! finds what it names.
 
 mod attributes;
 mod children;
@@ -9,6 +10,7 @@ mod component;
 mod component_type;
 mod composite;
 mod contract;
+mod damage;
 pub(crate) mod definitions;
 pub(crate) mod description;
 mod encoding;
@@ -19,7 +21,6 @@ mod property;
 pub(crate) mod read;
 mod root;
 mod severity;
-mod tangle;
 #[cfg(test)]
 mod tests;
 pub mod vocabulary;
@@ -29,15 +30,14 @@ use std::sync::Arc;
 pub(crate) use children::renaming;
 pub use component_type::load_component_type;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
-use tangle::Swallowed;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::model::{Composite, SeverityRule, Version};
 use crate::source::{FileId, Sources};
-use crate::xml;
+use crate::syntax::{self, Parse};
 
-/// Makes the model of a text that was read before. `None` when the text is no well-formed XML with a `composite` as its
-/// root; otherwise the model of all that could be understood, also when there are errors.
+/// Makes the model of a text that was read before: of all that can be understood, also when the text is no well-formed XML, or has other
+/// errors. `None` when its root is no `composite`.
 ///
 /// ```
 /// use saoms_lang::{diagnostic::Diagnostics, load::load_file, source::Sources};
@@ -57,57 +57,25 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
         diagnostics.push(read::empty(file));
         return None;
     }
-    let mut parsed = xml::parse(file, text);
-    if parsed.fault.is_some() {
-        faulty(xml::mend(file, text, parsed), sources, diagnostics);
-        return None;
+    let Parse { document, faults } = syntax::parse(file, text);
+    if !faults.is_empty() {
+        damage::add(&document, diagnostics);
     }
-    let composite = parsed.document.take().and_then(|document| composite(document, None, diagnostics));
-    encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
-    composite.map(|(composite, _)| composite)
-}
-
-/// The composite in a document, and the first element in it that another one swallowed.
-fn composite(
-    document: xml::Document,
-    tangle: Option<xml::Tangle>,
-    diagnostics: &mut Diagnostics,
-) -> Option<(Composite, Option<Swallowed>)> {
     let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
-    loader.tangle = tangle;
-    if !loader.root(document.root()) {
-        return None;
-    }
-    loader.near_namespaces(&document);
-    let composite = loader.composite(&Arc::new(document));
-    Some((composite, loader.swallowed))
-}
-
-/// Tells all that is wrong with a text that is not well-formed.
-fn faulty(mut mended: xml::Mended, sources: &Sources, diagnostics: &mut Diagnostics) {
-    let mut found = Diagnostics::new();
-    let (document, tangle) = (mended.parsed.document.take(), mended.parsed.tangle);
-    let composite = document.and_then(|document| composite(document, tangle, &mut found));
-    for one in found.into_sorted() {
-        mended.told(one).into_iter().for_each(|one| diagnostics.push(one));
-    }
-    for one in std::mem::take(&mut mended.faults) {
-        if !contradicts(&one, sources, diagnostics) {
-            diagnostics.push(one);
+    let composite = loader.root(document.root()).then(|| {
+        loader.near_namespaces(&document);
+        loader.composite(&Arc::new(document))
+    });
+    for fault in faults {
+        if !contradicts(&fault, sources, diagnostics) {
+            diagnostics.push(fault);
         }
     }
-    let Some(fault) = mended.parsed.fault.take() else { return };
-    let swallowed = composite.as_ref().and_then(|(composite, swallowed)| {
-        swallowed.map(|swallowed| swallowed.fault(&composite.document, &fault))
-    });
-    let is_swallowed = swallowed.is_some();
-    let Some(fault) = mended.told(swallowed.unwrap_or(fault)) else { return };
-    if is_swallowed || !contradicts(&fault, sources, diagnostics) {
-        diagnostics.push(fault);
-    }
+    encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
+    composite
 }
 
-/// Whether a fault is that an end tag does not fit a start tag, whose name is told to be wrong, and of which the end tag has the right one.
+/// True if a fault is that an end tag does not fit a start tag, and the name of the start tag is reported, with that of the end tag as the right one.
 fn contradicts(fault: &Diagnostic, sources: &Sources, diagnostics: &Diagnostics) -> bool {
     if fault.code != &codes::XML_TAG_MISMATCH {
         return false;
@@ -134,9 +102,6 @@ struct Loader<'d> {
     newer: Vec<&'static str>,
     /// What is said about severities.
     severities: Vec<SeverityRule>,
-    /// Why its tags do not fit, where they do not.
-    tangle: Option<xml::Tangle>,
-    swallowed: Option<Swallowed>,
 }
 
 impl<'d> Loader<'d> {
@@ -149,8 +114,6 @@ impl<'d> Loader<'d> {
             is_replicated: false,
             newer: Vec::new(),
             severities: Vec::new(),
-            tangle: None,
-            swallowed: None,
         }
     }
 

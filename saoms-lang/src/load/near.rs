@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::Loader;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
-use crate::xml::{Attribute, Document};
+use crate::syntax::{Attribute, Document};
 
 impl Loader<'_> {
     /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged with it.

@@ -6,7 +6,7 @@ use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::{Origin, Part, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
-use crate::xml::{Element, ElementId};
+use crate::syntax::{Element, ElementId};
 
 impl Loader<'_> {
     pub(super) fn property(&mut self, element: Element<'_>, kind: &'static Kind) -> Property {

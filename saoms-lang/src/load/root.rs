@@ -1,17 +1,21 @@
 //! The root element: is it a composite, and of which version of SCA?
 
 use super::Loader;
-use crate::diagnostic::{Diagnostic, Edit, codes, nearest, quoted};
+use super::children::renaming;
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::Version;
 use crate::source::{Location, Span};
-use crate::xml::Element;
+use crate::syntax::Element;
 
 impl Loader<'_> {
-    /// Whether the root is a composite, or written as nearly one; finds out of which version of SCA.
+    /// True if the root is a composite, or written as nearly one; finds out of which version of SCA.
     pub(super) fn root(&mut self, root: Element<'_>) -> bool {
         let namespace = root.namespace();
         namespace.clone_into(&mut self.namespace);
         let version = Version::from_namespace(namespace);
+        if root.is_unnamed() {
+            return false;
+        }
         if root.local_name() != "composite" {
             self.report(wrong_root(root, version));
             if meant_root(root).is_none() {
@@ -20,7 +24,8 @@ impl Loader<'_> {
         }
         // Behind a wrong namespace the rest is read as if it were the right one, so that other faults are found too.
         self.version = version.or_else(|| meant(namespace)).unwrap_or(Version::Osoa10);
-        if version.is_none() {
+        let is_unknown = namespace.is_empty() && root.has_damaged_tag();
+        if version.is_none() && !is_unknown {
             self.report(wrong_namespace(root));
         }
         true
@@ -33,13 +38,7 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
     let mut one = Diagnostic::new(&codes::ROOT, location, message);
     let local = root.local_name();
     if let Some(meant) = meant_root(root) {
-        let replacement =
-            root.prefix().map_or_else(|| meant.to_owned(), |prefix| format!("{prefix}:{meant}"));
-        let file = location.file;
-        let spans = [Some(root.name_span()), root.end_name_span()].into_iter().flatten();
-        let edits = spans
-            .map(|span| Edit { location: span.in_file(file), replacement: replacement.clone() })
-            .collect();
+        let edits = renaming(root, root.prefix(), meant);
         return one.suggest_edits(format!("replace {} with {}", quoted(local), quoted(meant)), edits);
     }
     if version.is_none() {

@@ -5,7 +5,7 @@ use super::vocabulary::SEVERITY;
 use crate::diagnostic::{Level, nearest, quoted};
 use crate::model::{Origin, SeverityRule};
 use crate::source::{Located, Location};
-use crate::xml::Element;
+use crate::syntax::Element;
 
 impl Loader<'_> {
     /// Reads a `severity` that stands in `parent`.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::origin::parts;
 use super::{Origin, Property, Reference, Service, Version};
-use crate::xml::Document;
+use crate::syntax::Document;
 
 /// What an implementation offers, asks for and can be given, as a `.componentType` file states it.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::origin::parts;
 use super::{Component, Origin, Property, Reference, Service, SeverityRule, Version};
 use crate::source::{FileId, Located, Text};
-use crate::xml::Document;
+use crate::syntax::Document;
 
 /// A composite: components, what they are wired to, and what of them is promoted.
 #[derive(Clone, Debug)]

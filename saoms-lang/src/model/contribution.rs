@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::{Component, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Version};
 use crate::diagnostic::{Candidates, nearest};
 use crate::source::{FileId, Text};
-use crate::xml::ElementId;
+use crate::syntax::ElementId;
 
 /// What forms one fleet: the composites that were asked for, and what those name in other files.
 ///

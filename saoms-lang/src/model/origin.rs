@@ -1,7 +1,7 @@
 //! Where in its file a part of the model comes from.
 
 use crate::source::{FileId, Location};
-use crate::xml::{Document, Element, ElementId};
+use crate::syntax::{Document, Element, ElementId};
 
 /// The element that a part of the model was made from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

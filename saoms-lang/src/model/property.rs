@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Origin;
 use super::origin::parts;
 use crate::source::{Located, Text};
-use crate::xml::{Document, ElementId};
+use crate::syntax::{Document, ElementId};
 
 /// A property: of a component, where it gives a value, or of a composite, where it is declared.
 ///

@@ -1,7 +1,7 @@
 //! The layout of `saoms fmt` for a text that is open.
 
 use saoms_lang::source::Sources;
-use saoms_lang::xml;
+use saoms_lang::syntax;
 
 use super::scene::file::File;
 use crate::format::{WIDTH, format};
@@ -10,7 +10,6 @@ use crate::format::{WIDTH, format};
 pub fn formatted(file: &File) -> Option<String> {
     let mut sources = Sources::new();
     let id = sources.add(file.path.display().to_string(), file.text.to_string());
-    let parsed = xml::parse(id, sources.get(id).text());
-    let document = parsed.document.filter(|_| parsed.fault.is_none())?;
+    let document = syntax::parse(id, sources.get(id).text()).well_formed().ok()?;
     Some(format(&document, WIDTH))
 }

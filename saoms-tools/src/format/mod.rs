@@ -17,7 +17,7 @@ use lines::Lines;
 
 use saoms_lang::model::Version;
 use saoms_lang::source::Span;
-use saoms_lang::xml::{Document, Element, XML_NAMESPACE};
+use saoms_lang::syntax::{Document, Element, XML_NAMESPACE};
 
 /// The columns that a start tag has to fit into unless something else is set.
 pub const WIDTH: usize = 120;
@@ -34,11 +34,11 @@ const WITH_TEXT: [&str; 3] = ["property", "value", "documentation"];
 ///
 /// let mut sources = Sources::new();
 /// let file = sources.add("t", "<fleet><!-- the first --><robot  id = '1'></robot></fleet>");
-/// let document = xml::parse(file, sources.get(file).text()).document.unwrap();
+/// let document = syntax::parse(file, sources.get(file).text()).well_formed().unwrap();
 /// assert_eq!(format(&document, WIDTH), "<fleet> <!-- the first -->\n  <robot id=\"1\"/>\n</fleet>\n");
 /// ```
 ///
-/// A document that [`parse`](saoms_lang::xml::parse) gave together with a fault is not whole and not for this function.
+/// A document of a text with faults is not for this function.
 pub fn format(document: &Document, width: usize) -> String {
     Formatted { document, width }.to_string()
 }

@@ -1,7 +1,7 @@
 //! Start and end tags.
 
 use super::lines::Lines;
-use saoms_lang::xml::{Attribute, Element};
+use saoms_lang::syntax::{Attribute, Element};
 
 /// Columns that attributes on lines of their own stand to the right of their element.
 const HANG: usize = 4;

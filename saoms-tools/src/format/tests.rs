@@ -4,12 +4,10 @@ use expect_test::{Expect, expect};
 
 use super::{WIDTH, format};
 use saoms_lang::source::FileId;
-use saoms_lang::xml::parse;
+use saoms_lang::syntax::parse;
 
 fn formatted(text: &str, width: usize) -> String {
-    let parsed = parse(FileId(0), &Arc::new(text.into()));
-    assert!(parsed.fault.is_none(), "{text}: {:?}", parsed.fault);
-    format(&parsed.document.unwrap(), width)
+    format(&parse(FileId(0), &Arc::new(text.into())).well_formed().unwrap(), width)
 }
 
 fn test(text: &str, expected: Expect) {

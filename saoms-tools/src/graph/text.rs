@@ -1,7 +1,7 @@
 //! How wide texts are, and what of them is shown.
 
 use super::diagram::Diagram;
-use saoms_lang::xml::escaped;
+use saoms_lang::syntax::escaped;
 
 /// Widths of the printable characters of ASCII in thousandths of the size, as the metrics of DejaVu Sans have them: of the
 /// fonts that viewers usually take for sans-serif it is the widest, so that labels fit in all of them.

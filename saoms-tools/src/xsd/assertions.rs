@@ -5,7 +5,7 @@
 use saoms_api::host::declaration::PropertyKind;
 use saoms_api::host::parse_duration;
 
-use super::node::{Documented, Node};
+use super::node::{Documented, NewElement};
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::model::Version;
 use saoms_lang::registry::{Class, ClassDeclaration, PropertyDeclaration, Registry};
@@ -16,12 +16,12 @@ const FLOAT: &str = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$";
 const DURATION: &str = r"^([0-9]+\.?[0-9]*|\.[0-9]+)\s*(ns|us|µs|ms|s|min|h)?$";
 
 /// The assertions over components of a version of SCA.
-pub(super) fn of_components(registry: &Registry, version: Version) -> Vec<Node> {
+pub(super) fn of_components(registry: &Registry, version: Version) -> Vec<NewElement> {
     let classes = registry.iter().filter(|class| !class.is_alias());
     let tests = classes.flat_map(|class| of_class(class.declaration(), registry));
     tests
         .map(|(test, doc)| {
-            Node::new("xs:assert")
+            NewElement::new("xs:assert")
                 .with("test", test)
                 .with("xpathDefaultNamespace", version.namespace())
                 .doc(&doc)

@@ -19,7 +19,7 @@ mod words;
 
 pub use catalog::catalog;
 
-use self::node::{Documented, Node};
+use self::node::{Documented, NewElement};
 use self::words::Words;
 use saoms_lang::model::{SAOMS_NAMESPACE, Version};
 use saoms_lang::registry::Registry;
@@ -84,8 +84,8 @@ fn file(version: Version) -> &'static str {
 }
 
 /// The root of a schema.
-fn root(namespace: &str, doc: &str) -> Node {
-    Node::new("xs:schema")
+fn root(namespace: &str, doc: &str) -> NewElement {
+    NewElement::new("xs:schema")
         .with("xmlns:xs", "http://www.w3.org/2001/XMLSchema")
         .with("xmlns:saoms", SAOMS_NAMESPACE)
         .with("targetNamespace", namespace)

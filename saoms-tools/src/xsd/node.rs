@@ -1,6 +1,6 @@
 //! Elements of a schema.
 
-pub(super) use saoms_lang::xml::Node;
+pub(super) use saoms_lang::syntax::NewElement;
 
 /// What elements of schemas have beside others.
 pub(super) trait Documented {
@@ -11,12 +11,12 @@ pub(super) trait Documented {
     fn document(&self) -> String;
 }
 
-impl Documented for Node {
+impl Documented for NewElement {
     fn doc(self, text: &str) -> Self {
         if text.is_empty() {
             return self;
         }
-        self.child(Node::new("xs:annotation").child(Node::new("xs:documentation").text(text)))
+        self.child(NewElement::new("xs:annotation").child(NewElement::new("xs:documentation").text(text)))
     }
 
     fn document(&self) -> String {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::node::{Documented, Node};
+use super::node::{Documented, NewElement};
 use super::root;
 use super::sca::{attributes as declared, holding, name_of};
 use super::words::{Names, Words};
@@ -19,21 +19,22 @@ const DOC: &str =
 /// without a condition, too. They stand on the declarations: libxml2 does not know defaults of references to these.
 pub(super) const DEFAULTS: [(&str, &str); 2] = [("if", "true"), ("from", "1")];
 
-pub(super) fn schema(words: &Words) -> Node {
+pub(super) fn schema(words: &Words) -> NewElement {
     let own = [&LOOP, &SEVERITY, &IMPLEMENTATION_RUST, &INTERFACE_RUST];
     // Several elements can have an attribute.
     let attributes: BTreeMap<&str, &Known> =
         OWN_ATTRIBUTES.iter().map(|(_, known)| (known.name, known)).collect();
     let attributes = attributes.into_values().map(|known| {
-        let node =
-            Node::new("xs:attribute").with("name", known.name).with("type", type_of(known.holds, false));
+        let node = NewElement::new("xs:attribute")
+            .with("name", known.name)
+            .with("type", type_of(known.holds, false));
         let default = DEFAULTS.iter().find(|(name, _)| *name == known.name);
         let node = default.into_iter().fold(node, |node, (_, value)| node.with("default", *value));
         node.doc(known.doc)
     });
     root(SAOMS_NAMESPACE, DOC)
         .children(own.map(|kind| {
-            Node::new("xs:element")
+            NewElement::new("xs:element")
                 .with("name", kind.name)
                 .with("type", format!("saoms:{}", name_of(kind)))
                 .doc(kind.doc)
@@ -54,18 +55,18 @@ pub(super) fn schema(words: &Words) -> Node {
 }
 
 /// Elements of SAOMS stand in files of any version of SCA, so what they hold of SCA is not named.
-fn complex(kind: &'static Kind) -> Node {
+fn complex(kind: &'static Kind) -> NewElement {
     let has_parts = children(kind).next().is_some();
     let content = has_parts.then(|| holding([any("##other")]));
-    Node::new("xs:complexType")
+    NewElement::new("xs:complexType")
         .with("name", name_of(kind))
         .children(content)
         .children(declared(kind, Version::Oasis200912))
-        .child(Node::new("xs:anyAttribute").with("namespace", "##other").with("processContents", "lax"))
+        .child(NewElement::new("xs:anyAttribute").with("namespace", "##other").with("processContents", "lax"))
 }
 
-pub(super) fn any(namespace: &str) -> Node {
-    Node::new("xs:any").with("namespace", namespace).with("processContents", "lax")
+pub(super) fn any(namespace: &str) -> NewElement {
+    NewElement::new("xs:any").with("namespace", namespace).with("processContents", "lax")
 }
 
 /// The type of an attribute.
@@ -103,7 +104,7 @@ pub(super) fn type_of(holds: Holds, is_required: bool) -> &'static str {
     }
 }
 
-fn simple() -> [Node; 4] {
+fn simple() -> [NewElement; 4] {
     let multiplicity = |value: Multiplicity| {
         let doc = match value {
             Multiplicity::ZeroOrOne => "A target or none.",
@@ -123,9 +124,9 @@ fn simple() -> [Node; 4] {
         enumeration(level.name(), doc)
     };
     [
-        restricted("xs:token", [Node::new("xs:pattern").with("value", r"([^\s/]|$\{[^}]*\})+")])
+        restricted("xs:token", [NewElement::new("xs:pattern").with("value", r"([^\s/]|$\{[^}]*\})+")])
             .named("Name", "A name: without blanks and `/` but in expressions, as `${index}`."),
-        restricted("xs:token", [Node::new("xs:minLength").with("value", "1")])
+        restricted("xs:token", [NewElement::new("xs:minLength").with("value", "1")])
             .named("Given", "A text that is not empty."),
         restricted("xs:token", Multiplicity::ALL.map(multiplicity))
             .named("Multiplicity", "How many targets a reference takes."),
@@ -134,33 +135,33 @@ fn simple() -> [Node; 4] {
 }
 
 /// A type of names: those that are known, and any other that `otherwise` lets pass.
-fn names(name: &'static str, doc: &str, known: &Names, otherwise: &'static str) -> Node {
+fn names(name: &'static str, doc: &str, known: &Names, otherwise: &'static str) -> NewElement {
     let values = known.iter().map(|(name, doc)| enumeration(name, doc));
-    let mut union = Node::new("xs:union");
+    let mut union = NewElement::new("xs:union");
     if !known.is_empty() {
-        union = union.child(Node::new("xs:simpleType").child(restriction("xs:token", values)));
+        union = union.child(NewElement::new("xs:simpleType").child(restriction("xs:token", values)));
     }
-    let other = Node::new("xs:simpleType").child(restriction(otherwise, []));
+    let other = NewElement::new("xs:simpleType").child(restriction(otherwise, []));
     Simple(union.child(other)).named(name, doc)
 }
 
-fn enumeration(value: &str, doc: &str) -> Node {
-    Node::new("xs:enumeration").with("value", value).doc(doc)
+fn enumeration(value: &str, doc: &str) -> NewElement {
+    NewElement::new("xs:enumeration").with("value", value).doc(doc)
 }
 
-fn restriction(base: &'static str, facets: impl IntoIterator<Item = Node>) -> Node {
-    Node::new("xs:restriction").with("base", base).children(facets)
+fn restriction(base: &'static str, facets: impl IntoIterator<Item = NewElement>) -> NewElement {
+    NewElement::new("xs:restriction").with("base", base).children(facets)
 }
 
-fn restricted(base: &'static str, facets: impl IntoIterator<Item = Node>) -> Simple {
+fn restricted(base: &'static str, facets: impl IntoIterator<Item = NewElement>) -> Simple {
     Simple(restriction(base, facets))
 }
 
 /// What a simple type is made of.
-struct Simple(Node);
+struct Simple(NewElement);
 
 impl Simple {
-    fn named(self, name: &'static str, doc: &str) -> Node {
-        Node::new("xs:simpleType").with("name", name).doc(doc).child(self.0)
+    fn named(self, name: &'static str, doc: &str) -> NewElement {
+        NewElement::new("xs:simpleType").with("name", name).doc(doc).child(self.0)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::node::{Documented, Node};
+use super::node::{Documented, NewElement};
 use super::own::{any, type_of};
 use super::{OWN_FILE, root};
 use saoms_lang::load::vocabulary::{
@@ -75,12 +75,13 @@ const FOREIGN: &[&str] = &[
 ];
 
 /// The schema of a version, with these assertions over components.
-pub(super) fn schema(version: Version, assertions: Vec<Node>) -> Node {
+pub(super) fn schema(version: Version, assertions: Vec<NewElement>) -> NewElement {
     let doc = format!("The language of composites of {}. Written by `saoms schema`.", version.label());
-    let own = Node::new("xs:import").with("namespace", SAOMS_NAMESPACE).with("schemaLocation", OWN_FILE);
-    let roots = OTHER_ROOTS
-        .iter()
-        .map(|(name, doc)| Node::new("xs:element").with("name", *name).with("type", "sca:Open").doc(doc));
+    let own =
+        NewElement::new("xs:import").with("namespace", SAOMS_NAMESPACE).with("schemaLocation", OWN_FILE);
+    let roots = OTHER_ROOTS.iter().map(|(name, doc)| {
+        NewElement::new("xs:element").with("name", *name).with("type", "sca:Open").doc(doc)
+    });
     let mut root = root(version.namespace(), &doc).with("xmlns:sca", version.namespace());
     if !assertions.is_empty() {
         root =
@@ -122,17 +123,17 @@ fn is_same_everywhere(name: &str) -> bool {
 }
 
 /// The declaration of an element; where its parts are not known, anything can stand in it.
-fn element(name: &str, kind: Option<&Kind>) -> Node {
+fn element(name: &str, kind: Option<&Kind>) -> NewElement {
     let type_name = kind.map_or("Open", name_of);
     let doc = kind.map_or_else(|| other(name).unwrap_or_default(), |kind| kind.doc);
     let unique = UNIQUE.iter().filter(|(of, ..)| kind.is_some_and(|kind| std::ptr::eq(*of, kind)));
     let unique = unique.map(|(_, what, by)| {
-        Node::new("xs:unique")
+        NewElement::new("xs:unique")
             .with("name", format!("{what}-of-{name}"))
-            .child(Node::new("xs:selector").with("xpath", format!("sca:{what}")))
-            .children(by.iter().map(|path| Node::new("xs:field").with("xpath", *path)))
+            .child(NewElement::new("xs:selector").with("xpath", format!("sca:{what}")))
+            .children(by.iter().map(|path| NewElement::new("xs:field").with("xpath", *path)))
     });
-    Node::new("xs:element")
+    NewElement::new("xs:element")
         .with("name", name)
         .with("type", format!("sca:{type_name}"))
         .doc(doc)
@@ -140,8 +141,8 @@ fn element(name: &str, kind: Option<&Kind>) -> Node {
 }
 
 /// The type of an element. Other namespaces are open, as far as XSD can say so; that of SAOMS has what is known alone.
-fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> Node {
-    let node = Node::new("xs:complexType").with("name", name_of(kind));
+fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> NewElement {
+    let node = NewElement::new("xs:complexType").with("name", name_of(kind));
     let is_property =
         [&COMPONENT_PROPERTY, &COMPOSITE_PROPERTY].into_iter().any(|one| std::ptr::eq(one, kind));
     let node = if is_property {
@@ -149,14 +150,15 @@ fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> Node 
         node.with("mixed", "true").child(holding([skipped("xs:any")]))
     } else {
         let parts = children(kind).map(|name| match is_same_everywhere(name) {
-            true => Node::new("xs:element").with("ref", format!("sca:{name}")),
+            true => NewElement::new("xs:element").with("ref", format!("sca:{name}")),
             false => element(name, kind.child(name)),
         });
-        let own = own_children(kind).map(|name| Node::new("xs:element").with("ref", format!("saoms:{name}")));
-        let others: Vec<Node> = match has_assertions {
+        let own =
+            own_children(kind).map(|name| NewElement::new("xs:element").with("ref", format!("saoms:{name}")));
+        let others: Vec<NewElement> = match has_assertions {
             true => {
-                let any =
-                    Node::new("xs:any").with("notNamespace", format!("##targetNamespace {SAOMS_NAMESPACE}"));
+                let any = NewElement::new("xs:any")
+                    .with("notNamespace", format!("##targetNamespace {SAOMS_NAMESPACE}"));
                 own.chain([any.with("processContents", "lax")]).collect()
             }
             // Beside the wildcard, XSD 1.0 would find elements of SAOMS ambiguous.
@@ -165,9 +167,9 @@ fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> Node 
         node.child(holding(parts.chain(others)))
     };
     let own = own_attributes(kind)
-        .map(|known| Node::new("xs:attribute").with("ref", format!("saoms:{}", known.name)));
+        .map(|known| NewElement::new("xs:attribute").with("ref", format!("saoms:{}", known.name)));
     // The schema of SCA 1.0 lets any attribute pass.
-    let others = Node::new("xs:anyAttribute");
+    let others = NewElement::new("xs:anyAttribute");
     let others = match (version.is_1_1(), has_assertions) {
         (true, true) => others.with("notNamespace", format!("##targetNamespace ##local {SAOMS_NAMESPACE}")),
         (false, true) => others.with("notNamespace", SAOMS_NAMESPACE),
@@ -190,10 +192,10 @@ fn own_children(kind: &'static Kind) -> impl Iterator<Item = &'static str> {
 }
 
 /// The declarations of the attributes of an element.
-pub(super) fn attributes(kind: &'static Kind, version: Version) -> impl Iterator<Item = Node> {
+pub(super) fn attributes(kind: &'static Kind, version: Version) -> impl Iterator<Item = NewElement> {
     kind.of(version).map(move |known| {
         let is_required = known.required || known.name == "targetNamespace" && version.is_1_1();
-        let node = Node::new("xs:attribute")
+        let node = NewElement::new("xs:attribute")
             .with("name", known.name)
             .with("type", type_of(known.holds, known.required));
         let node = if is_required { node.with("use", "required") } else { node };
@@ -202,18 +204,18 @@ pub(super) fn attributes(kind: &'static Kind, version: Version) -> impl Iterator
 }
 
 /// Any number of these in any order.
-pub(super) fn holding(parts: impl IntoIterator<Item = Node>) -> Node {
-    Node::new("xs:choice").with("minOccurs", "0").with("maxOccurs", "unbounded").children(parts)
+pub(super) fn holding(parts: impl IntoIterator<Item = NewElement>) -> NewElement {
+    NewElement::new("xs:choice").with("minOccurs", "0").with("maxOccurs", "unbounded").children(parts)
 }
 
 /// Anything, not looked at.
-fn skipped(name: &'static str) -> Node {
-    Node::new(name).with("namespace", "##any").with("processContents", "skip")
+fn skipped(name: &'static str) -> NewElement {
+    NewElement::new(name).with("namespace", "##any").with("processContents", "skip")
 }
 
 /// The type of what is not described here.
-fn open() -> Node {
-    Node::new("xs:complexType")
+fn open() -> NewElement {
+    NewElement::new("xs:complexType")
         .with("name", "Open")
         .with("mixed", "true")
         .doc("What is not described here: anything.")

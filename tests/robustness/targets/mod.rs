@@ -19,7 +19,7 @@ use saoms_lang::load::{MAX_SIZE, load_file, read_from};
 use saoms_lang::model::{Composite, Contribution};
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{FileId, Location, Sources};
-use saoms_lang::xml::{self, Document};
+use saoms_lang::syntax::{self, Document};
 use saoms_tools::format::format;
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
@@ -119,7 +119,7 @@ pub(crate) fn draw(fleet: &Contribution, registry: &Registry, sources: &Sources)
     let census = Census::of(fleet, registry, &Options::default(), sources, &mut Diagnostics::new());
     let diagram = Diagram::of(fleet, registry, &census);
     let pictures = [svg(&diagram).to_string(), dot(&diagram).to_string(), mermaid(&diagram).to_string()];
-    assert!(xml::parse(FileId(0), &Arc::new(pictures[0].clone())).fault.is_none(), "{}", pictures[0]);
+    assert!(syntax::parse(FileId(0), &Arc::new(pictures[0].clone())).faults.is_empty(), "{}", pictures[0]);
 }
 
 /// Formats bytes: the result has the same elements, attributes and texts, and is its own format.
@@ -156,14 +156,13 @@ impl Loaded {
 
 /// A text as XML; `None` where it is ill-formed.
 pub(crate) fn parsed(text: &str) -> Option<Document> {
-    let parsed = xml::parse(FileId(0), &Arc::new(text.to_owned()));
-    parsed.document.filter(|_| parsed.fault.is_none())
+    syntax::parse(FileId(0), &Arc::new(text.to_owned())).well_formed().ok()
 }
 
 /// Elements with their attributes and texts, white space between elements left out, and the comments and instructions among them.
 fn meaning(document: &Document) -> Vec<String> {
     let mut elements = document.elements();
-    let element = |element: xml::Element<'_>| {
+    let element = |element: syntax::Element<'_>| {
         let attributes = element.written_attributes();
         let attributes: Vec<_> =
             attributes.map(|one| (one.name().to_owned(), one.value().into_owned())).collect();

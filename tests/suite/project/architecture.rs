@@ -13,7 +13,7 @@ const ORDERS: &[(&str, &[&str])] = &[
             "source",
             "diagnostic",
             "expression",
-            "xml",
+            "syntax",
             "model",
             "load",
             "contribution",

@@ -13,7 +13,7 @@ use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Loop, Part};
 use crate::registry::Registry;
 use crate::source::{Location, Text};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 /// The loops of a component in their order, and whether nothing about them is wrong.
 pub(super) fn plan<'a>(

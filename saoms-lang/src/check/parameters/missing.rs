@@ -5,7 +5,7 @@ use crate::check::fleet::Fleet;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::Property;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 impl<'a> Parameters<'a> {
     /// Finds out what components give properties that nobody took: it has to be right all the same, and there where it has to be.

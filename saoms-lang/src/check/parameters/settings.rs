@@ -8,7 +8,7 @@ use crate::check::fleet::Fleet;
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 impl<'a> Parameters<'a> {
     /// The places of the units of composites that run by themselves.

@@ -12,7 +12,7 @@ use crate::check::whole::Whole;
 use crate::check::{Setting, Variable};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::source::Text;
-use crate::xml::escaped;
+use crate::syntax::escaped;
 
 impl<'a> Parameters<'a> {
     /// Notes what expressions use, and what they have it from. What is wrong with that is reported.

@@ -10,7 +10,7 @@ use saoms_lang::load::MAX_SIZE;
 use saoms_lang::model::Contribution;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{Location, Sources, Span};
-use saoms_lang::xml;
+use saoms_lang::syntax;
 
 use crate::check::support::shown;
 
@@ -361,7 +361,7 @@ fn diagnostics_are_at_what_they_name() {
 /// no well-formed XML, in which a place is at what is not understood.
 fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
     let text = sources.get(place.file).text();
-    let xml::Parsed { document: Some(document), fault: None, .. } = xml::parse(place.file, text) else {
+    let Ok(document) = syntax::parse(place.file, text).well_formed() else {
         return Some(Vec::new());
     };
     let element = document.element_at(place.span.start);

@@ -129,7 +129,7 @@ fn what_is_not_found_says_where_and_what_is_near() {
 fleet.composite: a:hal is missing, near [\"a:hall\"]; looked in the files `*.composite` in `FOLDER` and below
 fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` has a composite `hall` of the namespace `urn:a`
 fleet.composite: c:hall -> hall.composite
-fleet.composite: a:torn is faulty
+fleet.composite: a:torn -> torn.composite
 torn.composite S0103
 "
     );
@@ -293,7 +293,7 @@ fn files_that_are_no_composites_are_named_with_the_reason() {
     expect![[r#"
         fleet.composite: b:lounge is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` is no composite: the file is in UTF-16LE, and UTF-8 is expected; `more.composite` is no composite: the file is empty; `other.composite` is no composite: the root element is `contribution` and has to be `composite`
         fleet.composite: b:hall is faulty
-        fleet.composite: a:gate is faulty
+        fleet.composite: a:gate -> deep/gate.composite
         hall.composite S0007
         deep/gate.composite S0103
     "#]]

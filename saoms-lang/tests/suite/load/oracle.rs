@@ -5,16 +5,13 @@ use std::sync::Arc;
 
 use saoms_lang::diagnostic::{Diagnostic, codes};
 use saoms_lang::source::{FileId, Span};
-use saoms_lang::xml::{self, Element};
+use saoms_lang::syntax::{self, Element};
 
 /// A tree as text: each element with its place, namespace, attributes and own text.
 fn ours(text: &str) -> Result<String, Box<Diagnostic>> {
-    let parsed = xml::parse(FileId(0), &Arc::new(text.into()));
-    if let Some(fault) = parsed.fault {
-        return Err(Box::new(fault));
-    }
+    let document = syntax::parse(FileId(0), &Arc::new(text.into())).well_formed()?;
     let mut out = String::new();
-    for element in parsed.document.iter().flat_map(xml::Document::elements) {
+    for element in document.elements() {
         agrees_with_itself(element, text);
         let parent = element.parent().map(|parent| parent.span().start);
         let place = range(element.span());

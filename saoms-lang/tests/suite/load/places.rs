@@ -8,7 +8,7 @@ use saoms_lang::model::{
     Binding, Callback, Composite, ImplementationKind, Interface, Part, Property, Reference, Service,
 };
 use saoms_lang::source::{Location, Sources, Span, Text};
-use saoms_lang::xml;
+use saoms_lang::syntax;
 
 /// Loads a text under a name and holds every place in model and diagnostics to the text. Gives errors and warnings as
 /// `code [marked text]`.
@@ -29,8 +29,6 @@ pub(crate) fn checked(name: &str, text: &str) -> Vec<String> {
     }
     let known = places(text);
     let found = diagnostics.into_sorted();
-    // Of what is no XML no tree holds the text as it is.
-    let is_xml = found.iter().all(|one| one.code.id >= "S1");
     for one in &found {
         let labels = one.labels.iter().map(|label| label.location);
         let edits = one.suggestions.iter().flat_map(|one| &one.edits).map(|edit| edit.location);
@@ -38,8 +36,8 @@ pub(crate) fn checked(name: &str, text: &str) -> Vec<String> {
             let Span { start, end } = place.span;
             assert!(start <= end && text.get(start as usize..end as usize).is_some(), "{name}: {one:?}");
         }
-        let is_of_file = !is_xml || one.code == &codes::TOO_MANY;
-        assert!(is_of_file || known.contains(&one.location.span), "{name}: no thing is at {one:?}");
+        let is_known = known.as_ref().is_none_or(|known| known.contains(&one.location.span));
+        assert!(is_known || one.code == &codes::TOO_MANY, "{name}: no thing is at {one:?}");
     }
     // Whatever it is, it can be shown.
     human(&found, &sources, false);
@@ -51,13 +49,10 @@ pub(crate) fn checked(name: &str, text: &str) -> Vec<String> {
         .collect()
 }
 
-/// The places of all names, attributes, values and texts.
-fn places(text: &str) -> HashSet<Span> {
-    let Some(document) =
-        xml::parse(saoms_lang::source::FileId(0), &std::sync::Arc::new(text.into())).document
-    else {
-        return HashSet::new();
-    };
+/// The places of all names, attributes, values and texts of a well-formed text.
+fn places(text: &str) -> Option<HashSet<Span>> {
+    let parse = syntax::parse(saoms_lang::source::FileId(0), &std::sync::Arc::new(text.into()));
+    let document = parse.well_formed().ok()?;
     let mut all = HashSet::new();
     for element in document.elements() {
         let slice = |span: Span| &text[span.start as usize..span.end as usize];
@@ -79,7 +74,7 @@ fn places(text: &str) -> HashSet<Span> {
             all.extend(attribute.words().map(|word| word.location.span));
         }
     }
-    all
+    Some(all)
 }
 
 /// Every text of the model that the file states.

@@ -164,6 +164,9 @@ fn a_misspelt_root_is_read_on() {
     expect![[r#"
         1:2-10 error S1001: the root element is `compsite` and has to be `composite`
           fix: replace `compsite` with `composite` [1:2-10 "composite"]
+        3:18-19 error S2002: there are two components `G`
+          2:18-19 the first
+          fix: remove the second: both are the same, word for word [3:1-75 ""]
     "#]]
     .assert_eq(&faults_of(&[&text.replace("<composite", "<compsite")], &[]));
     expect![[r#"

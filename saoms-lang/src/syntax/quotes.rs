@@ -8,8 +8,8 @@ use crate::source::Span;
 const CURLY: [char; 9] =
     ['\u{201c}', '\u{201d}', '\u{201e}', '\u{201f}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}'];
 
-/// What is wrong where the value at a place stands in the quotes of a word processor.
-pub(super) fn around(input: Input<'_>, at: u32) -> Option<Diagnostic> {
+/// The fault of a value at `at` in the quotes of a word processor; also the value inside, and where it ends.
+pub(super) fn around(input: Input<'_>, at: u32) -> Option<(Diagnostic, Span, u32)> {
     let text = &input.text[at as usize..];
     let first = text.chars().next().filter(|first| CURLY.contains(first))?;
     let inside = &text[first.len_utf8()..];
@@ -22,11 +22,13 @@ pub(super) fn around(input: Input<'_>, at: u32) -> Option<Diagnostic> {
     let one = input.fault(&codes::XML_ATTRIBUTE, at, end, message);
     let place = Span::new(at, end).in_file(input.file);
     let straight = format!("\"{}\"", &inside[..length]);
-    Some(one.suggest(format!("replace it with {}", quoted(&straight)), place, straight))
+    let start = at + first.len_utf8() as u32;
+    let value = Span::new(start, start + length as u32);
+    Some((one.suggest(format!("replace it with {}", quoted(&straight)), place, straight), value, end))
 }
 
-/// The quote of a word processor in a value that starts with a straight one and does not end where it should.
-pub(super) fn closing(input: Input<'_>, quote_at: u32, end: u32) -> Option<Diagnostic> {
+/// The fault of a value that starts with a straight quote and is closed by one of a word processor before `end`; also where that is.
+pub(super) fn closing(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, Span)> {
     let value = input.slice(quote_at + 1, end);
     let (length, found) = value.char_indices().find(|(_, c)| CURLY.contains(c))?;
     let at = quote_at + 1 + length as u32;
@@ -37,5 +39,5 @@ pub(super) fn closing(input: Input<'_>, quote_at: u32, end: u32) -> Option<Diagn
     let one = input.fault(&codes::XML_ATTRIBUTE, place.start, place.end, message);
     let one = one.label(Span::new(quote_at, quote_at + 1).in_file(input.file), "the value starts here");
     let description = format!("replace {shown} with {}", quoted(straight));
-    Some(one.suggest(description, place.in_file(input.file), straight))
+    Some((one.suggest(description, place.in_file(input.file), straight), place))
 }

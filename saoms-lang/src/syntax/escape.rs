@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// returns (2.11). A character that XML has no way to write (2.2) becomes U+FFFD.
 ///
 /// ```
-/// assert_eq!(saoms_lang::xml::escaped("a\"b]]> & 'c'\n"), "a&quot;b]]&gt; &amp; &apos;c&apos;&#10;");
+/// assert_eq!(saoms_lang::syntax::escaped("a\"b]]> & 'c'\n"), "a&quot;b]]&gt; &amp; &apos;c&apos;&#10;");
 /// ```
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());

@@ -1,7 +1,6 @@
-//! The diagnostic for a prefix that stands for nothing.
+//! Faults of prefixes that are bound to no namespace.
 
 use super::fault::Input;
-use super::names::name_length;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::source::Span;
 
@@ -14,27 +13,41 @@ const USUAL: [(&str, &str); 5] = [
     ("tuscany", "http://tuscany.apache.org/xmlns/sca/1.1"),
 ];
 
-/// `prefix`, written at byte `start`, is none of `bound`; the root element starts at byte `root`.
-pub(super) fn prefix(input: Input<'_>, prefix: &str, start: u32, bound: &[&str], root: u32) -> Diagnostic {
+/// The fault of a prefix that is none of `bound`, written at byte `start`; `root_end` is behind the name of the root element. Also the
+/// namespace that is meant, or the prefix.
+pub(super) fn prefix<'a>(
+    input: Input<'_>,
+    prefix: &str,
+    start: u32,
+    bound: &[&'a str],
+    root_end: u32,
+) -> (Diagnostic, Option<Meant<'a>>) {
     let end = start + prefix.len() as u32;
     let message = format!("the prefix {} is bound to no namespace", quoted(prefix));
     let one = input.fault(&codes::XML_PREFIX, start, end, message);
     if let Some((_, uri)) = USUAL.iter().find(|(usual, _)| *usual == prefix) {
         let declaration = format!("xmlns:{prefix}=\"{uri}\"");
-        let name_end = root + 1 + name_length(&input.bytes()[root as usize + 1..]) as u32;
-        return one.suggest(
+        let one = one.suggest(
             format!("declare it in the root element: {}", quoted(&declaration)),
-            Span::empty(name_end).in_file(input.file),
+            Span::empty(root_end).in_file(input.file),
             format!(" {declaration}"),
         );
+        return (one, Some(Meant::Namespace(uri)));
     }
     let one =
         one.help(format!("declare it, as `xmlns:{prefix}=\"...\"`, in this element or in one around it"));
     match nearest(prefix, bound.iter().copied().filter(|known| *known != "xml")) {
         Some(meant) => {
             let place = Span::new(start, end).in_file(input.file);
-            one.suggest(format!("replace {} with {}", quoted(prefix), quoted(meant)), place, meant)
+            let description = format!("replace {} with {}", quoted(prefix), quoted(meant));
+            (one.suggest(description, place, meant), Some(Meant::Prefix(meant)))
         }
-        None => one,
+        None => (one, None),
     }
+}
+
+/// The meaning of a prefix that is bound to no namespace.
+pub(super) enum Meant<'a> {
+    Namespace(&'static str),
+    Prefix(&'a str),
 }

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use super::tree::{NO_NAMESPACE, XMLNS};
+use super::document::{NO_NAMESPACE, XMLNS};
 use super::{XML_NAMESPACE, XMLNS_NAMESPACE};
 
-/// Which prefix is bound to what, and all namespaces by number.
+/// The bindings of prefixes in scope, and all namespaces by number.
 #[derive(Debug)]
 pub(super) struct Namespaces<'a> {
     names: Vec<Box<str>>,
@@ -16,17 +16,13 @@ pub(super) struct Namespaces<'a> {
     bound: HashMap<&'a str, u32>,
     /// What each declaration in scope replaced, to be put back.
     replaced: Vec<Replaced<'a>>,
-    /// How many declarations there were.
-    count: u32,
 }
 
-/// What a declaration replaced.
+/// A binding that a declaration replaced.
 #[derive(Debug)]
 struct Replaced<'a> {
     prefix: &'a str,
     before: Option<u32>,
-    /// The number of the declaration.
-    number: u32,
 }
 
 impl<'a> Namespaces<'a> {
@@ -39,7 +35,6 @@ impl<'a> Namespaces<'a> {
             default: NO_NAMESPACE,
             bound: HashMap::from([("xml", 1)]),
             replaced: Vec::new(),
-            count: 0,
         }
     }
 
@@ -57,25 +52,12 @@ impl<'a> Namespaces<'a> {
         } else {
             self.bound.insert(prefix, number)
         };
-        self.count += 1;
-        self.replaced.push(Replaced { prefix, before, number: self.count });
-    }
-
-    /// A number for what is bound here: where it is the same, all prefixes mean the same.
-    #[inline]
-    pub(super) fn scope(&self) -> u32 {
-        self.replaced.last().map_or(0, |last| last.number)
+        self.replaced.push(Replaced { prefix, before });
     }
 
     /// Undoes the declarations beyond the first `depth`.
     #[inline]
     pub(super) fn leave(&mut self, depth: u32) {
-        if self.depth() > depth {
-            self.undo(depth);
-        }
-    }
-
-    fn undo(&mut self, depth: u32) {
         for Replaced { prefix, before, .. } in self.replaced.drain(depth as usize..).rev() {
             match before {
                 Some(number) if prefix.is_empty() => self.default = number,
@@ -112,7 +94,8 @@ impl<'a> Namespaces<'a> {
         self.names
     }
 
-    fn number(&mut self, uri: Cow<'a, str>) -> u32 {
+    /// The number of a namespace.
+    pub(super) fn number(&mut self, uri: Cow<'a, str>) -> u32 {
         if let Some(&number) = self.numbers.get(&*uri) {
             return number;
         }
@@ -124,7 +107,7 @@ impl<'a> Namespaces<'a> {
     }
 }
 
-/// Why a prefix cannot be bound to a namespace (Namespaces in XML 1.0, section 3), if it cannot.
+/// The reason why a prefix cannot be bound to a namespace (Namespaces in XML 1.0, section 3), if it cannot.
 pub(super) fn refusal(prefix: &str, uri: &str) -> Option<&'static str> {
     match (prefix, uri) {
         ("xmlns", _) => Some("the prefix `xmlns` cannot be declared"),

@@ -2,36 +2,20 @@
 
 use std::borrow::Cow;
 
+use super::document::Document;
 use super::element::{offset, slice, split};
-use super::shape::Part;
-use super::tree::Document;
+use super::start_tag::{BAD_NAME, DUPLICATE, NO_VALUE, OPEN, RawAttribute, UNSURE};
 use super::value;
 use crate::source::{Located, Location, Span, Text};
 
 /// An attribute of an element.
 #[derive(Clone, Copy, Debug)]
 pub struct Attribute<'a> {
-    document: &'a Document,
-    /// The shape of the tag that it is in, and its place among the attributes there.
-    shape: u32,
-    at: u32,
-    /// Without the quotes.
-    value: Span,
+    pub(super) document: &'a Document,
+    pub(super) raw: &'a RawAttribute,
 }
 
 impl<'a> Attribute<'a> {
-    /// The one whose value this is, by the shape of the tag that it is in and its place there.
-    #[inline]
-    pub(crate) fn of(document: &'a Document, (shape, at): (u32, u32), value: Span) -> Self {
-        Self { document, shape, at, value }
-    }
-
-    /// What its shape says of it.
-    #[inline]
-    pub(super) fn part(self) -> &'a Part {
-        &self.document.shapes.parts(self.shape)[self.at as usize]
-    }
-
     /// The name as written, with its prefix.
     #[inline]
     pub fn name(self) -> &'a str {
@@ -50,7 +34,7 @@ impl<'a> Attribute<'a> {
 
     /// The namespace; empty for none, as for every attribute without a prefix.
     pub fn namespace(self) -> &'a str {
-        &self.document.namespaces[self.part().namespace as usize]
+        &self.document.namespaces[self.raw.namespace as usize]
     }
 
     /// The value: references resolved, each white space character a blank.
@@ -61,24 +45,43 @@ impl<'a> Attribute<'a> {
     /// The value as written.
     #[inline]
     pub fn raw_value(self) -> &'a str {
-        slice(self.document, self.value)
+        slice(self.document, self.raw.value)
     }
 
     /// From the name to behind the closing quote.
     pub fn span(self) -> Span {
-        Span::new(self.name_span().start, self.value.end + 1)
+        Span::new(self.raw.start, self.raw.end())
     }
 
     /// The name.
     pub fn name_span(self) -> Span {
-        let part = self.part();
-        let start = self.value.start - part.name_back;
-        Span::new(start, start + part.name_len)
+        self.raw.name_span()
     }
 
-    /// The value, without its quotes.
+    /// The value, without its quotes; empty where there is none.
     pub fn value_span(self) -> Span {
-        self.value
+        self.raw.value
+    }
+
+    /// True if there is a `=` behind the name.
+    pub fn has_value(self) -> bool {
+        self.raw.flags & NO_VALUE == 0
+    }
+
+    /// True if the value has both quotes.
+    pub fn is_closed(self) -> bool {
+        self.raw.flags & (NO_VALUE | OPEN) == 0
+    }
+
+    /// True if the name is one, stands here for the first time, and has a value, which may be doubtful.
+    pub(crate) fn has_sure_name(self) -> bool {
+        self.raw.flags & (NO_VALUE | BAD_NAME | DUPLICATE) == 0
+    }
+
+    /// True if name and value are known, whatever faults there are.
+    #[inline]
+    pub(super) fn is_sure(self) -> bool {
+        self.raw.flags & (NO_VALUE | UNSURE | DUPLICATE | BAD_NAME) == 0
     }
 
     /// Where the whole attribute is.
@@ -86,42 +89,9 @@ impl<'a> Attribute<'a> {
         self.span().in_file(self.document.file)
     }
 
-    /// The value, when it is a name as most are: not empty, and of ASCII without white space and `/`.
-    #[inline]
-    pub(crate) fn plain_name(self) -> Option<&'a str> {
-        let name = self.raw_value();
-        (!name.is_empty() && value::is_plain_name(name.as_bytes())).then_some(name)
-    }
-
-    /// A value that means itself, and where it is.
-    #[inline]
-    pub(crate) fn as_it_is(self, value: &str) -> Text {
-        Located::new(value.into(), self.value_location())
-    }
-
-    /// Where the value is, without its quotes.
-    #[inline]
-    pub(crate) fn value_location(self) -> Location {
-        self.value.in_file(self.document.file)
-    }
-
-    /// The value, when it is one word as most are, without white space or references.
-    #[inline]
-    pub(crate) fn plain_word(self) -> Option<&'a str> {
-        let word = self.raw_value();
-        (!word.is_empty() && value::is_plain(word.as_bytes())).then_some(word)
-    }
-
-    /// The same, and where it is.
-    #[inline]
-    pub(crate) fn only_word(self) -> Option<Text> {
-        self.plain_word().map(|word| self.as_it_is(word))
-    }
-
     /// The value and where it is, white space at its ends left out.
     pub fn trimmed(self) -> Text {
-        // One look at the bytes of most values tells that they mean themselves.
-        self.only_word().unwrap_or_else(|| self.located(value::trim(self.raw_value())))
+        self.located(value::trim(self.raw_value()))
     }
 
     /// The words of a value that is a list, each with its own place.
@@ -152,7 +122,7 @@ impl<'a> Attribute<'a> {
     /// A part of the value as written, resolved.
     fn located(self, part: &str) -> Text {
         let whole = self.raw_value();
-        let start = self.value.start + offset(whole, part);
+        let start = self.raw.value.start + offset(whole, part);
         let span = Span::new(start, start + part.len() as u32);
         Located::new(value::attribute_value(part).into(), span.in_file(self.document.file))
     }

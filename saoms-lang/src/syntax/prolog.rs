@@ -1,64 +1,96 @@
-//! Declarations, instructions, comments and what else starts with `<?` or `<!`.
+//! Checks of declarations, instructions, comments and of what else starts with `<?` or `<!`.
 
-use super::fault::{Checked, Fault, Input};
+use super::fault::Input;
 use super::names::{is_local_name, name_length};
-use super::slips;
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use super::token::TokenKind;
+use super::value::is_space;
+use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::source::Span;
 
-/// Checks the processing instruction from `start` to `end`, or the XML declaration when it is at `first`.
-pub(super) fn instruction(input: Input<'_>, start: u32, end: u32, first: u32) -> Checked<()> {
+/// The fault of the processing instruction from `start` to `end`, or of the XML declaration.
+pub(super) fn instruction(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
+    let first = if input.text.starts_with('\u{feff}') { 3 } else { 0 };
     let inside = input.slice(start + 2, end - 2);
     let name_len = name_length(inside.as_bytes());
     let (name, rest) = inside.split_at(name_len);
     let name_end = start + 2 + name_len as u32;
     if name == "xml" {
-        if start != first {
-            let before = input.text[first as usize..start as usize].trim();
-            let message = "the XML declaration stands at the very start of a file, and only there";
-            let mut one = input.fault(&codes::XML_DECLARATION, start, end, message);
-            if before.is_empty() {
-                let gap = Span::new(first, start).in_file(input.file);
-                one = one.suggest("remove what is before it", gap, "");
-            }
-            return Err(one.into());
+        if start == first {
+            return declaration(input, start + 5, end - 2);
         }
-        return declaration(input, start + 5, end - 2);
+        let message = "the XML declaration stands at the very start of a file, and only there";
+        let one = input.fault(&codes::XML_DECLARATION, start, end, message);
+        if !input.slice(first, start).trim().is_empty() {
+            return Some(one);
+        }
+        let gap = Span::new(first, start).in_file(input.file);
+        return Some(one.suggest("remove what is before it", gap, ""));
     }
     if name.eq_ignore_ascii_case("xml") {
         let message = format!("{} is reserved: an instruction cannot have this name", quoted(name));
-        return Err(input.fault(&codes::XML_DECLARATION, start + 2, name_end, message).into());
+        return Some(input.fault(&codes::XML_DECLARATION, start + 2, name_end, message));
     }
-    if !is_local_name(name) || !(rest.is_empty() || rest.starts_with(is_space)) {
-        let message = "a processing instruction is `<?`, a name, white space, anything, and `?>`";
-        let shown = name_end.max(start + 2);
-        return Err(input.fault(&codes::XML_NAME, start, shown, message).into());
+    if is_local_name(name) && (rest.is_empty() || rest.starts_with(is_space)) {
+        return None;
     }
-    Ok(())
+    let message = "a processing instruction is `<?`, a name, white space, anything, and `?>`";
+    Some(input.fault(&codes::XML_NAME, start, name_end.max(start + 2), message))
 }
 
-/// Checks the comment from `start` to `end`.
-pub(super) fn comment(input: Input<'_>, start: u32, end: u32) -> Checked<()> {
+/// The fault of the comment from `start` to `end`.
+pub(super) fn comment(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
     let inside = input.slice(start + 4, end - 3);
-    let at = inside.find("--").or_else(|| inside.ends_with('-').then(|| inside.len() - 1));
-    let Some(at) = at else { return Ok(()) };
+    let at = inside.find("--").or_else(|| inside.ends_with('-').then(|| inside.len() - 1))?;
     let at = start + 4 + at as u32;
-    let edits = slips::dashes(inside, start + 4, input);
+    let edits = single_dashes(inside, start + 4, input);
     let one = input
         .fault(&codes::XML_SYNTAX, at, at + 2, "`--` inside a comment")
         .label(Span::new(start, start + 4).in_file(input.file), "the comment starts here")
         .help("XML allows `--` only in the `-->` that ends the comment");
-    Err(if edits.is_empty() { one } else { one.suggest_edits("write single dashes", edits) }.into())
+    Some(if edits.is_empty() { one } else { one.suggest_edits("write single dashes", edits) })
 }
 
-/// The fault in markup at `start` that quick-xml could not read to its end.
-pub(super) fn broken(input: Input<'_>, start: u32) -> Fault {
+/// Edits of one comment that are suggested.
+const MOST_EDITS: usize = 100;
+
+/// One `-` in place of each `--` of a comment, unless there are very many.
+fn single_dashes(inside: &str, start: u32, input: Input<'_>) -> Vec<Edit> {
+    let mut edits = Vec::new();
+    let mut at = 0;
+    while let Some(length) = inside[at..].find('-') {
+        let from = at + length;
+        at = from + inside[from..].bytes().take_while(|byte| *byte == b'-').count();
+        let replacement = if at == inside.len() { "" } else { "-" };
+        if at - from > 1 || replacement.is_empty() {
+            let place = Span::new(start + from as u32, start + at as u32).in_file(input.file);
+            edits.push(Edit { location: place, replacement: replacement.to_owned() });
+            if edits.len() > MOST_EDITS {
+                return Vec::new();
+            }
+        }
+    }
+    edits
+}
+
+/// The kind of markup that starts with `<!` or `<?`; that of its start alone is known at the end of a text, too.
+pub(super) fn kind(rest: &str) -> Option<TokenKind> {
+    let kinds =
+        [("<!--", TokenKind::Comment), ("<![CDATA[", TokenKind::Section), ("<?", TokenKind::Instruction)];
+    if starts_doctype(rest) {
+        return Some(TokenKind::Doctype);
+    }
+    let found = kinds.into_iter().find(|(start, _)| rest.starts_with(start) || start.starts_with(rest));
+    found.map(|(_, kind)| kind)
+}
+
+/// The fault of markup at `start` that quick-xml cannot read to its end.
+pub(super) fn broken(input: Input<'_>, start: u32) -> Diagnostic {
     let rest = &input.text[start as usize..];
     let unclosed = |len: u32, what: &str| {
         input.ended(&codes::XML_UNCLOSED, start, start + len, format!("this {what} is never closed"))
     };
     if starts_doctype(rest) {
-        return doctype(input, start, start + 9).into();
+        return doctype(input, start, start + 9);
     }
     if rest.starts_with("<!--") {
         return unclosed(4, "comment");
@@ -74,7 +106,7 @@ pub(super) fn broken(input: Input<'_>, start: u32) -> Fault {
         return unclosed(rest.len() as u32, "markup");
     }
     let message = "`<!` starts a comment (`<!--`) or a CDATA section (`<![CDATA[`), and nothing else here";
-    input.fault(&codes::XML_SYNTAX, start, start + 2, message).into()
+    input.fault(&codes::XML_SYNTAX, start, start + 2, message)
 }
 
 /// The refusal of a document type declaration.
@@ -84,16 +116,16 @@ pub(super) fn doctype(input: Input<'_>, start: u32, end: u32) -> Diagnostic {
         .help("remove it; a composite needs no DTD, and entities beyond the five predefined ones are refused")
 }
 
-/// Whether it starts a document type declaration, in whatever case.
+/// True if the text starts with a document type declaration, in whatever case.
 pub(super) fn starts_doctype(text: &str) -> bool {
     text.get(..9).is_some_and(|start| start.eq_ignore_ascii_case("<!DOCTYPE"))
 }
 
-/// Checks what is between `<?xml` and `?>`: version, then encoding, then standalone.
-fn declaration(input: Input<'_>, start: u32, end: u32) -> Checked<()> {
+/// The fault of what is between `<?xml` and `?>`: version, then encoding, then standalone.
+fn declaration(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
     let help = "as in `<?xml version=\"1.0\" encoding=\"UTF-8\"?>`";
     let fault = |from: u32, to: u32, message: String| {
-        Fault::from(input.fault(&codes::XML_DECLARATION, from, to, message).help(help))
+        Some(input.fault(&codes::XML_DECLARATION, from, to, message).help(help))
     };
     let mut at = start;
     let mut expected: &[&str] = &["version", "encoding", "standalone"];
@@ -105,17 +137,13 @@ fn declaration(input: Input<'_>, start: u32, end: u32) -> Checked<()> {
         }
         let item = at + (text.len() - trimmed.len()) as u32;
         let Some((name_len, value, len)) = pseudo_attribute(trimmed) else {
-            return Err(fault(
-                item,
-                end,
-                "this is no declaration of version, encoding or standalone".to_owned(),
-            ));
+            return fault(item, end, "this is no declaration of version, encoding or standalone".to_owned());
         };
         let name = &trimmed[..name_len];
         let position = expected.iter().position(|known| *known == name);
         let (Some(position), true) = (position, item > at) else {
             let message = format!("{} is misplaced in the XML declaration", quoted(name));
-            return Err(fault(item, item + name_len as u32, message));
+            return fault(item, item + name_len as u32, message);
         };
         if expected.len() == 3 && position > 0 {
             break;
@@ -129,14 +157,14 @@ fn declaration(input: Input<'_>, start: u32, end: u32) -> Checked<()> {
         if !ok {
             let value_end = item + len as u32 - 1;
             let message = format!("{} is no value of {name} in an XML declaration", quoted(value));
-            return Err(fault(value_end - value.len() as u32, value_end, message));
+            return fault(value_end - value.len() as u32, value_end, message);
         }
         at = item + len as u32;
     }
     if expected.len() == 3 {
-        return Err(fault(start - 3, start, "an XML declaration starts with its version".to_owned()));
+        return fault(start - 3, start, "an XML declaration starts with its version".to_owned());
     }
-    Ok(())
+    None
 }
 
 /// `name = "value"` at the start of `text`: the name's length, the value, and the length of it all.
@@ -156,8 +184,4 @@ fn all_digits(text: &str) -> bool {
 fn is_encoding_name(text: &str) -> bool {
     text.starts_with(|first: char| first.is_ascii_alphabetic())
         && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'_' | b'-'))
-}
-
-fn is_space(character: char) -> bool {
-    matches!(character, ' ' | '\t' | '\r' | '\n')
 }

@@ -7,7 +7,7 @@ use super::escaped;
 
 /// An element to be written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node {
+pub struct NewElement {
     name: Cow<'static, str>,
     attributes: Vec<(Cow<'static, str>, String)>,
     content: Vec<Content>,
@@ -15,12 +15,12 @@ pub struct Node {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Content {
-    Node(Node),
+    Element(NewElement),
     /// As it is written in a file.
     Written(String),
 }
 
-impl Node {
+impl NewElement {
     /// One of this name, with nothing in it.
     pub fn new(name: impl Into<Cow<'static, str>>) -> Self {
         Self { name: name.into(), attributes: Vec::new(), content: Vec::new() }
@@ -41,14 +41,14 @@ impl Node {
     }
 
     /// With something inside.
-    pub fn child(mut self, child: Node) -> Self {
-        self.content.push(Content::Node(child));
+    pub fn child(mut self, child: NewElement) -> Self {
+        self.content.push(Content::Element(child));
         self
     }
 
     /// With all of these inside.
-    pub fn children(mut self, children: impl IntoIterator<Item = Node>) -> Self {
-        self.content.extend(children.into_iter().map(Content::Node));
+    pub fn children(mut self, children: impl IntoIterator<Item = NewElement>) -> Self {
+        self.content.extend(children.into_iter().map(Content::Element));
         self
     }
 
@@ -74,7 +74,7 @@ impl Node {
     pub fn hoist(&mut self) {
         let Self { attributes, content, .. } = self;
         for child in content {
-            let Content::Node(child) = child else { continue };
+            let Content::Element(child) = child else { continue };
             child.hoist();
             let mut stay = Vec::with_capacity(child.attributes.len());
             for (name, value) in std::mem::take(&mut child.attributes) {
@@ -122,8 +122,8 @@ impl Node {
         for one in &self.content {
             match one {
                 Content::Written(text) => out.push_str(text),
-                Content::Node(node) if is_written => node.inline(depth + 1, out),
-                Content::Node(node) => node.write(depth + 1, out),
+                Content::Element(node) if is_written => node.inline(depth + 1, out),
+                Content::Element(node) => node.write(depth + 1, out),
             }
         }
         if !is_written {

@@ -1,29 +1,7 @@
-//! What attribute values and character data mean once references and line ends are resolved.
-//!
-//! All of it works on text that was found well-formed; on other text it gives something, and does not panic.
+//! Meaning of attribute values and character data: references and line ends resolved.
 
 use std::borrow::Cow;
 use std::ops::Range;
-
-use super::eight;
-
-/// Whether the bytes are no white space and no `&`: such a value means itself.
-#[inline]
-pub(crate) fn is_plain(bytes: &[u8]) -> bool {
-    !eight::any(bytes, |word| eight::up_to_blank(word) | eight::equal(word, b'&'))
-}
-
-/// Whether the bytes are neither white space, `&`, `:` nor `/`, and all ASCII.
-#[inline]
-pub(super) fn is_plain_name(name: &[u8]) -> bool {
-    !eight::any(name, |word| {
-        eight::up_to_blank(word)
-            | eight::equal(word, b'/')
-            | eight::equal(word, b'&')
-            | eight::equal(word, b':')
-            | word & eight::HIGH
-    })
-}
 
 /// The value of an attribute (XML 1.0, 3.3.3): each white space character a blank, references resolved.
 pub(super) fn attribute_value(raw: &str) -> Cow<'_, str> {
@@ -51,20 +29,28 @@ fn attribute_characters(raw: &str, mut each: impl FnMut(char, Range<usize>)) {
     }
 }
 
-/// Whether character data means itself: no markup, references or line ends to resolve.
+/// True if character data means itself: no markup, references or line ends to resolve.
 pub(super) fn is_literal(text: &str) -> bool {
     // Without a branch, so that the compiler makes vector instructions of it; texts are short.
     text.bytes().fold(true, |literal, byte| literal & (byte != b'<') & (byte != b'&') & (byte != b'\r'))
 }
 
-/// The text of a stretch without elements: comments and instructions out, CDATA and references resolved.
-pub(super) fn character_data(stretch: &str) -> Cow<'_, str> {
-    if is_literal(stretch) {
-        return Cow::Borrowed(stretch);
+/// The text that character data means.
+pub(super) fn character_data(data: &str) -> Cow<'_, str> {
+    if is_literal(data) {
+        return Cow::Borrowed(data);
     }
-    let mut text = String::with_capacity(stretch.len());
-    data_characters(stretch, |character, _| text.push(character));
+    let mut text = String::with_capacity(data.len());
+    data_characters(data, |character, _| text.push(character));
     Cow::Owned(text)
+}
+
+/// The text of a CDATA section, where only line ends mean something else.
+pub(super) fn line_ends(data: &str) -> Cow<'_, str> {
+    match data.contains('\r') {
+        true => Cow::Owned(data.replace("\r\n", "\n").replace('\r', "\n")),
+        false => Cow::Borrowed(data),
+    }
 }
 
 /// Each character that a stretch without elements stands for, with the bytes that it is written with.
@@ -152,17 +138,7 @@ impl Characters {
     }
 }
 
-/// Where a stretch without elements holds text, white space at the ends of each piece left out.
-pub(super) fn text_pieces(stretch: &str) -> impl Iterator<Item = Range<u32>> {
-    pieces(stretch).filter_map(|(piece, _)| {
-        let text = stretch[piece.clone()].trim_end_matches(is_space);
-        let start = piece.end.min(piece.start + text.len() - text.trim_start_matches(is_space).len());
-        (!text.trim_start_matches(is_space).is_empty())
-            .then_some(start as u32..(piece.start + text.len()) as u32)
-    })
-}
-
-/// Whether XML counts it as white space.
+/// True if XML counts it as white space.
 pub(super) fn is_space(character: char) -> bool {
     matches!(character, ' ' | '\t' | '\r' | '\n')
 }
@@ -198,11 +174,13 @@ fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, bool)> {
     })
 }
 
-/// What the reference at the start of `text` stands for, and how many bytes it has.
+/// The character that the reference at the start of `text` stands for, and its length in bytes. A `&` by itself stands for itself.
 fn reference(text: &str) -> (char, usize) {
-    match text[1..].find(';') {
-        Some(length) => (resolve(&text[1..1 + length]).unwrap_or('\u{fffd}'), length + 2),
-        None => ('&', 1),
+    let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || b"#_-.:".contains(byte);
+    let length = text.bytes().skip(1).take_while(is_part).count();
+    match text.as_bytes().get(1 + length) {
+        Some(b';') if length > 0 => (resolve(&text[1..1 + length]).unwrap_or('\u{fffd}'), length + 2),
+        _ => ('&', 1),
     }
 }
 
@@ -226,7 +204,7 @@ pub(super) fn resolve(inside: &str) -> Option<char> {
     }
 }
 
-/// Whether XML 1.0 allows the character.
+/// True if XML 1.0 allows the character.
 pub(super) fn is_char(character: char) -> bool {
     matches!(character, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..)
 }

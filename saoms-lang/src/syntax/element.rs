@@ -1,0 +1,368 @@
+//! Views of elements.
+
+use std::borrow::Cow;
+
+use super::Attribute;
+use super::document::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, Node, XMLNS};
+use super::token::{
+    BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, HAS_TEXT, Token, TokenKind, UNNAMED, UNSURE_TEXT,
+};
+use super::value;
+use crate::source::{Located, Location, Span, Text};
+
+/// An element of a document; as cheap to copy as a reference.
+#[derive(Clone, Copy, Debug)]
+pub struct Element<'a> {
+    pub(super) document: &'a Document,
+    pub(super) id: ElementId,
+}
+
+impl<'a> Element<'a> {
+    #[inline]
+    fn node(self) -> &'a Node {
+        &self.document.elements[self.id.0 as usize]
+    }
+
+    #[inline]
+    fn start_tag(self) -> Token {
+        self.document.tokens[self.node().token as usize]
+    }
+
+    #[inline]
+    fn has(self, flags: u8) -> bool {
+        self.start_tag().flags & flags != 0
+    }
+
+    fn near(self, id: u32) -> Self {
+        Self { document: self.document, id: ElementId(id) }
+    }
+
+    /// Its identifier in its document.
+    #[inline]
+    pub fn id(self) -> ElementId {
+        self.id
+    }
+
+    /// The document.
+    #[inline]
+    pub fn document(self) -> &'a Document {
+        self.document
+    }
+
+    /// The name as written, with its prefix.
+    #[inline]
+    pub fn name(self) -> &'a str {
+        slice(self.document, self.name_span())
+    }
+
+    /// The name without its prefix.
+    #[inline]
+    pub fn local_name(self) -> &'a str {
+        split(self.name()).1
+    }
+
+    /// The prefix as written.
+    pub fn prefix(self) -> Option<&'a str> {
+        split(self.name()).0
+    }
+
+    /// The namespace; empty for none.
+    pub fn namespace(self) -> &'a str {
+        &self.document.namespaces[self.node().namespace as usize]
+    }
+
+    /// From the `<` of the start tag to behind the `>` of the end tag.
+    pub fn span(self) -> Span {
+        let behind = self.node().end as usize + usize::from(self.is_closed());
+        Span::new(self.start_tag().start, self.document.tokens[behind].start)
+    }
+
+    /// From the `<` to behind the `>` of the start tag.
+    pub fn start_tag_span(self) -> Span {
+        self.document.token_span(self.node().token)
+    }
+
+    /// The end tag; `None` where there is none, as for `<a/>`.
+    pub fn end_tag_span(self) -> Option<Span> {
+        (self.is_closed() && !self.is_empty()).then(|| self.document.token_span(self.node().end))
+    }
+
+    /// The name in the start tag.
+    #[inline]
+    pub fn name_span(self) -> Span {
+        let Node { name, name_len, .. } = *self.node();
+        Span::new(name, name + name_len)
+    }
+
+    /// Where the name in the start tag is.
+    #[inline]
+    pub fn name_location(self) -> Location {
+        self.name_span().in_file(self.document.file)
+    }
+
+    /// From behind the start tag to before the end tag; empty, at the end, for `<a/>`.
+    #[inline]
+    pub fn content_span(self) -> Span {
+        let start = self.start_tag_span().end;
+        if self.is_empty() {
+            Span::empty(start)
+        } else {
+            Span::new(start, self.document.tokens[self.node().end as usize].start)
+        }
+    }
+
+    /// True if its end tag was found, or none is needed.
+    #[inline]
+    pub fn is_closed(self) -> bool {
+        self.has(CLOSED)
+    }
+
+    /// True if the start tag ends with `>`.
+    pub fn has_whole_start_tag(self) -> bool {
+        !self.has(BROKEN_OFF)
+    }
+
+    /// True if attributes, or what is directly inside, may be missing because of a fault of the text, or may be meant otherwise. That
+    /// something is missing here says nothing.
+    #[inline]
+    pub fn is_damaged(self) -> bool {
+        self.has(DAMAGED_TAG | DAMAGED_CONTENT | UNSURE_TEXT)
+    }
+
+    /// True if attributes may be missing, or may be meant otherwise.
+    pub fn has_damaged_tag(self) -> bool {
+        self.has(DAMAGED_TAG)
+    }
+
+    /// True if elements directly inside may be missing, or may belong elsewhere.
+    pub fn has_damaged_content(self) -> bool {
+        self.has(DAMAGED_CONTENT | UNSURE_TEXT)
+    }
+
+    /// True if the name says nothing: it is none, or its prefix is bound to no namespace.
+    pub fn is_unnamed(self) -> bool {
+        self.has(UNNAMED)
+    }
+
+    /// The element it is in.
+    pub fn parent(self) -> Option<Self> {
+        let parent = self.node().parent;
+        (parent != NONE).then(|| self.near(parent))
+    }
+
+    /// The elements directly inside, in order.
+    #[inline]
+    pub fn children(self) -> impl Iterator<Item = Self> + use<'a> {
+        let end = self.node().after;
+        let first = self.id.0 + 1;
+        std::iter::successors((first < end).then(|| self.near(first)), move |child| {
+            let next = child.node().after;
+            (next < end).then(|| self.near(next))
+        })
+    }
+
+    /// Itself and everything inside, in document order.
+    pub fn descendants(self) -> impl Iterator<Item = Self> + use<'a> {
+        (self.id.0..self.node().after).map(move |id| self.near(id))
+    }
+
+    fn raw_attributes(self) -> &'a [super::start_tag::RawAttribute] {
+        let Document { elements, attributes, .. } = self.document;
+        let end =
+            elements.get(self.id.0 as usize + 1).map_or(attributes.len(), |next| next.attributes as usize);
+        &attributes[self.node().attributes as usize..end]
+    }
+
+    pub(super) fn count_of_attributes(self) -> usize {
+        self.raw_attributes().len()
+    }
+
+    /// All that is written in its start tag: attributes, declarations of namespaces, and what may be one of them.
+    pub fn written_attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        self.raw_attributes().iter().map(move |raw| Attribute { document: self.document, raw })
+    }
+
+    /// Its attributes in order, without declarations of namespaces and without those of which name or value are unknown.
+    pub fn attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        self.written_attributes().filter(|one| one.raw.namespace != XMLNS && one.is_sure())
+    }
+
+    /// Its attributes whose names are known, and perhaps their values.
+    pub(crate) fn named_attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        self.written_attributes().filter(|one| one.raw.namespace != XMLNS && one.has_sure_name())
+    }
+
+    /// Its declarations of namespaces (`xmlns`, `xmlns:a`) in order.
+    pub fn namespace_declarations(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
+        self.written_attributes().filter(|one| one.raw.namespace == XMLNS && one.is_sure())
+    }
+
+    /// The attribute of this name in no namespace.
+    #[inline]
+    pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
+        self.attributes().find(|one| one.raw.namespace == NO_NAMESPACE && one.name() == name)
+    }
+
+    /// The attribute of this name in this namespace.
+    pub fn attribute_in(self, namespace: &str, local_name: &str) -> Option<Attribute<'a>> {
+        self.attributes().find(|one| one.local_name() == local_name && one.namespace() == namespace)
+    }
+
+    /// The namespace that `prefix` is bound to here; "" asks for the default namespace. `None` when it is unbound.
+    pub fn resolve_prefix(self, prefix: &str) -> Option<Cow<'a, str>> {
+        if prefix == "xml" {
+            return Some(Cow::Borrowed(super::XML_NAMESPACE));
+        }
+        let mut here = Some(self);
+        while let Some(element) = here {
+            let found = match element.count_of_attributes() > MANY_ATTRIBUTES {
+                true => self.document.declaration(element.id, prefix),
+                false => element.declared_prefixes().find(|(known, _)| **known == *prefix).map(|(_, at)| at),
+            };
+            if let Some(at) = found {
+                let found = Attribute { document: self.document, raw: &element.raw_attributes()[at] };
+                return Some(found.value()).filter(|uri| !uri.is_empty());
+            }
+            here = element.parent();
+        }
+        None
+    }
+
+    /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the attributes.
+    pub(super) fn declared_prefixes(self) -> impl Iterator<Item = (&'a str, usize)> {
+        let all = self
+            .written_attributes()
+            .enumerate()
+            .filter(|(_, one)| one.raw.namespace == XMLNS && one.is_sure());
+        all.map(move |(at, one)| {
+            let (before, local) = split(one.name());
+            (before.map_or("", |_| local), at)
+        })
+    }
+
+    /// The name in the end tag; `None` where there is no end tag, as for `<a/>`.
+    pub fn end_name_span(self) -> Option<Span> {
+        let tag = self.end_tag_span()?;
+        let name = &self.document.text[tag.start as usize + 2..tag.end as usize];
+        let start = tag.start + 2 + (name.len() - name.trim_start().len()) as u32;
+        let length = name.trim_start().find(|c: char| c == '>' || value::is_space(c)).unwrap_or(name.len());
+        Some(Span::new(start, start + length as u32))
+    }
+
+    /// True for `<a/>`.
+    #[inline]
+    pub fn is_empty(self) -> bool {
+        self.start_tag().kind == TokenKind::EmptyTag
+    }
+
+    /// True if text other than white space is directly inside.
+    #[inline]
+    pub fn has_text(self) -> bool {
+        self.has(HAS_TEXT)
+    }
+
+    /// The tokens directly inside that are no tags.
+    fn own_tokens(self) -> impl Iterator<Item = (TokenKind, Span)> + use<'a> {
+        let document = self.document;
+        let Node { token, end, .. } = *self.node();
+        let mut children = self.children();
+        let mut at = token + 1;
+        std::iter::from_fn(move || {
+            while at < end {
+                let here = at;
+                at += 1;
+                let kind = document.tokens[here as usize].kind;
+                match kind {
+                    TokenKind::StartTag | TokenKind::EmptyTag => {
+                        let child = children.next()?;
+                        at = (child.node().end + u32::from(child.is_closed())).max(at);
+                    }
+                    _ => return Some((kind, document.token_span(here))),
+                }
+            }
+            None
+        })
+    }
+
+    /// The pieces of the text directly inside, each with what it means.
+    fn pieces(self) -> impl Iterator<Item = (Span, Cow<'a, str>)> + use<'a> {
+        self.own_tokens().filter_map(move |(kind, span)| {
+            let written = slice(self.document, span);
+            Some(match kind {
+                TokenKind::Space | TokenKind::Text => (span, value::character_data(written)),
+                TokenKind::Section => {
+                    let inside = written.get(9..).unwrap_or(&written[written.len()..]);
+                    let inside = inside.strip_suffix("]]>").unwrap_or(inside);
+                    let start = span.start + offset(written, inside);
+                    (Span::new(start, start + inside.len() as u32), value::line_ends(inside))
+                }
+                TokenKind::Error if written == "<" => (span, Cow::Borrowed(written)),
+                _ => return None,
+            })
+        })
+    }
+
+    /// The text directly inside, without that of inner elements: references resolved, line ends as LF.
+    pub fn text(self) -> Cow<'a, str> {
+        let mut text = Cow::Borrowed("");
+        for (_, piece) in self.pieces() {
+            if text.is_empty() {
+                text = piece;
+            } else {
+                text.to_mut().push_str(&piece);
+            }
+        }
+        text
+    }
+
+    /// From the first to behind the last character of the text directly inside, white space at both ends not
+    /// counted; `None` when there is nothing but white space.
+    #[inline]
+    pub fn text_span(self) -> Option<Span> {
+        if !self.has_text() {
+            return None;
+        }
+        let trimmed = |span: Span| {
+            let written = slice(self.document, span);
+            let text = value::trim(written);
+            let start = span.start + offset(written, text);
+            (!text.is_empty()).then(|| Span::new(start, start + text.len() as u32))
+        };
+        let mut pieces = self.pieces().filter_map(|(span, _)| trimmed(span));
+        let first = pieces.next()?;
+        Some(Span::new(first.start, pieces.last().unwrap_or(first).end))
+    }
+
+    /// The text directly inside without white space at its ends, and where it is; `None` when there is none, or it is unknown.
+    #[inline]
+    pub fn trimmed_text(self) -> Option<Text> {
+        if !self.has_text() || self.has(UNSURE_TEXT) {
+            return None;
+        }
+        let Node { token, end, .. } = *self.node();
+        let span = self.document.token_span(token + 1);
+        let written = slice(self.document, span);
+        let (text, span) = if end == token + 2 && value::is_literal(written) {
+            let text = value::trim(written);
+            let start = span.start + offset(written, text);
+            (text.into(), Span::new(start, start + text.len() as u32))
+        } else {
+            (value::trim(&self.text()).into(), self.text_span()?)
+        };
+        Some(Located::new(text, span.in_file(self.document.file)))
+    }
+}
+
+pub(super) fn slice(document: &Document, span: Span) -> &str {
+    &document.text[span.start as usize..span.end as usize]
+}
+
+/// Where in `whole` its part `part` starts.
+pub(super) fn offset(whole: &str, part: &str) -> u32 {
+    (part.as_ptr() as usize - whole.as_ptr() as usize) as u32
+}
+
+/// A name into its prefix and its local part.
+pub(super) fn split(name: &str) -> (Option<&str>, &str) {
+    name.split_once(':').map_or((None, name), |(prefix, local)| (Some(prefix), local))
+}

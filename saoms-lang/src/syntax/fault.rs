@@ -1,0 +1,100 @@
+//! Faults of a text, as diagnostics.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::{FileId, Span};
+
+/// The most faults that are kept of one text.
+const MOST: usize = 1000;
+
+/// The faults found so far.
+#[derive(Debug, Default)]
+pub(super) struct Faults(Vec<Diagnostic>);
+
+impl Faults {
+    /// Adds a fault, which is not even put together when there are too many.
+    pub(super) fn add(&mut self, make: impl FnOnce() -> Diagnostic) {
+        if self.0.len() < MOST {
+            self.0.push(make());
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Forgets those behind the first `count`.
+    pub(super) fn truncate(&mut self, count: usize) {
+        self.0.truncate(count);
+    }
+
+    /// The faults in the order of their places.
+    pub(super) fn into_sorted(mut self) -> Vec<Diagnostic> {
+        self.0.sort_by_key(|one| one.location.span.start);
+        self.0
+    }
+}
+
+/// The text that is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Input<'a> {
+    pub(super) file: FileId,
+    pub(super) text: &'a str,
+}
+
+impl<'a> Input<'a> {
+    pub(super) fn bytes(self) -> &'a [u8] {
+        self.text.as_bytes()
+    }
+
+    pub(super) fn len(self) -> u32 {
+        self.text.len() as u32
+    }
+
+    pub(super) fn slice(self, start: u32, end: u32) -> &'a str {
+        &self.text[start as usize..end as usize]
+    }
+
+    pub(super) fn byte(self, at: u32) -> Option<u8> {
+        self.bytes().get(at as usize).copied()
+    }
+
+    /// The first byte at or behind `at` that is no white space, or the end.
+    pub(super) fn skip_space(self, at: u32) -> u32 {
+        let rest = &self.bytes()[at as usize..];
+        let space = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t' | b'\r' | b'\n'));
+        at + space.count() as u32
+    }
+
+    /// The first `byte` at or behind `at`.
+    pub(super) fn find(self, byte: u8, at: u32) -> Option<u32> {
+        memchr::memchr(byte, &self.bytes()[at as usize..]).map(|length| at + length as u32)
+    }
+
+    /// A diagnostic at the bytes from `start` to `end`.
+    pub(super) fn fault(
+        self,
+        code: &'static Code,
+        start: u32,
+        end: u32,
+        message: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic::new(code, Span::new(start, end).in_file(self.file), message)
+    }
+
+    /// The diagnostic for a text that ends inside something that starts at `start`.
+    pub(super) fn ended(
+        self,
+        code: &'static Code,
+        start: u32,
+        end: u32,
+        message: impl Into<String>,
+    ) -> Diagnostic {
+        let behind = Span::empty(self.len()).in_file(self.file);
+        self.fault(code, start, end, message).label(behind, "the file ends here")
+    }
+
+    /// Where the character at byte `at` ends.
+    pub(super) fn character_end(self, at: u32) -> u32 {
+        self.text.ceil_char_boundary(at as usize + 1) as u32
+    }
+}

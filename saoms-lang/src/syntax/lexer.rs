@@ -1,0 +1,235 @@
+//! The lexer: cuts a text into tokens.
+
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+use super::characters::{Survey, is_blank};
+use super::document::{NONE, Node};
+use super::fault::{Faults, Input};
+use super::start_tag::RawAttribute;
+use super::token::{DAMAGED_TAG, Token, TokenKind, UNNAMED, UNSURE_TEXT};
+use super::{prolog, reference};
+use crate::diagnostic::codes;
+use crate::source::Span;
+
+/// The tokens of a text, with an element for each start tag.
+pub(super) struct Lexer<'a> {
+    pub(super) input: Input<'a>,
+    pub(super) tokens: Vec<Token>,
+    pub(super) elements: Vec<Node>,
+    pub(super) attributes: Vec<RawAttribute>,
+    pub(super) faults: Faults,
+    /// True if a comment or the like is never closed, so that the rest of the text is in it.
+    pub(super) is_cut_short: bool,
+    /// True if quick-xml found a document type declaration without an end: behind it, no other has one.
+    has_open_doctype: bool,
+}
+
+impl<'a> Lexer<'a> {
+    pub(super) fn new(input: Input<'a>, survey: &Survey) -> Self {
+        // Lists that grow have room for twice as much. The shortest are `<a>` and ` a=""`.
+        let length = input.text.len();
+        Self {
+            input,
+            tokens: Vec::with_capacity(survey.tokens.min(length / 2) + 4),
+            elements: Vec::with_capacity(survey.starts.min(length / 3) + 1),
+            attributes: Vec::with_capacity(survey.equals.min(length / 5)),
+            faults: Faults::default(),
+            is_cut_short: false,
+            has_open_doctype: false,
+        }
+    }
+
+    pub(super) fn run(&mut self) {
+        let bytes = self.input.bytes();
+        let mut at = 0;
+        if self.input.text.starts_with('\u{feff}') {
+            self.push(0, TokenKind::Mark, 0);
+            at = 3;
+        }
+        while let Some(&first) = bytes.get(at as usize) {
+            at = match (first, bytes.get(at as usize + 1)) {
+                (b'<', Some(b'/')) => self.end_tag(at),
+                (b'<', Some(b'!' | b'?')) => self.other_markup(at),
+                (b'<', _) => self.start_tag(at),
+                _ => self.text(at),
+            };
+        }
+        if self.elements.is_empty() {
+            // Every tree has a root.
+            self.push_element(at, TokenKind::EmptyTag, DAMAGED_TAG | UNNAMED, Span::empty(at));
+        }
+        self.push(at, TokenKind::End, 0);
+    }
+
+    pub(super) fn push(&mut self, start: u32, kind: TokenKind, flags: u8) {
+        self.tokens.push(Token { start, kind, flags });
+    }
+
+    /// Adds a start tag without its attributes, which follow, and its element.
+    pub(super) fn push_element(&mut self, start: u32, kind: TokenKind, flags: u8, name: Span) {
+        let token = self.tokens.len() as u32;
+        self.push(start, kind, flags);
+        self.elements.push(Node {
+            token,
+            end: token,
+            parent: NONE,
+            after: NONE,
+            attributes: self.attributes.len() as u32,
+            name: name.start,
+            name_len: name.len(),
+            namespace: 0,
+        });
+    }
+
+    /// Reads an end tag; gives where it ends. To which element it belongs is found later.
+    fn end_tag(&mut self, start: u32) -> u32 {
+        let input = self.input;
+        let (name, close) = end_name(input, start);
+        self.push(start, TokenKind::EndTag, 0);
+        let is_nameless = name.start > start + 2 || name.is_empty();
+        match input.byte(close) {
+            None => {
+                let message = "this end tag is never closed";
+                self.faults.add(|| input.ended(&codes::XML_UNCLOSED, start, name.end, message));
+                self.is_cut_short = true;
+                close
+            }
+            Some(byte) => {
+                if is_nameless {
+                    let message = "an end tag is `</`, the name of the element, and `>`";
+                    self.faults.add(|| input.fault(&codes::XML_NAME, start, start + 2, message));
+                } else if byte != b'>' {
+                    self.faults.add(|| {
+                        let message = format!("{} is misplaced in an end tag", input.shown(close));
+                        let end = input.character_end(close);
+                        let one = input.fault(&codes::XML_SYNTAX, close, end, message);
+                        one.help("an end tag holds nothing but the name of the element")
+                    });
+                }
+                let rest = &input.bytes()[close as usize..];
+                match memchr::memchr2(b'<', b'>', rest) {
+                    Some(length) if rest[length] == b'>' => close + length as u32 + 1,
+                    _ => name.end,
+                }
+            }
+        }
+    }
+
+    /// Reads comments, instructions, CDATA sections and the like, whose ends quick-xml finds.
+    fn other_markup(&mut self, start: u32) -> u32 {
+        let input = self.input;
+        let is_doctype = prolog::starts_doctype(input.slice(start, input.len()));
+        if is_doctype && self.has_open_doctype {
+            return self.broken_markup(start);
+        }
+        let mut reader = Reader::from_str(&input.text[start as usize..]);
+        let event = reader.read_event();
+        let end = start + reader.buffer_position() as u32;
+        match event {
+            Ok(Event::CData(_)) => self.push(start, TokenKind::Section, 0),
+            Ok(Event::Comment(_)) => {
+                self.push(start, TokenKind::Comment, 0);
+                if let Some(one) = prolog::comment(input, start, end) {
+                    self.faults.add(|| one);
+                }
+            }
+            Ok(Event::PI(_) | Event::Decl(_)) => {
+                self.push(start, TokenKind::Instruction, 0);
+                if let Some(one) = prolog::instruction(input, start, end) {
+                    self.faults.add(|| one);
+                }
+            }
+            Ok(Event::DocType(_)) => {
+                self.push(start, TokenKind::Doctype, 0);
+                self.faults.add(|| prolog::doctype(input, start, start + 9));
+            }
+            _ => {
+                self.has_open_doctype |= is_doctype;
+                return self.broken_markup(start);
+            }
+        }
+        end
+    }
+
+    /// Reads markup that quick-xml cannot read to its end.
+    fn broken_markup(&mut self, start: u32) -> u32 {
+        let input = self.input;
+        let kind = prolog::kind(input.slice(start, input.len()));
+        if kind.is_some() || !self.has_open_doctype {
+            self.faults.add(|| prolog::broken(input, start));
+        }
+        match kind {
+            Some(kind @ (TokenKind::Comment | TokenKind::Section | TokenKind::Instruction)) => {
+                self.push(start, kind, UNSURE_TEXT);
+                self.is_cut_short = true;
+                input.len()
+            }
+            Some(kind) => {
+                self.push(start, kind, UNSURE_TEXT);
+                input.find(b'>', start).map_or(input.len(), |close| close + 1)
+            }
+            None => {
+                self.push(start, TokenKind::Error, UNSURE_TEXT);
+                let rest = &input.bytes()[start as usize + 2..];
+                match memchr::memchr2(b'<', b'>', rest) {
+                    Some(length) if rest[length] == b'>' => start + 2 + length as u32 + 1,
+                    _ => start + 2,
+                }
+            }
+        }
+    }
+
+    /// Reads character data up to the next `<`.
+    fn text(&mut self, start: u32) -> u32 {
+        let input = self.input;
+        let end = input.find(b'<', start).unwrap_or(input.len());
+        let bytes = &input.bytes()[start as usize..end as usize];
+        if is_blank(bytes) {
+            self.push(start, TokenKind::Space, 0);
+            return end;
+        }
+        let mut flags = 0;
+        let mut at = start;
+        while let Some(length) = memchr::memchr2(b'&', b']', &input.bytes()[at as usize..end as usize]) {
+            at += length as u32;
+            if input.byte(at) == Some(b'&') {
+                match reference::check(input, at) {
+                    Ok(behind) => at = behind,
+                    Err(fault) => {
+                        flags |= if fault.is_unknown() { UNSURE_TEXT } else { 0 };
+                        self.faults.add(|| fault.diagnostic(input));
+                        at += 1;
+                    }
+                }
+                continue;
+            }
+            if input.text[at as usize..].starts_with("]]>") {
+                self.faults.add(|| {
+                    let message = "`]]>` in text, which XML allows only to end a CDATA section";
+                    let place = Span::new(at, at + 3).in_file(input.file);
+                    let one = input.fault(&codes::XML_SYNTAX, at, at + 3, message);
+                    one.suggest("replace it with `]]&gt;`", place, "]]&gt;")
+                });
+            }
+            at += 1;
+        }
+        self.push(start, TokenKind::Text, flags);
+        end
+    }
+}
+
+/// The name in an end tag, and the first byte behind it that is no white space.
+pub(super) fn end_name(input: Input<'_>, start: u32) -> (Span, u32) {
+    let mut from = start + 2;
+    let mut end = from + super::names::name_length(&input.bytes()[from as usize..]) as u32;
+    if end == from {
+        // `</ a>`
+        let behind = input.skip_space(from);
+        let length = super::names::name_length(&input.bytes()[behind as usize..]) as u32;
+        if length > 0 && input.byte(input.skip_space(behind + length)) == Some(b'>') {
+            (from, end) = (behind, behind + length);
+        }
+    }
+    (Span::new(from, end), input.skip_space(end))
+}

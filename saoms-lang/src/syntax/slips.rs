@@ -1,0 +1,211 @@
+//! Faults of tags, with what is probably meant.
+
+use super::fault::Input;
+use super::names::{is_qualified_name, name_length};
+use super::start_tag::RawAttribute;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::source::Span;
+
+impl Input<'_> {
+    /// The character at a byte, for a message.
+    pub(super) fn shown(self, at: u32) -> String {
+        match self.text[at as usize..].chars().next() {
+            Some(' ' | '\t' | '\r' | '\n') => "white space".to_owned(),
+            Some(character) => quoted(character.encode_utf8(&mut [0; 4])),
+            None => "the end of the file".to_owned(),
+        }
+    }
+}
+
+/// The fault of a `<` without a name behind it.
+pub(super) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
+    let message = match input.byte(start + 1) {
+        Some(_) => {
+            format!("{} cannot follow `<`: the name of an element is expected", input.shown(start + 1))
+        }
+        None => "the file ends behind `<`".to_owned(),
+    };
+    let location = Span::new(start, start + 1).in_file(input.file);
+    input
+        .fault(&codes::XML_NAME, start, start + 1, message)
+        .help("write `&lt;` for the character itself")
+        .suggest("replace `<` with `&lt;`", location, "&lt;")
+}
+
+/// The fault of a name that is none; `what` it is of.
+pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Option<Diagnostic> {
+    let name = input.slice(start, end);
+    if is_qualified_name(name) {
+        return None;
+    }
+    if let Some((length, odd)) = odd_space(name) {
+        let at = start + length as u32;
+        let end = at + odd.len_utf8() as u32;
+        let code = u32::from(odd);
+        let (kind, meant) = if odd.is_whitespace() { ("a blank", " ") } else { ("nothing", "") };
+        let message = format!("U+{code:04X}, which looks like {kind}, in the name of an {what}");
+        let one = input.fault(&codes::XML_NAME, at, end, message);
+        let description = if meant.is_empty() { "remove it" } else { "replace it with a blank" };
+        return Some(one.suggest(description, Span::new(at, end).in_file(input.file), meant));
+    }
+    let message = format!("{} is no name for an {what}", quoted(name));
+    let help = if name.contains(':') {
+        "a name has at most one colon, with a prefix before and a name behind it"
+    } else {
+        "a name starts with a letter or `_` and goes on with letters, digits, `-`, `_` and `.`"
+    };
+    Some(input.fault(&codes::XML_NAME, start, end, message).help(help))
+}
+
+/// The first character of a name that looks like a blank, or like nothing, and where it is.
+pub(super) fn odd_space(name: &str) -> Option<(usize, char)> {
+    let is_odd = |c: char| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{2060}' | '\u{feff}');
+    name.char_indices().find(|(_, c)| is_odd(*c))
+}
+
+/// The fault of an attribute without a value; with a quote at `quote_at`, it lacks a `=` alone.
+pub(super) fn without_value(
+    input: Input<'_>,
+    start: u32,
+    name_end: u32,
+    quote_at: Option<u32>,
+) -> Diagnostic {
+    let name = input.slice(start, name_end);
+    let message = format!("the attribute {} has no value", quoted(name));
+    let one = input.fault(&codes::XML_ATTRIBUTE, start, name_end, message);
+    match quote_at {
+        Some(at) => one.suggest("insert `=`", Span::new(name_end, at).in_file(input.file), "="),
+        None => one.help(format!("write {}", quoted(&format!("{name}=\"...\"")))),
+    }
+}
+
+/// The fault of `name: "value"`, as other languages write it.
+pub(super) fn colon(input: Input<'_>, start: u32, name_end: u32, next: u32) -> Option<Diagnostic> {
+    let name = input.slice(start, name_end).strip_suffix(':').filter(|name| !name.is_empty())?;
+    if !matches!(input.byte(next), Some(b'"' | b'\'')) {
+        return None;
+    }
+    let message = format!("`:` stands between {} and its value, and not `=`", quoted(name));
+    let one = input.fault(&codes::XML_ATTRIBUTE, name_end - 1, name_end, message);
+    let place = Span::new(name_end - 1, next).in_file(input.file);
+    Some(one.suggest("replace `:` with `=`", place, "="))
+}
+
+/// The fault of a value without quotes at `at`, and how long the value is.
+pub(super) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32) -> (Diagnostic, u32) {
+    let name = quoted(input.slice(one.start, one.start + one.name_len));
+    let rest = &input.text[at as usize..];
+    let stop = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n' | '>' | '<' | '"' | '\'' | '/' | '&');
+    let length = rest.find(stop).unwrap_or(rest.len()) as u32;
+    let message = format!("the value of {name} is not in quotes");
+    if length == 0 {
+        return (input.fault(&codes::XML_ATTRIBUTE, at, input.character_end(at), message), 0);
+    }
+    let word = input.slice(at, at + length);
+    let fault = input.fault(&codes::XML_ATTRIBUTE, at, at + length, message);
+    let place = Span::new(at, at + length).in_file(input.file);
+    (fault.suggest("put it in quotes", place, format!("\"{word}\"")), length)
+}
+
+/// The fault of a value that is open at a `<`: its quote is missing before the end of the tag, or the character is meant.
+pub(super) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -> Diagnostic {
+    let name = quoted(name);
+    let (quote, value) = (input.slice(quote_at, quote_at + 1), input.slice(quote_at + 1, at));
+    if let Some(length) = value.find('>') {
+        let inside = &value[..length];
+        let inside = inside.strip_suffix('/').unwrap_or(inside).trim_end();
+        let end = quote_at + 1 + inside.len() as u32;
+        let message = format!("the value of {name} is not closed");
+        let one = input.fault(&codes::XML_ATTRIBUTE, quote_at, end, message);
+        let one = one.label(Span::new(at, at + 1).in_file(input.file), "`<` cannot stand in a value");
+        let other = inside.ends_with(['"', '\'']);
+        let place = Span::new(end - u32::from(other), end).in_file(input.file);
+        let description = match other {
+            true => format!("replace {} with {}", quoted(&inside[inside.len() - 1..]), quoted(quote)),
+            false => format!("close it with {}", quoted(quote)),
+        };
+        return one.suggest(description, place, quote);
+    }
+    let message = format!("`<` in the value of {name}");
+    let one = input
+        .fault(&codes::XML_ATTRIBUTE, at, at + 1, message)
+        .label(Span::new(quote_at, quote_at + 1).in_file(input.file), "the value starts here");
+    if closed_behind(input, quote_at, at).is_some() {
+        return one.suggest("replace `<` with `&lt;`", Span::new(at, at + 1).in_file(input.file), "&lt;");
+    }
+    one.help("close the value before, or write `&lt;` for the character itself")
+}
+
+/// Where a value with a `<` at `at` is closed, if that surely is its quote.
+pub(super) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32) -> Option<u32> {
+    if input.slice(quote_at, at).contains('>') {
+        return None;
+    }
+    let quote = input.byte(quote_at)?;
+    let behind = &input.bytes()[at as usize + 1..];
+    let length = memchr::memchr3(quote, b'<', b'>', behind)?;
+    (behind[length] == quote).then_some(at + 1 + length as u32)
+}
+
+/// Where a value without a closing quote ends, where its tag goes on, and whether it surely ends there.
+pub(super) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
+    let start = quote_at + 1;
+    let rest = &input.text[start as usize..];
+    let mut length = 0;
+    let mut found = None;
+    while let Some(next) = memchr::memchr3(b'\n', b'>', b'<', &rest.as_bytes()[length..]) {
+        length += next;
+        let byte = rest.as_bytes()[length];
+        let is_tag =
+            rest[length + 1..].starts_with(|c: char| c.is_alphabetic() || matches!(c, '_' | '/' | '!' | '?'));
+        if byte != b'<' || is_tag {
+            found = Some(byte);
+            break;
+        }
+        length += 1;
+    }
+    let line = if found.is_some() { &rest[..length] } else { rest };
+    let line = line.strip_suffix('/').filter(|_| found == Some(b'>')).unwrap_or(line).trim_end();
+    // A quote of the other kind was to close it.
+    let value = line.strip_suffix(['"', '\'']).unwrap_or(line);
+    let start_of = |text: &str| start + text.len() as u32;
+    (start_of(value), start_of(line), found == Some(b'>'))
+}
+
+/// The fault of a value that is closed by the quote at `end`, with which the next attribute starts: `a="b c="d"`. Also where the value
+/// should end.
+pub(super) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, u32)> {
+    let value = input.slice(quote_at + 1, end);
+    let next = value.strip_suffix('=')?;
+    let (before, name) = next.rsplit_once([' ', '\t', '\r', '\n'])?;
+    if name.is_empty() || name_length(name.as_bytes()) < name.len() {
+        return None;
+    }
+    let before = before.trim_end();
+    let end = quote_at + 1 + before.len() as u32;
+    let message = format!("this value is not closed before {}", quoted(name));
+    let one = input.fault(&codes::XML_ATTRIBUTE, quote_at, end, message);
+    let quote = input.slice(quote_at, quote_at + 1);
+    let place = Span::empty(end).in_file(input.file);
+    Some((one.suggest(format!("close it with {}", quoted(quote)), place, quote), end))
+}
+
+/// The fault of the second of two attributes that are the same.
+pub(super) fn duplicate(
+    input: Input<'_>,
+    first: &RawAttribute,
+    second: &RawAttribute,
+    namespace: Option<&str>,
+) -> Diagnostic {
+    let here = second.name_span();
+    let name = quoted(input.slice(here.start, here.end));
+    let message = match namespace {
+        None => format!("the attribute {name} is given twice"),
+        Some(uri) => format!("the attribute {name} is given twice: both prefixes are of {}", quoted(uri)),
+    };
+    let before = input.slice(0, second.start).trim_end_matches([' ', '\t', '\r', '\n']).len() as u32;
+    input
+        .fault(&codes::XML_DUPLICATE_ATTRIBUTE, here.start, here.end, message)
+        .label(first.name_span().in_file(input.file), "first given here")
+        .suggest(format!("remove the second {name}"), Span::new(before, second.end()).in_file(input.file), "")
+}

@@ -1,0 +1,125 @@
+//! Faults of start and end tags that do not fit.
+
+use super::fault::Input;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::source::{Location, Span};
+
+/// An element, for a message.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Named<'a> {
+    pub(super) name: &'a str,
+    /// The name in the start tag.
+    pub(super) at: Span,
+    pub(super) start_tag: Span,
+}
+
+/// Elements of composites and those that they stand in; looked at only where tags do not fit.
+const HOLDERS: &[(&str, &[&str])] = &[
+    ("component", &["composite"]),
+    ("include", &["composite"]),
+    ("wire", &["composite"]),
+    ("property", &["component", "composite", "loop"]),
+    ("service", &["component", "composite"]),
+    ("reference", &["component", "composite"]),
+    ("loop", &["component"]),
+    ("implementation.", &["component"]),
+    ("interface.", &["service", "reference"]),
+    ("binding.", &["service", "reference", "callback"]),
+    ("callback", &["service", "reference"]),
+];
+
+/// The elements that one of this name, without its prefix, can stand in.
+pub(super) fn holders(name: &str) -> Option<&'static [&'static str]> {
+    let is_meant = |known: &str| name == known || (known.ends_with('.') && name.starts_with(known));
+    HOLDERS.iter().find(|(known, _)| is_meant(known)).map(|(_, holders)| *holders)
+}
+
+/// True if others stand in an element of this name, without its prefix.
+pub(super) fn is_holder(name: &str) -> bool {
+    HOLDERS.iter().any(|(_, holders)| holders.contains(&name))
+}
+
+/// A name without its prefix.
+pub(super) fn local(name: &str) -> &str {
+    name.split_once(':').map_or(name, |(_, local)| local)
+}
+
+/// The fault of an end tag where that of `open` is expected.
+pub(super) fn mismatch(input: Input<'_>, found: &str, tag: Span, open: Named<'_>) -> Diagnostic {
+    let expected = format!("</{}>", open.name);
+    let message = format!("{} found where {} is expected", quoted(&format!("</{found}>")), quoted(&expected));
+    let one = input.fault(&codes::XML_TAG_MISMATCH, tag.start, tag.end, message);
+    one.label(open.at.in_file(input.file), format!("{} is open", quoted(open.name)))
+}
+
+/// The suggestion to write the end tag of the open element instead.
+pub(super) fn replaced(one: Diagnostic, tag: Location, open: Named<'_>) -> Diagnostic {
+    let close = format!("</{}>", open.name);
+    one.suggest(format!("replace it with {}", quoted(&close)), tag, close)
+}
+
+/// The suggestion to close the open element before the end tag at `end` of one around it.
+pub(super) fn closed_first(
+    input: Input<'_>,
+    one: Diagnostic,
+    end: u32,
+    open: Named<'_>,
+    is_bare: bool,
+) -> Diagnostic {
+    let name = quoted(open.name);
+    if is_bare {
+        let slash = Span::empty(open.start_tag.end - 1).in_file(input.file);
+        return one.suggest(format!("end {name} with `/>`"), slash, "/");
+    }
+    let place = Span::empty(end).in_file(input.file);
+    one.suggest(format!("close {name} first"), place, format!("</{}>", open.name))
+}
+
+/// The fault of `outer`, which is not closed before `inner`.
+pub(super) fn not_closed(input: Input<'_>, outer: Named<'_>, inner: Named<'_>) -> Diagnostic {
+    let (file, name) = (input.file, quoted(outer.name));
+    let close = format!("</{}>", outer.name);
+    let message = format!("{name} is not closed before {}", quoted(inner.name));
+    let one = input.fault(&codes::XML_UNCLOSED, outer.at.start, outer.at.end, message);
+    let one = one.label(inner.at.in_file(file), "this stands beside it, and not in it");
+    let text = input.text;
+    let inside = input.slice(outer.start_tag.end, inner.start_tag.start);
+    if inside.trim().is_empty() {
+        let slash = Span::empty(outer.start_tag.end - 1).in_file(file);
+        return one.suggest(format!("end {name} with `/>`"), slash, "/");
+    }
+    let end = outer.start_tag.end + inside.trim_end().len() as u32;
+    let line = text[..outer.start_tag.start as usize].rfind('\n').map_or(0, |at| at + 1);
+    let indent = &text[line..outer.start_tag.start as usize];
+    let is_long = inside.trim_end().contains('\n') && indent.trim().is_empty();
+    let close = if is_long { format!("\n{indent}{close}") } else { close };
+    one.suggest(format!("close {name}"), Span::empty(end).in_file(file), close)
+}
+
+/// The fault of a start tag that is meant as the end tag of `open`.
+pub(super) fn start_for_end(input: Input<'_>, tag: Named<'_>, open: Named<'_>) -> Diagnostic {
+    let close = format!("</{}>", open.name);
+    let found = quoted(&format!("<{}>", tag.name));
+    let message = format!("{found} found where {} is expected", quoted(&close));
+    let place = tag.start_tag.in_file(input.file);
+    let one = Diagnostic::new(&codes::XML_TAG_MISMATCH, place, message);
+    let one = one.label(open.at.in_file(input.file), format!("{} is open", quoted(open.name)));
+    one.suggest(format!("replace it with {}", quoted(&close)), place, close)
+}
+
+/// The fault of text beside the root element.
+pub(super) fn outside(input: Input<'_>, place: Span, root: Option<Named<'_>>) -> Diagnostic {
+    let message = "text outside of the root element";
+    let one = input.fault(&codes::XML_OUTSIDE_ROOT, place.start, place.end, message);
+    match root {
+        None => one.help("a file is one element; before it only comments and instructions can stand"),
+        Some(root) => one.label(root.at.in_file(input.file), "the root element"),
+    }
+}
+
+/// The fault of a second element beside the root.
+pub(super) fn second_root(input: Input<'_>, second: Named<'_>, root: Named<'_>) -> Diagnostic {
+    let message = "a second root element: a file is one element";
+    let one = input.fault(&codes::XML_OUTSIDE_ROOT, second.at.start, second.at.end, message);
+    one.label(root.at.in_file(input.file), "the first root element")
+}

@@ -1,0 +1,562 @@
+use std::sync::Arc;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::source::{FileId, Sources, Span};
+
+fn tree(text: &str) -> Document {
+    let parsed = parse(FileId(0), &Arc::new(text.into()));
+    assert!(parsed.faults.is_empty(), "{text}: {:?}", parsed.faults);
+    parsed.document
+}
+
+/// The faults as `line:column [marked text] code message`, each with its suggestion.
+fn fault(text: &str) -> String {
+    let mut sources = Sources::new();
+    let file = sources.add("t", text);
+    let faults = parse(file, sources.get(file).text()).faults;
+    assert!(!faults.is_empty(), "{text}");
+    let shown = faults.iter().map(|one| {
+        let place = sources.get(file).line_column(one.location.span.start);
+        let marked = sources.snippet(one.location);
+        let mut out = format!("{}:{} [{marked}] {} {}", place.line, place.column, one.code.id, one.message);
+        for suggestion in &one.suggestions {
+            out.push_str(&format!(" | {}", suggestion.description));
+        }
+        out
+    });
+    shown.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_tree_knows_its_places() {
+    let text = "\u{feff}<?xml version='1.0'?><!--c--><a:r xmlns:a = \"u\" a:x='1'\n y=\"2\"><b/> t <c>u</c ></a:r>\n";
+    let document = tree(text);
+    let slice = |span: Span| &text[span.start as usize..span.end as usize];
+    let root = document.root();
+    assert_eq!(
+        (root.name(), root.prefix(), root.local_name(), root.namespace()),
+        ("a:r", Some("a"), "r", "u")
+    );
+    assert_eq!(slice(root.name_span()), "a:r");
+    assert_eq!(slice(root.start_tag_span()), "<a:r xmlns:a = \"u\" a:x='1'\n y=\"2\">");
+    assert_eq!(slice(root.content_span()), "<b/> t <c>u</c >");
+    let attributes: Vec<_> =
+        root.attributes().map(|one| (one.name(), one.namespace(), one.value())).collect();
+    assert_eq!(attributes, [("a:x", "u", "1".into()), ("y", "", "2".into())]);
+    let y = root.attribute("y").unwrap();
+    assert_eq!((slice(y.span()), slice(y.name_span()), slice(y.value_span())), ("y=\"2\"", "y", "2"));
+    assert_eq!(root.attribute_in("u", "x").unwrap().name(), "a:x");
+    assert!(root.attribute("x").is_none());
+    let declared: Vec<_> = root.namespace_declarations().map(|one| slice(one.span())).collect();
+    assert_eq!(declared, ["xmlns:a = \"u\""]);
+    let children: Vec<_> = root.children().map(|child| slice(child.span())).collect();
+    assert_eq!(children, ["<b/>", "<c>u</c >"]);
+    assert_eq!((root.text(), slice(root.text_span().unwrap())), (" t ".into(), "t"));
+    let inner = document.element_at(text.find("u</c").unwrap() as u32);
+    assert_eq!((inner.name(), inner.parent().unwrap().id()), ("c", root.id()));
+    assert_eq!(inner.namespace(), "");
+    assert_eq!(document.element_at(0).id(), root.id());
+}
+
+#[test]
+fn values_are_normalised_as_xml_says() {
+    let document = tree(
+        "<a v='1\t2\r\n3\n4&#10;5&lt;&#x3C;&quot;é'>x\r\ny\rz&amp;<!--c--><![CDATA[<&amp;>]]><?p?>w</a>",
+    );
+    assert_eq!(document.root().attribute("v").unwrap().value(), "1 2 3 4\n5<<\"é");
+    assert_eq!(document.root().text(), "x\ny\nz&<&amp;>w");
+}
+
+#[test]
+fn text_has_a_place_without_the_blanks_and_comments_around_it() {
+    let shown = |text: &str| {
+        let document = tree(text);
+        document.root().text_span().map(|span| text[span.start as usize..span.end as usize].to_owned())
+    };
+    assert_eq!(shown("<a> \n x y \t</a>").as_deref(), Some("x y"));
+    assert_eq!(shown("<a> <!-- x --> x <b>y</b> z <?p?> </a>").as_deref(), Some("x <b>y</b> z"));
+    assert_eq!(shown("<a> <![CDATA[ x ]]> </a>").as_deref(), Some("x"));
+    assert_eq!(shown("<a>&#65;</a>").as_deref(), Some("&#65;"));
+    assert_eq!(shown("<a> <!-- x --> <![CDATA[ ]]> <b>y</b></a>"), None);
+}
+
+#[test]
+fn prefixes_hold_where_they_are_declared() {
+    let document =
+        tree("<a xmlns='d' xmlns:p='1'><p:b xmlns:p='2' xmlns=''><c p:x=''/></p:b><p:d xml:lang='en'/></a>");
+    let all: Vec<_> = document.elements().map(|one| (one.local_name(), one.namespace())).collect();
+    assert_eq!(all, [("a", "d"), ("b", "2"), ("c", ""), ("d", "1")]);
+    let c = document.elements().nth(2).unwrap();
+    assert_eq!(c.attributes().next().unwrap().namespace(), "2");
+    assert_eq!(c.resolve_prefix("p").as_deref(), Some("2"));
+    assert_eq!(c.resolve_prefix(""), None);
+    assert_eq!(document.root().resolve_prefix("").as_deref(), Some("d"));
+    assert_eq!(document.root().resolve_prefix("q"), None);
+    let d = document.elements().nth(3).unwrap();
+    assert_eq!(d.attributes().next().unwrap().namespace(), XML_NAMESPACE);
+    assert_eq!(d.resolve_prefix("xml").as_deref(), Some(XML_NAMESPACE));
+    let many: String = (0..40).map(|at| format!(" xmlns:p{at}='{at}'")).collect();
+    let document = tree(&format!("<a xmlns='d'{many} p7='x'><b xmlns:p8='n'/></a>"));
+    let b = document.elements().nth(1).unwrap();
+    let namespaces = ["p7", "p8", "p39", "", "p40"].map(|prefix| b.resolve_prefix(prefix));
+    let namespaces = namespaces.each_ref().map(|one| one.as_deref().unwrap_or("none"));
+    assert_eq!(namespaces, ["7", "n", "39", "d", "none"]);
+}
+
+#[test]
+fn what_is_not_well_formed_is_found_at_its_place() {
+    const CASES: &[&str] = &[
+        "<a",
+        "<a b='",
+        "<a>x",
+        "<a><b></a>",
+        "<a><b>x</a>",
+        "<a><b/></b></a>",
+        "<a><long/></long></a>",
+        "<a><long/>x</long></a>",
+        "<a></A>",
+        "<a/></a>",
+        "<a/><b/>",
+        "<a/> x",
+        "x y <a/>",
+        "&lt;<a/>",
+        "<a/><![CDATA[x]]>",
+        "<!-- c -->",
+        "<a b='1' b='2'/>",
+        "<a xmlns:p='u' xmlns:q='u' p:b='' q:b=''/>",
+        "<a b='<'/>",
+        "<a b='1 < 2/></a>",
+        "<a b='1><c/></a>",
+        "<a b='1\"/><c/></a>",
+        "<a b='1 c='2'/>",
+        "<a b '1'/>",
+        "<a b: '1'/>",
+        "<a b='1', c='2'/>",
+        "<a\u{a0}b='1'/>",
+        "<a b\u{200b}='1'/>",
+        "<a b/>",
+        "<a b=c/>",
+        "<a b='1'c='2'/>",
+        "<a /b>",
+        "<a =''/>",
+        "<a <b/></a>",
+        "<a>< b/></a>",
+        "<1/>",
+        "<a:b:c/>",
+        "<:a/>",
+        "<a -b=''/>",
+        "<a></ a>",
+        "<a></a b=''>",
+        "<a></a",
+        "<a>&nbsp;</a>",
+        "<a>&AMP;</a>",
+        "<a>a & b</a>",
+        "<a b='x&y'/>",
+        "<a>&#0;</a>",
+        "<a>&#xD800;</a>",
+        "<a>&#X41;</a>",
+        "<a>&#1114112;</a>",
+        "<a>]]></a>",
+        "<a><!-- x -- y --></a>",
+        "<a><!-- x ---></a>",
+        "<a><!-- x </a>",
+        "<a><![CDATA[ x </a>",
+        "<a><?p x </a>",
+        "<a><!x></a>",
+        "<!DOCTYPE a><a/>",
+        "<!DOCTYPE a [<!ENTITY x '<a/>",
+        "<!doctype a><a/>",
+        "<a><?xml version='1.0'?></a>",
+        "<?xml?><a/>",
+        "<?xml encoding='UTF-8'?><a/>",
+        "<?xml version='2.0'?><a/>",
+        "<?xml version='1.0' encoding='-'?><a/>",
+        "<?xml version='1.0'encoding='x'?><a/>",
+        "<?xml version='1.0' standalone='no' encoding='x'?><a/>",
+        "<?xml version='1.0' standalone='maybe'?><a/>",
+        "<?xml version='1.0' x?><a/>",
+        "<?XML x?><a/>",
+        "<?1?><a/>",
+        "<p:a/>",
+        "<a p:b=''/>",
+        "<a xsi:type=''/>",
+        "<a xmlns:scx='u'><sca:b/></a>",
+        "<a><b xmlns:p='u'/><p:c/></a>",
+        "<a xmlns:p=''/>",
+        "<a xmlns:xmlns='u'/>",
+        "<a xmlns:xml='u'/>",
+        "<a xmlns='http://www.w3.org/2000/xmlns/'/>",
+        "<xmlns:a/>",
+        "<",
+    ];
+    let shown = CASES.iter().map(|text| format!("{text}\n    {}\n", fault(text).replace('\n', "\n    ")));
+    expect_test::expect![[r#"
+        <a
+            1:2 [a] S0103 the start tag of `a` is never closed
+        <a b='
+            1:6 ['] S0103 the value of `b` is never closed
+        <a>x
+            1:2 [a] S0103 `a` is never closed
+        <a><b></a>
+            1:7 [</a>] S0102 `</a>` found where `</b>` is expected | end `b` with `/>`
+        <a><b>x</a>
+            1:8 [</a>] S0102 `</a>` found where `</b>` is expected | close `b` first
+        <a><b/></b></a>
+            1:8 [</b>] S0102 `</b>` found where `</a>` is expected | remove it
+        <a><long/></long></a>
+            1:11 [</long>] S0102 `</long>` found where `</a>` is expected | remove it
+        <a><long/>x</long></a>
+            1:12 [</long>] S0102 `</long>` found where `</a>` is expected | remove its `/`
+        <a></A>
+            1:4 [</A>] S0102 `</A>` found where `</a>` is expected | replace it with `</a>`
+        <a/></a>
+            1:5 [</a>] S0102 `</a>` closes nothing: no element is open
+        <a/><b/>
+            1:6 [b] S0104 a second root element: a file is one element
+        <a/> x
+            1:6 [x] S0104 text outside of the root element
+        x y <a/>
+            1:1 [x y] S0104 text outside of the root element
+        &lt;<a/>
+            1:1 [&lt;] S0104 text outside of the root element
+        <a/><![CDATA[x]]>
+            1:5 [<![CDATA[x]]>] S0104 text outside of the root element
+        <!-- c -->
+            1:11 [] S0101 the file holds no element
+        <a b='1' b='2'/>
+            1:10 [b] S0106 the attribute `b` is given twice | remove the second `b`
+        <a xmlns:p='u' xmlns:q='u' p:b='' q:b=''/>
+            1:35 [q:b] S0106 the attribute `q:b` is given twice: both prefixes are of `u` | remove the second `q:b`
+        <a b='<'/>
+            1:7 [<] S0105 `<` in the value of `b` | replace `<` with `&lt;`
+        <a b='1 < 2/></a>
+            1:9 [<] S0105 `<` in the value of `b`
+            1:14 [</a>] S0102 `</a>` closes nothing: no element is open
+        <a b='1><c/></a>
+            1:6 ['1] S0105 the value of `b` is not closed | close it with `'`
+        <a b='1"/><c/></a>
+            1:6 ['1"] S0105 the value of `b` is not closed | replace `"` with `'`
+            1:12 [c] S0104 a second root element: a file is one element
+        <a b='1 c='2'/>
+            1:6 ['1] S0105 this value is not closed before `c` | close it with `'`
+        <a b '1'/>
+            1:4 [b] S0105 the attribute `b` has no value | insert `=`
+        <a b: '1'/>
+            1:5 [:] S0105 `:` stands between `b` and its value, and not `=` | replace `:` with `=`
+        <a b='1', c='2'/>
+            1:9 [,] S0101 `,` is misplaced in the start tag of `a` | remove `,`
+        <a b='1'/>
+            1:3 [ ] S0107 U+00A0, which looks like a blank, in the name of an element | replace it with a blank
+        <a b\u{200b}='1'/>
+            1:5 [\u{200b}] S0107 U+200B, which looks like nothing, in the name of an attribute | remove it
+        <a b/>
+            1:4 [b] S0105 the attribute `b` has no value
+        <a b=c/>
+            1:6 [c] S0105 the value of `b` is not in quotes | put it in quotes
+        <a b='1'c='2'/>
+            1:9 [c] S0105 white space is missing between two attributes | insert a blank
+        <a /b>
+            1:4 [/] S0101 `/` is misplaced in the start tag of `a`
+        <a =''/>
+            1:4 [=] S0101 `=` is misplaced in the start tag of `a`
+        <a <b/></a>
+            1:4 [<] S0103 the start tag of `a` is not closed before the next `<`
+        <a>< b/></a>
+            1:4 [<] S0107 white space cannot follow `<`: the name of an element is expected | replace `<` with `&lt;`
+        <1/>
+            1:2 [1] S0107 `1` is no name for an element
+        <a:b:c/>
+            1:2 [a:b:c] S0107 `a:b:c` is no name for an element
+        <:a/>
+            1:2 [:a] S0107 `:a` is no name for an element
+        <a -b=''/>
+            1:4 [-b] S0107 `-b` is no name for an attribute
+        <a></ a>
+            1:4 [</] S0107 an end tag is `</`, the name of the element, and `>`
+        <a></a b=''>
+            1:8 [b] S0101 `b` is misplaced in an end tag
+        <a></a
+            1:4 [</a] S0103 this end tag is never closed
+        <a>&nbsp;</a>
+            1:4 [&nbsp;] S0109 `&nbsp;` is no entity that is known here
+        <a>&AMP;</a>
+            1:4 [&AMP;] S0109 `&AMP;` is no entity that is known here | replace `&AMP;` with `&amp;`
+        <a>a & b</a>
+            1:6 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
+        <a b='x&y'/>
+            1:8 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
+        <a>&#0;</a>
+            1:4 [&#0;] S0109 `&#0;` is no character that XML allows
+        <a>&#xD800;</a>
+            1:4 [&#xD800;] S0109 `&#xD800;` is no character that XML allows
+        <a>&#X41;</a>
+            1:4 [&#X41;] S0109 `&#X41;` is no character that XML allows
+        <a>&#1114112;</a>
+            1:4 [&#1114112;] S0109 `&#1114112;` is no character that XML allows
+        <a>]]></a>
+            1:4 []]>] S0101 `]]>` in text, which XML allows only to end a CDATA section | replace it with `]]&gt;`
+        <a><!-- x -- y --></a>
+            1:11 [--] S0101 `--` inside a comment | write single dashes
+        <a><!-- x ---></a>
+            1:11 [--] S0101 `--` inside a comment | write single dashes
+        <a><!-- x </a>
+            1:4 [<!--] S0103 this comment is never closed
+        <a><![CDATA[ x </a>
+            1:4 [<![CDATA[] S0103 this CDATA section is never closed
+        <a><?p x </a>
+            1:4 [<?] S0103 this processing instruction is never closed
+        <a><!x></a>
+            1:4 [<!] S0101 `<!` starts a comment (`<!--`) or a CDATA section (`<![CDATA[`), and nothing else here
+        <!DOCTYPE a><a/>
+            1:1 [<!DOCTYPE] S0110 a document type declaration is not allowed here
+        <!DOCTYPE a [<!ENTITY x '<a/>
+            1:1 [<!DOCTYPE] S0110 a document type declaration is not allowed here
+        <!doctype a><a/>
+            1:1 [<!doctype] S0110 a document type declaration is not allowed here
+        <a><?xml version='1.0'?></a>
+            1:4 [<?xml version='1.0'?>] S0111 the XML declaration stands at the very start of a file, and only there
+        <?xml?><a/>
+            1:3 [xml] S0111 an XML declaration starts with its version
+        <?xml encoding='UTF-8'?><a/>
+            1:3 [xml] S0111 an XML declaration starts with its version
+        <?xml version='2.0'?><a/>
+            1:16 [2.0] S0111 `2.0` is no value of version in an XML declaration
+        <?xml version='1.0' encoding='-'?><a/>
+            1:31 [-] S0111 `-` is no value of encoding in an XML declaration
+        <?xml version='1.0'encoding='x'?><a/>
+            1:20 [encoding] S0111 `encoding` is misplaced in the XML declaration
+        <?xml version='1.0' standalone='no' encoding='x'?><a/>
+            1:37 [encoding] S0111 `encoding` is misplaced in the XML declaration
+        <?xml version='1.0' standalone='maybe'?><a/>
+            1:33 [maybe] S0111 `maybe` is no value of standalone in an XML declaration
+        <?xml version='1.0' x?><a/>
+            1:21 [x] S0111 this is no declaration of version, encoding or standalone
+        <?XML x?><a/>
+            1:3 [XML] S0111 `XML` is reserved: an instruction cannot have this name
+        <?1?><a/>
+            1:1 [<?1] S0107 a processing instruction is `<?`, a name, white space, anything, and `?>`
+        <p:a/>
+            1:2 [p] S0112 the prefix `p` is bound to no namespace
+        <a p:b=''/>
+            1:4 [p] S0112 the prefix `p` is bound to no namespace
+        <a xsi:type=''/>
+            1:4 [xsi] S0112 the prefix `xsi` is bound to no namespace | declare it in the root element: `xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"`
+        <a xmlns:scx='u'><sca:b/></a>
+            1:19 [sca] S0112 the prefix `sca` is bound to no namespace | replace `sca` with `scx`
+        <a><b xmlns:p='u'/><p:c/></a>
+            1:21 [p] S0112 the prefix `p` is bound to no namespace
+        <a xmlns:p=''/>
+            1:4 [xmlns:p=''] S0112 a prefix cannot be bound to no namespace
+        <a xmlns:xmlns='u'/>
+            1:4 [xmlns:xmlns='u'] S0112 the prefix `xmlns` cannot be declared
+        <a xmlns:xml='u'/>
+            1:4 [xmlns:xml='u'] S0112 the prefix `xml` stands for its own namespace and for no other
+        <a xmlns='http://www.w3.org/2000/xmlns/'/>
+            1:4 [xmlns='http://www.w3.org/2000/xmlns/'] S0112 nothing can be bound to the namespace of declarations
+        <xmlns:a/>
+            1:2 [xmlns] S0112 the prefix `xmlns` is bound to no namespace
+        <
+            1:1 [<] S0107 the file ends behind `<` | replace `<` with `&lt;`
+    "#]].assert_eq(&shown.collect::<String>().replace('\u{200b}', "\\u{200b}"));
+}
+
+#[test]
+fn a_fault_before_a_forbidden_character_comes_first() {
+    assert_eq!(
+        fault("<a>\u{1}</a>"),
+        "1:4 [\u{1}] S0108 the character U+0001 is not allowed in XML | remove it"
+    );
+    assert_eq!(
+        fault("<a b='\u{ffff}'/>"),
+        "1:7 [\u{ffff}] S0108 the character U+FFFF is not allowed in XML | remove it"
+    );
+    assert!(fault("<a/>\u{0}").starts_with("1:5"));
+    assert!(fault("<a></b>\u{0}").contains("S0102"));
+    let far = format!("<a>{}\u{2}", "x\n".repeat(500));
+    assert!(fault(&far).contains("501:1 [\u{2}]"));
+    tree("<a>\u{7f}\u{fffd}\u{e000}\u{10ffff}\u{ef}</a>");
+}
+
+#[test]
+fn what_looks_odd_and_is_fine() {
+    for text in [
+        "<a>]] > ]></a>",
+        "<a b='>' c=\"'\" d='\"'/>",
+        "<é:ö xmlns:é='u' é:ü='1'/>",
+        "<a\n\tb = '1'\r\n/>",
+        "<a></a \n>",
+        "<!---->\n<a><!-- - --></a><?p?>",
+        "<a><![CDATA[]]></a>",
+        "<a><![CDATA[<!--]]]]></a>",
+        "<a><?p <x> ??></a>",
+        "<?xml version = \"1.0\" encoding='ISO-8859-1' standalone='yes' ?><a/>",
+        "<?xml version='1.1'?><a/>",
+        "<a xmlns:xml='http://www.w3.org/XML/1998/namespace'/>",
+        "<a xmlns:p='u' b='' p:b=''/>",
+        "<a xmlns='' xmlns:p='u'/>",
+        "<a>&#x0000000000000000000000000000000000000000000000000000000000000000000041;</a>",
+        "<?xml-stylesheet href='x'?><a/>",
+        "<xmlish/>",
+        "<a xmlnsx='1'/>",
+    ] {
+        tree(text);
+    }
+}
+
+/// The elements of a text, indented by depth, with what can be relied on: attributes, `?` behind a doubtful one, text, and `!` where an element
+/// is damaged.
+fn shown(text: &str) -> String {
+    let mut out = String::new();
+    let document = parse(FileId(0), &Arc::new(text.into())).document;
+    for element in document.elements() {
+        out.push_str(&"  ".repeat(std::iter::successors(element.parent(), |one| one.parent()).count()));
+        out.push_str(element.name());
+        for one in element.written_attributes() {
+            let doubt = if one.is_sure() { "" } else { "?" };
+            let value = if one.has_value() { format!("='{}'", one.value()) } else { String::new() };
+            out.push_str(&format!(" {}{value}{doubt}", one.name()));
+        }
+        let text = element.trimmed_text().map(|text| format!(" [{text}]")).unwrap_or_default();
+        let end = if element.is_closed() { "" } else { " unclosed" };
+        out.push_str(&format!("{text}{end}{}\n", if element.is_damaged() { " !" } else { "" }));
+    }
+    out
+}
+
+#[test]
+fn a_tree_goes_on_behind_faults() {
+    expect_test::expect![[r#"
+        a
+          b x='1' [t]
+          c [u]
+            d !
+    "#]]
+    .assert_eq(&shown("<a><b x='1'>t</b><c>u<d>&nope;</d></c></a>"));
+}
+
+/// The tokens tile any text, and what the tree says of it is inside of it.
+#[track_caller]
+fn is_lossless(text: &str) {
+    let Parse { document, faults } = parse(FileId(0), &Arc::new(text.into()));
+    let tokens: String =
+        document.tokens().map(|(_, span)| &text[span.start as usize..span.end as usize]).collect();
+    assert_eq!(tokens, text);
+    for (_, span) in document.tokens() {
+        assert!(!span.is_empty() || text.is_empty() || document.root().name().is_empty(), "{text:?}");
+    }
+    for element in document.elements() {
+        let (span, tag, content) = (element.span(), element.start_tag_span(), element.content_span());
+        assert!(span.contains(tag) && span.contains(content), "{text:?}");
+        let mut end = tag.start;
+        for one in element.written_attributes() {
+            assert!(tag.contains(one.span()) && one.span().start >= end, "{text:?} {}", one.name());
+            assert!(one.span().contains(one.value_span()), "{text:?}");
+            end = one.span().end;
+            let _ = (one.value(), one.trimmed(), one.namespace(), one.words().count());
+        }
+        for child in element.children() {
+            assert_eq!(child.parent().map(Element::id), Some(element.id()), "{text:?}");
+            assert!(child.id() > element.id(), "{text:?}");
+        }
+        let _ = (
+            element.text(),
+            element.trimmed_text(),
+            element.text_span(),
+            element.end_name_span(),
+            element.namespace(),
+        );
+    }
+    for fault in &faults {
+        assert!(fault.location.span.end as usize <= text.len(), "{text:?}");
+        let _ = &text[fault.location.span.start as usize..fault.location.span.end as usize];
+        for edit in fault.suggestions.iter().flat_map(|one| &one.edits) {
+            let _ = &text[edit.location.span.start as usize..edit.location.span.end as usize];
+        }
+    }
+    let sound = roxmltree::Document::parse(text).is_ok();
+    assert!(sound || !faults.is_empty(), "{text:?} is not well-formed");
+}
+
+#[test]
+fn any_part_of_a_text_keeps_every_byte() {
+    let text = "\u{feff}<?xml version='1.0'?><c xmlns:p='u' a='1 < 2' b=\"x\ty' z>t &amp; &x; <![CDATA[<]]> <!--c--> <d e='&'/f> <p:c></d> ]]> </c ></ü \u{1}";
+    let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).chain([text.len()]).collect();
+    for &start in &starts {
+        for &end in starts.iter().filter(|&&end| end >= start) {
+            is_lossless(&text[start..end]);
+        }
+    }
+}
+
+const PIECES: [&str; 40] = [
+    "<composite>",
+    "</composite>",
+    "<component name='a'>",
+    "<component",
+    "</component>",
+    "<property name='p'>",
+    "</property>",
+    "<property>",
+    "</properti>",
+    "<wire source='",
+    "<",
+    ">",
+    "/>",
+    "</",
+    "'",
+    "\"",
+    "=",
+    " ",
+    "\n",
+    "a",
+    "b='1'",
+    "b=2",
+    "&",
+    "&amp;",
+    "&x;",
+    "<!--",
+    "-->",
+    "<![CDATA[",
+    "]]>",
+    "<?p",
+    "?>",
+    "<!DOCTYPE",
+    "[",
+    "p:",
+    "xmlns:p='u'",
+    "\u{2028}",
+    "\u{1}",
+    "<!x>",
+    "ä",
+    "\u{201c}",
+];
+
+proptest! {
+    #[test]
+    fn every_byte_is_kept(pieces in prop::collection::vec(0..PIECES.len(), 0..30)) {
+        let text: String = pieces.into_iter().map(|piece| PIECES[piece]).collect();
+        is_lossless(&text);
+    }
+}
+
+/// Depth, width and length cost time in proportion; a test that hangs or overflows the stack fails.
+#[test]
+fn neither_depth_nor_width_matters() {
+    let depth = 1_000_000;
+    let deep = format!("{}{}", "<a>".repeat(depth), "</a>".repeat(depth));
+    let document = tree(&deep);
+    assert_eq!(document.root().descendants().count(), depth);
+    assert_eq!(document.element_at(3 * depth as u32).id().0 as usize, depth - 1);
+    assert!(fault(&"<a>".repeat(depth / 10)).contains("S0103"));
+    let scopes: String = (0..100_000).map(|n| format!("<p0:a xmlns:p{n}='u{n}'>")).collect();
+    assert!(fault(&scopes).contains("S0103"));
+    let attributes: String = (0..100_000).map(|n| format!(" a{n}=''")).collect();
+    assert_eq!(tree(&format!("<a{attributes}/>")).root().attributes().count(), 100_000);
+    assert!(fault(&format!("<a{attributes} a7=''/>")).contains("S0106"));
+    let flat = format!("<a>{}</a>", "<b/>t&amp;".repeat(100_000));
+    let document = tree(&flat);
+    assert_eq!(document.root().children().count(), 100_000);
+    assert_eq!(document.root().text().len(), 200_000);
+}
