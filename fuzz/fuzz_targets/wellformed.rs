@@ -1,4 +1,4 @@
-//! What is well-formed, and what it holds, is what another XML parser says.
+//! Compares the well-formedness and the content of a file with another XML parser.
 
 #![no_main]
 

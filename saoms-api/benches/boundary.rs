@@ -1,7 +1,8 @@
-//! What it costs that a component lies behind the boundary to plugins: `cargo bench -p saoms-api --bench boundary`.
+//! Cost of the boundary to plugins: `cargo bench -p saoms-api --bench boundary`.
 //!
-//! The best of 999, in ns: an empty execution called directly and through the tables of C functions that a library exports, and a message of
-//! 128 bytes from its sender's value to its reader's value, the component on one side and the host on the other.
+//! The best of 999, in ns: an empty execution called directly and through the tables of C functions that a library
+//! exports, and a message of 128 bytes from its sender's value to its reader's value, the component on one side and the
+//! host on the other.
 
 #![expect(clippy::unwrap_used, reason = "a benchmark ends with what it did not expect")]
 

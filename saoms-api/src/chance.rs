@@ -2,8 +2,8 @@ use std::ops::{Bound, RangeBounds};
 
 /// A source of chance: small, fast, and the same on every machine for the same seed. Not for secrets.
 ///
-/// The generator is xoshiro256++ 1.0 (Blackman and Vigna, "Scrambled linear pseudorandom number generators", 2021), its state filled by
-/// SplitMix64, as its authors advise.
+/// The generator is xoshiro256++ 1.0 (Blackman and Vigna, "Scrambled linear pseudorandom number generators", 2021), its
+/// state filled by SplitMix64, as its authors advise.
 ///
 /// ```
 /// use saoms_api::Chance;

@@ -1,25 +1,26 @@
 use crate::host::{Invocation, LoopRegistration};
 use crate::{CallError, Context, Failure, Properties, Saved};
 
-/// What an author writes: a component of a fleet.
+/// A component of a fleet, written by an author.
 ///
 /// The host calls, always from one thread at a time and never twice at once:
 ///
-/// 1. [`new`](Component::new) with the properties of the composite. It may refuse values that do not fit together; it does no work, opens
-///    nothing and sends nothing, because the checker constructs components that will never run.
-/// 2. [`initialize`](Component::initialize) once, when the component is scheduled: it asks for its topics and references.
+/// 1. [`new`](Component::new) with the properties of the composite. It may refuse values that do not fit together; it
+///    does no work, opens nothing and sends nothing, because the checker constructs components that will never run.
+/// 2. [`initialize`](Component::initialize) once, when the component is scheduled: it asks for its topics and
+///    references.
 /// 3. [`execute`](Component::execute) once in each period. Messages that it sends leave when it returns.
 /// 4. [`shutdown`](Component::shutdown) once, when the component is unscheduled or the run ends.
 ///
 /// A component that is scheduled again, or restarted after a failure, is a new one from [`new`](Component::new) on.
 ///
 /// # Failures
-/// An `Err` and a panic from `initialize`, `execute` or `shutdown` are the same to the host: the component has failed, the report says so,
-/// and its `restart` policy decides. Other components go on.
+/// An `Err` and a panic from `initialize`, `execute` or `shutdown` are the same to the host: the component has failed,
+/// the report says so, and its `restart` policy decides. Other components go on.
 ///
 /// # Blocking
-/// `execute` must not wait for anything. An execution beyond the watchdog's budget is reported, and from then on the component runs on
-/// a worker thread, where it is less punctual:
+/// `execute` must not wait for anything. An execution beyond the watchdog's budget is reported, and from then on the
+/// component runs on a worker thread, where it is less punctual:
 ///
 /// ```
 /// # use std::time::Duration;
@@ -31,7 +32,7 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 /// # type Properties = ();
 /// # fn new((): ()) -> Result<Self, Failure> { Err("only an example".into()) }
 /// fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-///     std::thread::sleep(self.drive_time); // wrong: nobody else can run, or this component loses its punctuality
+///     std::thread::sleep(self.drive_time); // wrong: no other component can run, or this one becomes late
 ///     context.send(&self.arrived, Arrived)
 /// }
 /// # }
@@ -56,14 +57,14 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 /// # }
 /// ```
 pub trait Component: Send + Sized + 'static {
-    /// What the composite can set.
+    /// Properties that the composite sets.
     type Properties: Properties;
 
     /// Makes the component.
     ///
     /// # Errors
-    /// The values do not fit together; the message says which and why. [`Finding`](crate::Finding)s are shown in the composite at the
-    /// very values, or parts of values, that they are about, all of them at once.
+    /// The values do not fit together; the message says which and why. [`Finding`](crate::Finding)s are shown in the
+    /// composite at the very values, or parts of values, that they are about, all of them at once.
     fn new(properties: Self::Properties) -> Result<Self, Failure>;
 
     /// Asks for topics and references.
@@ -84,7 +85,7 @@ pub trait Component: Send + Sized + 'static {
         Ok(())
     }
 
-    /// Ends the work; what it sends still leaves.
+    /// Ends the work; messages sent here are still delivered.
     ///
     /// # Errors
     /// The component could not end properly.
@@ -93,9 +94,10 @@ pub trait Component: Send + Sized + 'static {
         Ok(())
     }
 
-    /// What a successor goes on with, when the library was built anew while the fleet runs (`saoms run --reload`): between two executions,
-    /// this is called of the one that runs, then [`initialize`](Component::initialize) and [`restore`](Component::restore) of the new one, which
-    /// takes its place. [`shutdown`](Component::shutdown) is not called. By default nothing is saved, and the new one begins anew.
+    /// Saves the state for a successor, when the library was rebuilt while the fleet runs (`saoms run --reload`):
+    /// between two executions, this is called of the one that runs, then [`initialize`](Component::initialize) and
+    /// [`restore`](Component::restore) of the new one, which takes its place. [`shutdown`](Component::shutdown) is not
+    /// called. By default nothing is saved, and the new one starts without state.
     ///
     /// ```
     /// # use saoms_api::{Component, Context, Failure, Message, Saved};
@@ -142,7 +144,8 @@ pub trait Component: Send + Sized + 'static {
 
 /// The declaration of a component, which `#[derive(Class)]` writes.
 ///
-/// The doc of the struct becomes that of the class. `#[class(...)]` takes, in any order and in one or several attributes:
+/// The doc of the struct becomes that of the class. `#[class(...)]` takes, in any order and in one or several
+/// attributes:
 ///
 /// | attribute | meaning |
 /// | --- | --- |
@@ -159,10 +162,11 @@ pub trait Component: Send + Sized + 'static {
 /// Linked classes register themselves: [`Registration::linked`](crate::host::Registration::linked) lists them.
 ///
 /// # Extending a class
-/// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the topics, services, references,
-/// knowledge and loops of the other one and those that it declares itself; composites change its loops as those of the other, and rules over
-/// fleets take it for one. It calls the functions of the other where the work of the other belongs, shutdown, save and restore included, and `flatten` gives it the
-/// same properties:
+/// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the
+/// topics, services, references, knowledge and loops of the other one and those that it declares itself; composites
+/// change its loops as those of the other, and rules over fleets take it for one. It calls the functions of the other
+/// where the work of the other belongs, shutdown, save and restore included, and `flatten` gives it the same
+/// properties:
 ///
 /// ```
 /// use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
@@ -230,7 +234,8 @@ pub trait Component: Send + Sized + 'static {
 /// }
 /// ```
 pub trait Class: Component {
-    /// Name, properties, topics, services and references as one JSON text; its shape is described in [`crate::host::declaration`].
+    /// Name, properties, topics, services and references as one JSON text; its shape is described in
+    /// [`crate::host::declaration`].
     const DECLARATION: &'static str;
     /// The loops that the declaration names.
     const LOOPS: &'static [LoopRegistration] = &[];

@@ -8,23 +8,23 @@ use crate::{
     Subscription, Time, Topic, Value, Work,
 };
 
-/// How much a log line matters.
+/// Severity of a log line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Something that the operator has to look at.
     Error,
     /// Something unexpected that the component could handle.
     Warning,
-    /// What happens, for somebody who watches.
+    /// Normal events, for an operator.
     Info,
-    /// Details, for somebody who searches.
+    /// Details, for finding faults.
     Debug,
 }
 
 /// Everything that reaches a component from outside: its messages, time, chance, the log, other components.
 ///
-/// A context lives for one call of the component. Handles ([`Publisher`], [`Subscription`], [`Reference`]) come from `initialize` and
-/// stay valid until `shutdown`.
+/// A context lives for one call of the component. Handles ([`Publisher`], [`Subscription`], [`Reference`]) come from
+/// `initialize` and stay valid until `shutdown`.
 pub struct Context<'a> {
     host: &'a mut dyn Host,
     inboxes: &'a [Vec<SharedMessage>],
@@ -36,7 +36,7 @@ impl<'a> Context<'a> {
         Context { host, inboxes }
     }
 
-    /// What the boundary to plugins lends on.
+    /// The parts that the boundary to plugins passes on.
     pub(crate) fn parts(&mut self) -> (&mut (dyn Host + 'a), &'a [Vec<SharedMessage>]) {
         (&mut *self.host, self.inboxes)
     }
@@ -46,7 +46,7 @@ impl<'a> Context<'a> {
         self.host.name()
     }
 
-    /// The component's index in the running fleet, as in the headers of what it sends.
+    /// The component's index in the running fleet, as in the headers of its messages.
     pub fn sender(&self) -> u32 {
         self.host.sender()
     }
@@ -56,12 +56,13 @@ impl<'a> Context<'a> {
         self.host.now()
     }
 
-    /// The present local date and time of day, as the time since 1970-01-01 00:00. `None` in virtual time, which has no date.
+    /// The present local date and time of day, as the time since 1970-01-01 00:00. `None` in virtual time, which has no
+    /// date.
     pub fn date(&self) -> Option<Duration> {
         self.host.date()
     }
 
-    /// When the present execution was due.
+    /// Due time of the present execution.
     pub fn due(&self) -> Time {
         self.host.due()
     }
@@ -76,7 +77,8 @@ impl<'a> Context<'a> {
         self.host.period()
     }
 
-    /// Whether a long execution should end early: the task was unscheduled with `mayInterruptIfRunning`, or the run ends.
+    /// True if a long execution should end early: the task was unscheduled with `mayInterruptIfRunning`, or the run
+    /// ends.
     pub fn cancelled(&self) -> bool {
         self.host.cancelled()
     }
@@ -102,7 +104,8 @@ impl<'a> Context<'a> {
         self.host.subscribe(&topic.declaration()).map(Subscription::new)
     }
 
-    /// Sends a message; it leaves at the end of the present execution. What `initialize` sends leaves when the whole fleet starts.
+    /// Sends a message; it leaves at the end of the present execution. What `initialize` sends leaves when the whole
+    /// fleet starts.
     ///
     /// # Errors
     /// The publisher belongs to no topic.
@@ -129,13 +132,14 @@ impl<'a> Context<'a> {
     /// A reference that the class declares, for calls. Only in `initialize`.
     ///
     /// # Errors
-    /// The class declares no reference of this name and interface. A reference without a target is no error here, but every call is.
+    /// The class declares no reference of this name and interface. A reference without a target is no error here, but
+    /// every call is.
     pub fn reference<R: Reference>(&mut self, name: &str) -> Result<R, Failure> {
         self.host.reference(name, R::INTERFACE).map(R::from_index)
     }
 
-    /// A handle for each target of a reference that the class declares as `many`, in the order of the composite; none where it
-    /// has none. Only in `initialize`.
+    /// A handle for each target of a reference that the class declares as `many`, in the order of the composite; none
+    /// where it has none. Only in `initialize`.
     ///
     /// ```
     /// use saoms_api::{Class, Component, Context, Failure, interface};
@@ -183,7 +187,7 @@ impl<'a> Context<'a> {
         Ok((0..targets).map(|target| R::from_index(first | target << TARGET_SHIFT)).collect())
     }
 
-    /// Whether the reference leads to a service.
+    /// True if the reference leads to a service.
     pub fn is_wired<R: Reference>(&self, reference: &R) -> bool {
         self.host.is_wired(reference.index())
     }
@@ -206,34 +210,36 @@ impl<'a> Context<'a> {
     }
 
     /// Tells what follows from what: the next symptom of the present loop comes from this, such as from the
-    /// [cause](Header::cause) of a message. In a component without loops, all that it writes and sends from here on does, until the next
-    /// `because` or the end of the execution.
+    /// [cause](Header::cause) of a message. In a component without loops, all that it writes and sends from here on
+    /// does, until the next `because` or the end of the execution.
     pub fn because(&mut self, cause: Cause) {
         self.host.because(cause);
     }
 
-    /// What a message that is sent now would carry as its cause: the newest record of the present loop in this execution. Where there is none
-    /// yet, what [`because`](Context::because) said, so that a component that only passes a message on keeps the chain together.
+    /// The cause that a message sent now would carry: the newest record of the present loop in this execution. If there
+    /// is none yet, the cause set by [`because`](Context::because), so that a component that only passes a message on
+    /// keeps the chain of causes.
     pub fn cause(&self) -> Cause {
         self.host.cause()
     }
 
-    /// Writes to the journal what a component without loops saw: the beginning of a chain, such as an event that no other component caused, or
-    /// what it makes of a message that it named with [`because`](Context::because). What loops find is written by themselves.
+    /// Writes to the journal what a component without loops saw: the beginning of a chain, such as an event that no
+    /// other component caused, or what it makes of a message that it named with [`because`](Context::because). The
+    /// findings of loops are written automatically.
     ///
     /// Each call is a record: write what happens, and not in each execution what goes on.
     pub fn symptom(&mut self, record: Record) {
         self.host.journal(Phase::Symptom, &record);
     }
 
-    /// Writes to the journal what a component without loops decided, because of its last [`symptom`](Context::symptom). The decisions of loops
-    /// are written by themselves.
+    /// Writes to the journal what a component without loops decided, because of its last [`symptom`](Context::symptom).
+    /// The decisions of loops are written by themselves.
     pub fn decision(&mut self, record: Record) {
         self.host.journal(Phase::Decision, &record);
     }
 
-    /// Writes to the journal what the present loop, or a component without loops, did, beyond the entries of the knowledge that it changed: those are written by
-    /// themselves.
+    /// Writes to the journal what the present loop, or a component without loops, did, beyond the entries of the
+    /// knowledge that it changed: those are written by themselves.
     pub fn effect(&mut self, record: Record) {
         self.host.journal(Phase::Effect, &record);
     }
@@ -263,7 +269,7 @@ impl<'a> Context<'a> {
         self.host.name_of(header.sender)
     }
 
-    /// Writes a line to the log, with the time and the component's name. Formatted only where somebody listens.
+    /// Writes a line to the log, with the time and the component's name. Formatted only if an observer wants it.
     pub fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         self.host.log(level, line);
     }
@@ -278,7 +284,7 @@ impl<'a> Context<'a> {
         self.host.log(Level::Warning, line);
     }
 
-    /// Writes a line of the original's console, for `--console classic`. Formatted only where somebody listens.
+    /// Writes a line to the classic console (`--console classic`). Formatted only if an observer wants it.
     pub fn console(&mut self, line: fmt::Arguments<'_>) {
         self.host.console(line);
     }
@@ -293,8 +299,8 @@ impl<'a> Context<'a> {
         self.host.count(path, more);
     }
 
-    /// Says whether this component has work left. The run ends by itself when at least one component voted and all that voted are
-    /// [`Work::Done`].
+    /// Says whether this component has work left. The run ends by itself when at least one component voted and all that
+    /// voted are [`Work::Done`].
     pub fn vote(&mut self, work: Work) {
         self.host.vote(work);
     }

@@ -28,7 +28,7 @@ impl Failure {
         &self.message
     }
 
-    /// What is wrong where, when a constructor found the values not to fit together and said so; see [`Finding`].
+    /// Findings of a constructor about values that do not fit together; see [`Finding`].
     pub fn findings(&self) -> &[Finding] {
         &self.findings
     }
@@ -68,7 +68,8 @@ pub enum CallError {
         /// The reference as the component names it.
         reference: String,
     },
-    /// The provider is in the middle of an execution or of another call, by this caller's own chain of calls or because it is slow.
+    /// The provider is in the middle of an execution or of another call, by this caller's own chain of calls or because
+    /// it is slow.
     Busy {
         /// The component that offers the service.
         provider: String,
@@ -80,12 +81,12 @@ pub enum CallError {
     },
     /// The provider knows no such service, operation or argument types.
     Mismatch {
-        /// What did not fit.
+        /// The difference between the two.
         message: String,
     },
     /// The provider answered with a failure.
     Failed {
-        /// The component that offers the service, empty where the caller is told by the host.
+        /// The component that offers the service; empty if the host fills it in.
         provider: String,
         /// Its own words.
         failure: Failure,

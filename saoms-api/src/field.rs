@@ -2,17 +2,20 @@ use crate::Value;
 use crate::host::cdr::{DecodeError, Reader, Writer};
 use crate::host::declaration::Text;
 
-/// What a message, a service argument, a reply or an entry of a knowledge can hold: `bool`, `i8` to `i64`, `u8` to `u64`, `f32`, `f64`,
-/// `String`, `Vec`s, `Option`s, other messages, and enumerations (`#[derive(Field)]` on an enum without data).
+/// A type that a message, a service argument, a reply or an entry of a knowledge can hold: `bool`, `i8` to `i64`, `u8`
+/// to `u64`, `f32`, `f64`, `String`, `Vec`s, `Option`s, other messages, and enumerations (`#[derive(Field)]` on an enum
+/// without data).
 ///
-/// `#[field(pair)]` on a struct of two `i32` makes it a single value ([`Value::Pair`]), as which it stands in a knowledge and in the journal.
+/// `#[field(pair)]` on a struct of two `i32` makes it a single value ([`Value::Pair`]), as which it stands in a
+/// knowledge and in the journal.
 ///
 /// Authors derive it; generated code and hosts call it.
 pub trait Field: Sized + 'static {
-    /// The type as a fragment of the schema, in JSON with the names of ROS 2 interfaces: `"uint32"`, `{"sequence":"int32"}`.
+    /// The type as a fragment of the schema, in JSON with the names of ROS 2 interfaces: `"uint32"`,
+    /// `{"sequence":"int32"}`.
     const TYPE: Text;
-    /// The least number of bytes that a value takes, at least 1. A sequence that claims more elements than the bytes left can hold is
-    /// refused before anything is allocated.
+    /// The least number of bytes that a value takes, at least 1. A sequence that claims more elements than the bytes
+    /// left can hold is refused before anything is allocated.
     const LEAST_SIZE: usize;
     /// The name of the [`Value`] that stands for one, as declarations of entries say it; empty for a type without.
     const VALUE: &'static str = "";

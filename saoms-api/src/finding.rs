@@ -6,8 +6,8 @@ use crate::rule::Severity;
 
 /// A place in a composite: a component, a property of it, or a part of what the property's text says.
 ///
-/// A text is the value as the component gets it; the host knows where each of its bytes is written, entity references, CDATA
-/// sections and files included.
+/// A text is the value as the component gets it; the host knows where each of its bytes is written, entity references,
+/// CDATA sections and files included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     pub(crate) component: Option<usize>,
@@ -60,7 +60,8 @@ impl Place {
 /// use saoms_api::{Failure, Finding, Place};
 ///
 /// let plan = "go (3,1)\ngo nowhere";
-/// let finding = Finding::new(Place::property("plan").part(0, 12..19), "found `nowhere`, expected a block such as (3,10)");
+/// let place = Place::property("plan").part(0, 12..19);
+/// let finding = Finding::new(place, "found `nowhere`, expected a block such as (3,10)");
 /// assert_eq!(&plan[12..19], "nowhere");
 /// assert_eq!(
 ///     Failure::from(finding).message(),
@@ -78,7 +79,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// What was found there, and what was expected.
+    /// A finding at a place; the message tells the found and the expected value.
     pub fn new(place: Place, message: impl Into<String>) -> Finding {
         Finding {
             place,
@@ -106,7 +107,7 @@ impl Finding {
         self
     }
 
-    /// Adds a further place that explains it, with what is to be seen there.
+    /// Adds a further place that explains it, with a note.
     #[must_use]
     pub fn label(mut self, place: Place, text: impl Into<String>) -> Finding {
         self.others.reserve_exact(1);
@@ -142,7 +143,7 @@ impl Finding {
         &self.place
     }
 
-    /// What was found, and what was expected.
+    /// The message: found and expected value.
     pub fn message(&self) -> &str {
         &self.message
     }
@@ -152,17 +153,17 @@ impl Finding {
         &self.help
     }
 
-    /// What probably is meant in place of the part.
+    /// Suggested replacement of the part.
     pub fn replacement(&self) -> Option<&str> {
         self.instead.as_deref()
     }
 
-    /// Further places, with what is to be seen there.
+    /// Further places, each with a note.
     pub fn labels(&self) -> &[(Place, String)] {
         &self.others
     }
 
-    /// How bad it is, where that is other than the rule's code says.
+    /// Severity, if it differs from that of the rule's code.
     pub fn own_severity(&self) -> Option<Severity> {
         self.severity
     }

@@ -1,9 +1,10 @@
 //! The contract that authors of SAOMS components compile against.
 //!
-//! A component is a struct with properties that a composite file sets, topics that it publishes and reads, and services that it
-//! offers and needs. It implements [`Component`]; `#[derive(Class)]` declares it to the program. Everything from outside
-//! (messages, time, chance, the log, other components) reaches it through its [`Context`], so that the same component runs in
-//! real time, in virtual time, in a test, linked in, or from a library that was built separately.
+//! A component is a struct with properties that a composite file sets, topics that it publishes and reads, and services
+//! that it offers and needs. It implements [`Component`]; `#[derive(Class)]` declares it to the program. Everything
+//! from outside (messages, time, chance, the log, other components) reaches it through its [`Context`], so that the
+//! same component runs in real time, in virtual time, in a test, linked in, or from a library that was built
+//! separately.
 //!
 //! ```
 //! use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
@@ -54,8 +55,9 @@
 //! }
 //! ```
 //!
-//! Nothing in this contract relies on sharing Rust types with a separately built library: declarations are text, messages
-//! and service calls have a declared schema and a byte form ([CDR](host::cdr)) beside the shared value used inside one build.
+//! Nothing in this contract relies on sharing Rust types with a separately built library: declarations are text,
+//! messages and service calls have a declared schema and a byte form ([CDR](host::cdr)) beside the shared value used
+//! inside one build.
 
 // So that the macros' paths lead here from inside, too.
 extern crate self as saoms_api;

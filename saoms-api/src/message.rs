@@ -6,16 +6,17 @@ use std::sync::{Arc, OnceLock};
 use crate::host::cdr;
 use crate::{Cause, Field, Time};
 
-/// What components send each other. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are numbers, `bool`, `String`,
-/// `Vec`s, enumerations or other messages. `#[message(key = "field")]` names the integer field that is the key of a state topic.
+/// A message between components. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are numbers,
+/// `bool`, `String`, `Vec`s, enumerations or other messages. `#[message(key = "field")]` names the integer field that
+/// is the key of a state topic.
 pub trait Message: Field + Clone + fmt::Debug + Send + Sync + 'static {
     /// The name of the type, as tools show it.
     const NAME: &'static str;
     /// The schema as text, in the terms of ROS 2 interfaces. Equal text, equal encoding.
     const SCHEMA: &'static str;
 
-    /// The key under which a state topic keeps this message, beside those of other keys and of other publishers; `None` keeps one message per
-    /// publisher.
+    /// The key under which a state topic keeps this message, beside those of other keys and of other publishers; `None`
+    /// keeps one message per publisher.
     fn key(&self) -> Option<u64> {
         None
     }
@@ -39,22 +40,24 @@ macro_rules! keys {
 
 keys!(i8, i16, i32, i64, u8, u16, u32, u64);
 
-/// Who sent a message, and when.
+/// Sender, time and cause of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
     /// The sender's index in the running fleet.
     pub sender: u32,
-    /// When the execution that sent it was due.
+    /// Due time of the execution that sent it.
     pub sent: Time,
     /// The record of the journal that says why it was sent.
     pub cause: Cause,
 }
 
-/// A message on its way: one value, shared by all its readers, encoded at most once and only where it leaves this build of the program.
+/// A message on its way: one value, shared by all its readers, encoded at most once and only where it leaves this build
+/// of the program.
 #[derive(Clone)]
 pub struct SharedMessage(Arc<Shared<dyn Payload>>);
 
-/// What every message has stands before its value, where it is found without knowing the type.
+/// Layout of a message: the fields that every message has stand before its value, so that they are found without
+/// knowing the type.
 struct Shared<P: ?Sized> {
     header: Header,
     key: Option<u64>,
@@ -76,12 +79,13 @@ impl SharedMessage {
         SharedMessage(Arc::new(Shared { header, key, bytes, forms, payload: Arrived }))
     }
 
-    /// Who sent it, and when.
+    /// Sender, time and cause.
     pub fn header(&self) -> Header {
         self.0.header
     }
 
-    /// For hosts: whether it was shared as a value. Bytes that came from elsewhere are to be checked before they are passed on.
+    /// For hosts: whether it was shared as a value. Bytes that came from elsewhere are to be checked before they are
+    /// passed on.
     pub fn is_value(&self) -> bool {
         self.0.payload.is_value()
     }
@@ -91,8 +95,8 @@ impl SharedMessage {
         self.0.key
     }
 
-    /// The value as this Rust type. A message that arrived as bytes, or was sent by code built with another copy of the type, is
-    /// decoded once, however many readers there are. `None` when its bytes are not such a message.
+    /// The value as this Rust type. A message that arrived as bytes, or was sent by code built with another copy of the
+    /// type, is decoded once, however many readers there are. `None` when its bytes are not such a message.
     #[inline]
     pub fn get<M: Message>(&self) -> Option<&M> {
         let payload: &dyn Any = &self.0.payload;
@@ -111,7 +115,7 @@ impl SharedMessage {
         })
     }
 
-    /// The CDR form in a buffer that is used again and again: what it held is replaced, its memory is kept. For those who need the bytes only
+    /// The CDR form in a reused buffer: its content is replaced, its memory is kept. For uses that need the bytes only
     /// in passing.
     pub fn encode_into(&self, bytes: &mut Vec<u8>) {
         match self.0.bytes.get() {
@@ -131,7 +135,7 @@ impl fmt::Debug for SharedMessage {
 trait Payload: Any + Send + Sync {
     fn encode(&self, bytes: &mut Vec<u8>);
 
-    /// Whether there is a value of a Rust type, not bytes alone.
+    /// True if the message has a value of a Rust type, not bytes alone.
     fn is_value(&self) -> bool;
 }
 

@@ -17,8 +17,8 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     nearest_few(name, candidates, 1).first().copied()
 }
 
-/// The candidates that are most like `name`: one, or up to three that are equally alike. Where more are, none of them is meant rather than the
-/// others; see [`nearest`].
+/// The candidates that are most like `name`: one, or up to three that are equally alike. Where more are, none of them
+/// is meant rather than the others; see [`nearest`].
 ///
 /// ```
 /// use saoms_api::host::nearest_equal;
@@ -58,7 +58,7 @@ pub fn nearest_few<'a>(
     // The most alike so far, in order; of equal ones the first stands first.
     let mut found: Vec<(usize, &str)> = Vec::new();
     for candidate in candidates {
-        // Only what is more alike than the last of them can still matter.
+        // Only a name that is more similar than the last of them can replace it.
         let most = match found.last() {
             Some((0, _)) if found.len() >= limit => break,
             Some((last, _)) if found.len() >= limit => last - 1,
@@ -88,7 +88,7 @@ impl Folded {
         Self { set: letters(name), cut: (characters.len() / 3).max(1), characters }
     }
 
-    /// How many typing errors lie between, at most `most`; 0 is the same but for case. `None` when it is too far.
+    /// Number of typing errors between two names; 0 is equal but for case, `None` is more than `most`.
     fn distance(&self, other: &str, most: usize) -> Option<usize> {
         let len = self.characters.len();
         // Every error changes at most two letters of the set, and the length by one (four bytes at most).
@@ -117,9 +117,11 @@ fn letters(name: &str) -> u64 {
     name.chars().flat_map(char::to_lowercase).fold(0, |set, letter| set | bit(letter as u32))
 }
 
-/// The optimal string alignment distance (insertions, deletions, replacements and swaps of neighbours), as far as it is at most `most`.
+/// The optimal string alignment distance (insertions, deletions, replacements and swaps of neighbours), as far as it is
+/// at most `most`.
 ///
-/// Only what lies within `most` of the diagonal can be part of it (Ukkonen, Algorithms for approximate string matching, 1985).
+/// Only what lies within `most` of the diagonal can be part of it (Ukkonen, Algorithms for approximate string matching,
+/// 1985).
 fn typing_errors(a: &[char], b: &[char], most: usize) -> Option<usize> {
     let far = most + 1;
     let (mut before, mut row) = (vec![far; b.len() + 1], vec![far; b.len() + 1]);

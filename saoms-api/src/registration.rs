@@ -4,8 +4,8 @@ use crate::{Class, Failure, Properties};
 /// Makes a component from the values of its properties.
 type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
 
-/// What a registry needs of a class: its declaration as text, and how to construct it. `#[derive(Class)]` submits one for every class that
-/// is linked in; a registry value collects them with [`Registration::linked`].
+/// Registration of a class: its declaration as text, and its constructor. `#[derive(Class)]` submits one for every
+/// class that is linked in; a registry value collects them with [`Registration::linked`].
 #[derive(Clone, Copy, Debug)]
 pub struct Registration {
     declaration: &'static str,
@@ -31,7 +31,8 @@ impl Registration {
     /// Constructs a component from the values that its composite gives; absent ones take their defaults.
     ///
     /// # Errors
-    /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit together.
+    /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit
+    /// together.
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         (self.construct)(values)
     }

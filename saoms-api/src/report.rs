@@ -29,7 +29,7 @@ macro_rules! from {
 
 from!(bool => Bool, i64 => Integer, i32 => Integer, u32 => Integer, f64 => Float, &str => Text, String => Text);
 
-/// Whether a component has work left, for [`Context::vote`](crate::Context::vote).
+/// Vote of a component about the work that is left, for [`Context::vote`](crate::Context::vote).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
     /// There is work left.

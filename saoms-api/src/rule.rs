@@ -40,9 +40,9 @@ pub struct Code {
     pub id: &'static str,
     /// A stable name, as `unknown-attribute`.
     pub name: &'static str,
-    /// What it means, in a sentence.
+    /// Meaning in one sentence.
     pub meaning: &'static str,
-    /// How bad it is unless something says otherwise.
+    /// Default severity.
     pub severity: Severity,
     /// The rule of the SCA specification it enforces, when there is just one.
     pub rule: Option<&'static str>,
@@ -50,8 +50,8 @@ pub struct Code {
 
 /// A rule over a whole fleet, which a crate of components adds to the checker: what no component can see alone.
 ///
-/// It is asked before anything runs, and is pure: the same fleet, the same findings. Where a component has a fault of its own, only the
-/// rules are asked that can judge the others without it (see [`FleetRule::judges_parts`]).
+/// It is asked before anything runs, and is pure: the same fleet, the same findings. Where a component has a fault of
+/// its own, only the rules are asked that can judge the others without it (see [`FleetRule::judges_parts`]).
 ///
 /// ```
 /// use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
@@ -59,8 +59,10 @@ pub struct Code {
 ///
 /// /// One clock is enough.
 /// fn one_clock(fleet: &FleetView<'_>) -> Vec<Finding> {
-///     let clocks = fleet.components().iter().enumerate().filter(|(_, component)| component.class.name == "example.Clock");
-///     clocks.skip(1).map(|(index, _)| Finding::new(Place::component(index), "this is a second clock").help("keep one")).collect()
+///     let components = fleet.components().iter().enumerate();
+///     let clocks = components.filter(|(_, component)| component.class.name == "example.Clock");
+///     let finding = |index| Finding::new(Place::component(index), "this is a second clock").help("keep one");
+///     clocks.skip(1).map(|(index, _)| finding(index)).collect()
 /// }
 ///
 /// static ONE_CLOCK: FleetRule = FleetRule {
@@ -81,16 +83,17 @@ pub struct Code {
 pub struct FleetRule {
     /// The code of its findings.
     pub code: Code,
-    /// Whether what it finds holds whatever the components are that [`FleetView::misses`] tells of. A rule that looks for something that
-    /// should be there can judge whole fleets only.
+    /// True if its findings hold whatever the components are that [`FleetView::misses`] reports. A rule that looks for
+    /// something that should be there can only judge whole fleets.
     pub judges_parts: bool,
-    /// Whether no fleet starts with an error that it finds, as with robots on blocked blocks: the severity of such errors cannot be lowered.
+    /// True if a fleet with its errors cannot start, as with robots on blocked blocks: the severity of such errors
+    /// cannot be lowered.
     pub prevents_start: bool,
-    /// What it finds in a fleet.
+    /// Function that finds the faults of a fleet.
     pub check: fn(&FleetView<'_>) -> Vec<Finding>,
 }
 
-/// How rules that are linked in become known.
+/// Registration of a rule that is linked in.
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct LinkedRule(pub &'static FleetRule);
@@ -104,7 +107,8 @@ impl FleetRule {
     }
 }
 
-/// Makes rules known to the checker of every program that this crate is linked into: the paths of `static` [`FleetRule`]s.
+/// Makes rules known to the checker of every program that this crate is linked into: the paths of `static`
+/// [`FleetRule`]s.
 #[macro_export]
 macro_rules! fleet_rules {
     ($($rule:path),* $(,)?) => {
@@ -122,7 +126,7 @@ pub struct FleetView<'a> {
     facts: RefCell<Vec<(TypeId, Rc<dyn Any>)>>,
 }
 
-/// What several rules of a crate want to know about a fleet, found out once by [`FleetView::fact`].
+/// A value derived from a fleet that several rules of a crate share, computed once by [`FleetView::fact`].
 ///
 /// ```
 /// use saoms_api::rule::{Fact, FleetView};
@@ -132,7 +136,8 @@ pub struct FleetView<'a> {
 /// impl Fact for Clocks {
 ///     fn of(fleet: &FleetView<'_>) -> Clocks {
 ///         let all = fleet.components().iter().enumerate();
-///         Clocks(all.filter(|(_, component)| component.class.name == "example.Clock").map(|(index, _)| index).collect())
+///         let clocks = all.filter(|(_, component)| component.class.name == "example.Clock");
+///         Clocks(clocks.map(|(index, _)| index).collect())
 ///     }
 /// }
 ///
@@ -150,9 +155,9 @@ impl<'a> FleetView<'a> {
         FleetView { components, missing: &[], facts: RefCell::default() }
     }
 
-    /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their classes and
-    /// of those that these extend, as far as they are known. Where faults leave wires open, the classes of components that these may start
-    /// from are among them, too.
+    /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their
+    /// classes and of those that these extend, as far as they are known. Where faults leave wires open, the classes of
+    /// components that these may start from are among them, too.
     #[must_use]
     pub fn without(self, missing: &'a [Option<Vec<&'a str>>]) -> FleetView<'a> {
         FleetView { missing, ..self }
@@ -164,8 +169,8 @@ impl<'a> FleetView<'a> {
         self.missing
     }
 
-    /// Whether a component that is, or may be, of this class or one that extends it is left out for a fault of its own, or has references whose
-    /// wires are not known for a fault.
+    /// True if a component that is, or may be, of this class or one that extends it is left out for a fault of its own,
+    /// or has references whose wires are not known for a fault.
     pub fn misses<C: Class>(&self) -> bool {
         self.missing
             .iter()
@@ -218,7 +223,7 @@ impl<'a> FleetView<'a> {
     }
 }
 
-/// What the class of a component has to do with another one.
+/// Relation between the classes of two components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kinship {
     Same,
@@ -248,18 +253,19 @@ pub struct ComponentView<'a> {
     pub path: &'a str,
     /// Its class, which it shares with others of the same loops.
     pub class: Rc<ClassView<'a>>,
-    /// The values of the class's own properties, presets included; what is absent takes its default.
+    /// The values of the class's own properties, presets included; absent ones have their default.
     pub values: &'a [(SmolStr, PropertyValue)],
     /// From one execution to the next, where it is periodic.
     pub period: Option<Duration>,
-    /// Whether its messages go to a broker, where others may be that this fleet does not know.
+    /// True if its messages go to a broker, which may have users outside this fleet.
     pub has_broker: bool,
     /// Its references that are wired, and the index of the component that each leads to.
     pub wires: &'a [(&'a str, usize)],
 }
 
 impl ComponentView<'_> {
-    /// Its properties, where it is of this class. Of a component whose class extends this one they are those that the two have in common.
+    /// Its properties, where it is of this class. Of a component whose class extends this one they are those that the
+    /// two have in common.
     pub fn properties<C: Class>(&self) -> Option<C::Properties> {
         self.read::<C>(self.kinship::<C>())
     }

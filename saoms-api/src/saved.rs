@@ -1,7 +1,8 @@
 use crate::host::cdr::{self, Writer};
 use crate::{Failure, Field, Message};
 
-/// What a component goes on with in its successor, when its library was built anew: a message, or nothing. See [`Component::save`](crate::Component::save).
+/// State of a component for its successor, when its library was rebuilt: a message, or nothing. See
+/// [`Component::save`](crate::Component::save).
 ///
 /// ```
 /// use saoms_api::{Message, Saved};
@@ -21,7 +22,7 @@ pub struct Saved {
     bytes: Vec<u8>,
 }
 
-/// The form at boundaries: what it is, and its CDR form.
+/// The form at boundaries: the type, and the CDR form.
 #[derive(Field)]
 struct Form {
     schema: String,
@@ -37,7 +38,7 @@ impl Saved {
         Saved { bytes: cdr::encode(&form) }
     }
 
-    /// What came over a boundary; no bytes are nothing.
+    /// State from the boundary to plugins; no bytes are nothing.
     pub const fn from_bytes(bytes: Vec<u8>) -> Saved {
         Saved { bytes }
     }
@@ -47,7 +48,7 @@ impl Saved {
         &self.bytes
     }
 
-    /// Whether nothing was saved.
+    /// True if nothing was saved.
     pub fn is_nothing(&self) -> bool {
         self.bytes.is_empty()
     }

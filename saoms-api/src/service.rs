@@ -6,10 +6,11 @@ use crate::{CallError, Component, Context, Failure, Field};
 
 /// A service interface: `#[interface(name = "...")]` on a trait makes `dyn Trait` one.
 ///
-/// Each method is an operation, named like the method in lowerCamelCase. It takes `&mut self`, the context, and up to six arguments that are
-/// [`Field`]s, and returns a [`Field`] or a [`Failure`]. A component offers the interface by implementing the trait and saying
-/// `service("name": Trait)` in `#[class(...)]`; another one says `reference("name": Trait)` and calls through the generated
-/// `TraitReference`, whose methods return [`CallError`] instead of [`Failure`]. The composite wires the two.
+/// Each method is an operation, named like the method in lowerCamelCase. It takes `&mut self`, the context, and up to
+/// six arguments that are [`Field`]s, and returns a [`Field`] or a [`Failure`]. A component offers the interface by
+/// implementing the trait and saying `service("name": Trait)` in `#[class(...)]`; another one says `reference("name":
+/// Trait)` and calls through the generated `TraitReference`, whose methods return [`CallError`] instead of [`Failure`].
+/// The composite wires the two.
 ///
 /// ```
 /// use saoms_api::{Class, Component, Context, Failure, interface};

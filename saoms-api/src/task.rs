@@ -2,8 +2,8 @@ use crate::{Context, Failure, interface};
 
 /// The service that every periodic component offers: to be scheduled, unscheduled, and asked.
 ///
-/// The host serves it for the component, whose class neither declares nor implements it. A component that has a reference with this
-/// interface can be wired to any periodic component.
+/// The host serves it for the component, whose class neither declares nor implements it. A component that has a
+/// reference with this interface can be wired to any periodic component.
 ///
 /// ```
 /// use saoms_api::{Context, Failure, TaskInterfaceReference};
@@ -24,9 +24,10 @@ pub trait TaskInterface {
     /// The same for a limited time, in milliseconds, counted from now; then the task is unscheduled.
     fn schedule_for(&mut self, context: &mut Context<'_>, milliseconds: u64) -> Result<(), Failure>;
 
-    /// Ends the executions; the present one ends early only with `mayInterruptIfRunning`. Nothing happens when none are running.
+    /// Ends the executions; the present one ends early only with `mayInterruptIfRunning`. Nothing happens when none are
+    /// running.
     fn unschedule(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
 
-    /// Whether the task is scheduled.
+    /// True if the task is scheduled.
     fn is_running(&mut self, context: &mut Context<'_>) -> Result<bool, Failure>;
 }

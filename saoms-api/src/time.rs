@@ -29,7 +29,7 @@ impl Time {
         self.0 as f64 / 1e9
     }
 
-    /// How long after `earlier` this is; zero when it is not after it.
+    /// Duration since `earlier`; zero if this time is not after it.
     pub const fn since(self, earlier: Time) -> Duration {
         Duration::from_nanos(self.0.saturating_sub(earlier.0))
     }
@@ -59,8 +59,8 @@ impl fmt::Display for Time {
     }
 }
 
-/// Reads a duration as composite files write it: a bare number is milliseconds, otherwise the unit is one of `ns`, `us`, `ms`, `s`,
-/// `min` and `h`. Decimals are allowed; the result is rounded to nanoseconds.
+/// Reads a duration as composite files write it: a bare number is milliseconds, otherwise the unit is one of `ns`,
+/// `us`, `ms`, `s`, `min` and `h`. Decimals are allowed; the result is rounded to nanoseconds.
 ///
 /// ```
 /// use std::time::Duration;
@@ -71,7 +71,7 @@ impl fmt::Display for Time {
 /// ```
 ///
 /// # Errors
-/// What was found and what was expected, when the text is no such duration, is negative, or is longer than 584 years.
+/// The message with found and expected text, if the text is no duration, is negative, or is longer than 584 years.
 pub fn parse_duration(text: &str) -> Result<Duration, String> {
     const EXPECTED: &str =
         "a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h";
@@ -121,7 +121,8 @@ pub(crate) const fn read_duration(text: &str) -> Result<Duration, WrongDuration>
 }
 
 const fn read_nanos(mut rest: &[u8]) -> Result<u64, WrongDuration> {
-    // A whole part beyond this is too long in any unit, and decimals behind these do not change a nanosecond of an hour.
+    // A whole part beyond this is too long in any unit, and decimals behind these do not change a nanosecond of an
+    // hour.
     const MOST: u128 = 10_u128.pow(20);
     const FINEST: u128 = 10_u128.pow(18);
     let (mut whole, mut fraction, mut scale) = (0_u128, 0_u128, 1_u128);

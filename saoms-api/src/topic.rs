@@ -3,12 +3,14 @@ use std::marker::PhantomData;
 
 use crate::Message;
 
-/// What a topic promises to its readers.
+/// Delivery guarantee of a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TopicKind {
-    /// Keeps the newest message of each key; a reader that comes later gets those. The key is [`Message::key`], or the publisher.
+    /// Keeps the newest message of each key; a reader that comes later gets those. The key is [`Message::key`], or the
+    /// publisher.
     State,
-    /// Loses nothing: every message reaches every reader, in order, through a bounded queue whose overflow is counted and reported.
+    /// Loses nothing: every message reaches every reader, in order, through a bounded queue whose overflow is counted
+    /// and reported.
     Event,
 }
 
@@ -22,7 +24,8 @@ impl TopicKind {
     }
 }
 
-/// A named channel for messages of one type. Make it a constant, and name it in `#[class(publishes(...), subscribes(...))]`.
+/// A named channel for messages of one type. Make it a constant, and name it in `#[class(publishes(...),
+/// subscribes(...))]`.
 pub struct Topic<M> {
     name: &'static str,
     kind: TopicKind,
@@ -41,7 +44,7 @@ impl<M: Message> Topic<M> {
         Topic { name, kind: TopicKind::Event, is_optional: false, message: PhantomData }
     }
 
-    /// The same for whoever listens: that nobody reads it is nothing that the wiring report tells.
+    /// The same topic as optional: the wiring report does not warn if it has no reader.
     ///
     /// ```
     /// # use saoms_api::{Message, Topic};
@@ -63,7 +66,7 @@ impl<M: Message> Topic<M> {
         self.kind
     }
 
-    /// Whether nobody has to read it.
+    /// True if the topic needs no reader.
     pub const fn is_optional(&self) -> bool {
         self.is_optional
     }
@@ -73,7 +76,7 @@ impl<M: Message> Topic<M> {
         M::SCHEMA
     }
 
-    /// What the host is told when a component publishes or subscribes.
+    /// The declaration for the host when a component publishes or subscribes.
     pub const fn declaration(&self) -> TopicDeclaration<'static> {
         TopicDeclaration { name: self.name, kind: self.kind, message: M::NAME, schema: M::SCHEMA }
     }
@@ -98,15 +101,15 @@ pub struct TopicDeclaration<'a> {
     pub schema: &'a str,
 }
 
-/// The right to send on a topic, from [`Context::publish`](crate::Context::publish). The default one belongs to no topic: sending with it
-/// is a failure that says so.
+/// The right to send on a topic, from [`Context::publish`](crate::Context::publish). The default one belongs to no
+/// topic: sending with it is a failure that says so.
 pub struct Publisher<M> {
     index: u32,
     message: PhantomData<fn() -> M>,
 }
 
-/// The right to read a topic, from [`Context::subscribe`](crate::Context::subscribe). The default one belongs to no topic and receives
-/// nothing.
+/// The right to read a topic, from [`Context::subscribe`](crate::Context::subscribe). The default one belongs to no
+/// topic and receives nothing.
 pub struct Subscription<M> {
     index: u32,
     message: PhantomData<fn() -> M>,

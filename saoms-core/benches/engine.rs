@@ -1,8 +1,9 @@
-//! What the engine costs beside the components: `cargo bench -p saoms-core --bench engine`.
+//! Costs of the engine beside the components: `cargo bench -p saoms-core --bench engine`.
 //!
-//! In virtual time, on one core, the best of seven: ns per execution of an empty component, ns per delivery of a message from `send` to `receive`, and
-//! bytes per idle component, and what the journal costs. A delivery is one message that one reader has received; its cost is the time of a fleet that sends, less that of
-//! the same fleet when it does not, the digest of the trace included.
+//! In virtual time, on one core, the best of seven: ns per execution of an empty component, ns per delivery of a
+//! message from `send` to `receive`, and bytes per idle component, and what the journal costs. A delivery is one
+//! message that one reader has received; its cost is the time of a fleet that sends, less that of the same fleet when
+//! it does not, the digest of the trace included.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, TaskSettings};
 use saoms_lang::registry::Registry;
 
-/// Where a robot is: what the robots of the airport send most.
+/// Position of a robot: the most frequent message of the airport's robots.
 #[derive(Clone, Debug, PartialEq, Message)]
 struct Position {
     robot: u32,
@@ -30,17 +31,17 @@ const STATE: Topic<Position> = Topic::state("STATE");
 
 #[derive(Properties)]
 struct Load {
-    /// How many messages to send in each execution.
+    /// Number of messages to send in each execution.
     #[property(default = 0)]
     sends: u32,
     #[property(default = false)]
     receives: bool,
     #[property(default = false)]
     state: bool,
-    /// How many records to write in each execution.
+    /// Number of records to write in each execution.
     #[property(default = 0)]
     writes: u32,
-    /// How many loops find the same symptom and come to the same decision in each execution.
+    /// Number of loops with the same symptom and the same decision in each execution.
     #[property(default = 0)]
     loops: u32,
 }
@@ -73,7 +74,7 @@ struct Mind {
     extras: Extras,
 }
 
-/// Goes on as before.
+/// Loop that finds the same symptom in each execution.
 #[derive(LoopClass)]
 #[looping(name = "load.Steady")]
 struct Steady;
@@ -144,7 +145,7 @@ impl Component for Robot {
 struct Shape {
     senders: usize,
     receivers: usize,
-    /// The senders are the receivers.
+    /// True if all components send and receive.
     all: bool,
     sends: u32,
     state: bool,
@@ -152,13 +153,13 @@ struct Shape {
     loops: u32,
 }
 
-/// So many components that do nothing.
+/// A fleet of components that do nothing.
 const IDLE: Shape =
     Shape { senders: 0, receivers: 0, all: false, sends: 0, state: false, writes: 0, loops: 0 };
 
 #[expect(clippy::print_stdout, reason = "a benchmark tells its result")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // First, while the process has no memory to use again.
+    // First, while the process has no freed memory to reuse.
     let (before, count) = (resident(), 10_000);
     let fleet = start(&Shape { senders: count, all: true, ..IDLE })?;
     fleet.run_until(Time::from_nanos(5_000_000_000));
@@ -183,7 +184,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("100 <-> 100", 100, 100, true),
     ];
     for (name, senders, receivers, all) in shapes {
-        // Of a state each reader gets only the newest message of each publisher.
+        // A reader of a state topic gets only the newest message of each publisher.
         for (sends, state) in [(1, false), (16, false), (1, true)] {
             let shape = Shape { senders, receivers, all, sends, state, ..IDLE };
             let [busy, silent] = best([&shape, &Shape { sends: 0, ..shape }])?;
@@ -196,8 +197,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Nanoseconds per period of each fleet: they run in turns, so that a drift of the machine falls on all alike, and the best of seven rounds
-/// counts.
+/// Nanoseconds per period of each fleet: they run in turns, so that a drift of the machine falls on all alike, and the
+/// best of seven rounds counts.
 fn best<const COUNT: usize>(shapes: [&Shape; COUNT]) -> Result<[f64; COUNT], Box<dyn std::error::Error>> {
     let mut fleets = Vec::new();
     for shape in shapes {

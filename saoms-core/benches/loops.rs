@@ -1,8 +1,8 @@
-//! What a MAPE-K loop costs: `cargo bench -p saoms-core --bench loops`.
+//! Cost of a MAPE-K loop: `cargo bench -p saoms-core --bench loops`.
 //!
-//! In virtual time, on one core, the best of seven: ns per execution of a component that knows 24 single values and has one loop, without a loop,
-//! without a symptom, and with a decision that changes no value, one, or eight. A symptom brings the snapshot, a decision the comparison,
-//! a change its record in the journal.
+//! In virtual time, on one core, the best of seven: ns per execution of a component that knows 24 single values and has
+//! one loop, without a loop, without a symptom, and with a decision that changes no value, one, or eight. A symptom
+//! brings the snapshot, a decision the comparison, a change its record in the journal.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -92,7 +92,7 @@ struct Known {
 
 #[derive(Properties)]
 struct Load {
-    /// How many values it changes in each execution; -1 is no symptom.
+    /// Number of values to change in each execution; -1 is no symptom.
     #[property(default = -1)]
     changes: i64,
 }

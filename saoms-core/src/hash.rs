@@ -1,7 +1,7 @@
 //! The hash of traces and of topics: the same on every machine.
 
-/// Mixes one word into a hash: the two halves of a 128-bit product folded together, as in Wang Yi's wyhash (public domain). Integers only,
-/// so that the result is the same on every machine.
+/// Mixes one word into a hash: the two halves of a 128-bit product folded together, as in Wang Yi's wyhash (public
+/// domain). Integers only, so that the result is the same on every machine.
 #[inline]
 pub(crate) fn fold(state: u64, word: u64) -> u64 {
     const FIRST: u64 = 0xa076_1d64_78bd_642f;

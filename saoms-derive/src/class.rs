@@ -28,7 +28,7 @@ struct Declared {
     base: Option<Base>,
 }
 
-/// The component that this one wraps, and from whose class it has what it does not declare itself.
+/// The component that this one wraps; its class has all declarations that this one does not make itself.
 struct Base {
     field: Ident,
     of: Type,

@@ -160,7 +160,7 @@ impl<'a> Entry<'a> {
         })
     }
 
-    /// How many entries it stands for.
+    /// Number of entries that it stands for.
     fn count(&self) -> TokenStream {
         let of = self.of;
         match self.flatten {

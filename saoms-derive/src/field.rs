@@ -111,7 +111,7 @@ pub(crate) fn no_generics(generics: &Generics, what: &str) -> Result<()> {
     ))
 }
 
-/// What makes a single value of two numbers.
+/// Code that makes a single value of two numbers.
 fn pair(fields: &[(&Ident, &Type)]) -> std::result::Result<TokenStream, &'static str> {
     let is_number = |of: &Type| matches!(of, Type::Path(path) if path.path.is_ident("i32"));
     match fields {

@@ -260,7 +260,7 @@ fn receiver(function: &TraitItemFn, input: Option<&FnArg>) -> Result<()> {
     }
 }
 
-/// Whether this is `&mut Context<'_>`, under whatever path.
+/// True if the type is `&mut Context<'_>`, under any path.
 fn is_context(of: &Type) -> bool {
     let Type::Reference(reference) = of else { return false };
     let Type::Path(path) = &*reference.elem else { return false };

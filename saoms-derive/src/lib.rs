@@ -1,4 +1,4 @@
-//! Derive macros of the SAOMS contract. `saoms-api` exports them and says what they are for.
+//! Derive macros of the SAOMS contract. `saoms-api` exports and documents them.
 
 mod case;
 mod class;

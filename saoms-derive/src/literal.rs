@@ -30,7 +30,7 @@ impl Literal {
         }
     }
 
-    /// Whether it is a number with a fraction, of no type of its own.
+    /// True if it is a number with a fraction and without a type suffix.
     pub(crate) fn is_fraction(expression: &Expr) -> bool {
         match expression {
             Expr::Lit(ExprLit { lit: Lit::Float(number), .. }) => number.suffix().is_empty(),

@@ -1,4 +1,4 @@
-//! What the declarations of classes and loops have in common: topics, references, lists of paths.
+//! Parts that the declarations of classes and loops share: topics, references, lists of paths.
 
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
@@ -12,7 +12,7 @@ use crate::json::Json;
 /// A reference: its name, its interface, how many targets it takes.
 pub(crate) type Reference = (LitStr, Path, Multiplicity);
 
-/// How many targets a reference takes: one unless its words say otherwise.
+/// Number of targets of a reference: one by default.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Multiplicity {
     optional: bool,

@@ -142,7 +142,7 @@ fn declaration(members: &[Member<'_>]) -> TokenStream {
     }))
 }
 
-/// Whether the attributes of a field are `#[property(flatten)]`.
+/// True if the attributes of a field are `#[property(flatten)]`.
 fn is_flat(attributes: &[Attribute]) -> Result<bool> {
     let mut flat = None;
     let mut others = 0;

@@ -2,7 +2,7 @@ use syn::{Error, Expr, RangeLimits, Result};
 
 use crate::literal::Literal;
 
-/// What `range = ...` says, as text.
+/// The bounds of `range = ...`, as text.
 #[derive(Default)]
 pub(crate) struct Range {
     pub(crate) min: Option<String>,
@@ -38,7 +38,7 @@ impl Range {
         })
     }
 
-    /// Whether a number is within; `true` for what is no number.
+    /// True if a number is within the range, or if the text is no number.
     pub(crate) fn holds(&self, number: &str) -> bool {
         let Ok(number) = number.parse::<f64>() else { return true };
         let bound = |bound: &Option<String>| bound.as_ref().and_then(|text| text.parse::<f64>().ok());

@@ -1,4 +1,5 @@
-//! The layout of the boundary to plugins, as libraries that were built before expect it, is written down in `docs/abi.txt`.
+//! The layout of the boundary to plugins, as libraries that were built before expect it, is written down in
+//! `docs/abi.txt`.
 
 use std::any::type_name;
 use std::fmt::Write as _;

@@ -4,7 +4,8 @@ use crate::{Failure, Loop, Properties};
 
 /// The declaration of a loop, which `#[derive(LoopClass)]` writes.
 ///
-/// The doc of the struct becomes that of the loop. `#[looping(...)]` takes, in any order and in one or several attributes:
+/// The doc of the struct becomes that of the loop. `#[looping(...)]` takes, in any order and in one or several
+/// attributes:
 ///
 /// | attribute | meaning |
 /// | --- | --- |
@@ -16,7 +17,8 @@ use crate::{Failure, Loop, Properties};
 /// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
 /// | `reference("gps": Gps)`, `reference("gps": Gps, optional)` | a service of another component that it calls |
 ///
-/// Topics and references of a loop count as those of the component that has the loop; where both have a reference of one name, it is one.
+/// Topics and references of a loop count as those of the component that has the loop; where both have a reference of
+/// one name, it is one.
 ///
 /// Linked loops register themselves: [`LoopRegistration::linked`] lists them.
 ///
@@ -61,7 +63,12 @@ use crate::{Failure, Loop, Properties};
 ///         Ok((battery < self.properties.threshold).then(|| record!("has {battery} % left", battery)))
 ///     }
 ///
-///     fn plan(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+///     fn plan(
+///         &mut self,
+///         _: Record,
+///         knowledge: &mut dyn Knowledge,
+///         _: &mut Context<'_>,
+///     ) -> Result<Option<Record>, Failure> {
 ///         Ok((!self.busy.get(knowledge)?).then(|| record!("takes no job")))
 ///     }
 ///
@@ -105,8 +112,8 @@ pub const fn fits(knowledge: Option<&str>, of: &str) -> bool {
 /// Makes a loop from the values of its properties.
 type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
 
-/// What a registry needs of a loop: its declaration as text, and how to construct it. `#[derive(LoopClass)]` submits one for every loop
-/// that is linked in, and each class brings those of its own loops.
+/// Registration of a loop: its declaration as text, and its constructor. `#[derive(LoopClass)]` submits one for every
+/// loop that is linked in, and each class brings those of its own loops.
 #[derive(Clone, Copy, Debug)]
 pub struct LoopRegistration {
     name: &'static str,
@@ -137,7 +144,8 @@ impl LoopRegistration {
     /// Constructs a loop from the values that its composite gives; absent ones take their defaults.
     ///
     /// # Errors
-    /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit together.
+    /// A value is missing or wrong (the checker finds these before, with their place), or the values do not fit
+    /// together.
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         (self.construct)(values)
     }

@@ -5,18 +5,18 @@ use crate::{Context, Failure, Knowledge, LoopClass, Properties, Recordable};
 ///
 /// In each execution of its component, after all loops have [monitored](Loop::monitor), each loop in its order
 /// [analyzes](Loop::analyze); where it finds a symptom it [plans](Loop::plan), and where it comes to a decision it
-/// [executes](Loop::execute). The host writes symptom and decision to the journal, and what entries of the knowledge changed; an effect
-/// beyond that is told with [`Context::effect`].
+/// [executes](Loop::execute). The host writes symptom and decision to the journal, and what entries of the knowledge
+/// changed; an effect beyond that is told with [`Context::effect`].
 ///
 /// A loop that has to do with topics asks for them in [`initialize`](Loop::initialize), as a component does.
 pub trait Loop: Send + Sized + 'static {
-    /// What the composite can set.
+    /// Properties that the composite sets.
     type Properties: Properties;
-    /// What it works on: the component's own struct, or `dyn Knowledge`.
+    /// Knowledge that it works on: the component's own struct, or `dyn Knowledge`.
     type Knowledge: Subject + ?Sized;
-    /// What the analysis can find.
+    /// Result of the analysis.
     type Symptom: Recordable;
-    /// What can be planned.
+    /// Result of the planning.
     type Decision: Recordable;
 
     /// Makes the loop; it does no work, as [`Component::new`](crate::Component::new).
@@ -79,7 +79,7 @@ pub trait Loop: Send + Sized + 'static {
         context: &mut Context<'_>,
     ) -> Result<(), Failure>;
 
-    /// Ends the work; what it sends still leaves.
+    /// Ends the work; messages sent here are still delivered.
     ///
     /// # Errors
     /// The component could not end properly.
@@ -110,8 +110,8 @@ pub trait DynLoop: Send {
     /// # Errors
     /// As there.
     fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
-    /// [Analyzes](Loop::analyze), [plans](Loop::plan) and [executes](Loop::execute) as far as there is reason to. The snapshot serves to
-    /// tell what plan and execution changed.
+    /// [Analyzes](Loop::analyze), [plans](Loop::plan) and [executes](Loop::execute) as far as there is reason to. The
+    /// snapshot serves to tell what plan and execution changed.
     ///
     /// # Errors
     /// As there, and where the loop changes an effector that it does not declare.

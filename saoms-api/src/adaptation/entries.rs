@@ -5,8 +5,8 @@ use crate::{Failure, Value};
 
 /// Declared, typed entries: those of a component's knowledge, of a part of it, or those that a loop adds to it.
 ///
-/// Derive it on a struct; the fields marked `#[entry]` are entries. Their types are [`Field`](crate::Field)s. An entry has the field's name
-/// in lowerCamelCase and its doc. `#[entry(...)]` takes:
+/// Derive it on a struct; the fields marked `#[entry]` are entries. Their types are [`Field`](crate::Field)s. An entry
+/// has the field's name in lowerCamelCase and its doc. `#[entry(...)]` takes:
 ///
 /// | attribute | meaning |
 /// | --- | --- |
@@ -65,14 +65,14 @@ pub trait Entries: Send + Sized + 'static {
     fn read(&self, values: &mut Vec<Value>);
 }
 
-/// What is declared of an entry.
+/// Declaration of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EntryDeclaration {
     /// Its name.
     pub name: &'static str,
     /// Its type as a fragment of a schema, as [`Field::TYPE`](crate::Field::TYPE).
     pub of: &'static str,
-    /// Whether of the loops of a component only one may change it.
+    /// True if only one of a component's loops may change it.
     pub effector: bool,
 }
 

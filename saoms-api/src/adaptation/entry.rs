@@ -6,17 +6,18 @@ use crate::host::cdr;
 use crate::rule::nearest;
 use crate::{Failure, Field, Knowledge, Value};
 
-/// An entry of a component's knowledge, to read it and to see whether it changed; from [`Entry::of`]. The default one belongs to no knowledge: reading it is a failure that says so.
+/// An entry of a component's knowledge, to read it and to see whether it changed; from [`Entry::of`]. The default one
+/// belongs to no knowledge: reading it is a failure that says so.
 ///
-/// Changes are seen by value: an entry that was changed and changed back between two looks has not changed. So those who change entries, as
-/// a rule by writing to a field, pay nothing for those who watch.
+/// Changes are seen by value: an entry that was changed and changed back between two looks has not changed. So those
+/// who change entries, as a rule by writing to a field, pay nothing for those who watch.
 pub struct Entry<T> {
     place: u32,
     seen: Seen,
     of: PhantomData<fn() -> T>,
 }
 
-/// What an entry was when somebody looked last.
+/// The value of an entry at the last look.
 enum Seen {
     Value(Value),
     Bytes { seen: Vec<u8>, now: Vec<u8> },
@@ -42,7 +43,7 @@ impl<T: Field> Entry<T> {
         Ok(entry)
     }
 
-    /// What it is now.
+    /// The present value.
     ///
     /// # Errors
     /// The entry is of another knowledge, or of none.
@@ -56,7 +57,8 @@ impl<T: Field> Entry<T> {
         cdr::decode(&bytes).map_err(|_| stranger())
     }
 
-    /// Whether it is another than at the last look, which is the last call of this, or else the time when it was asked for.
+    /// True if the value differs from that of the last look: the last call of this function, or else the bind of the
+    /// entry.
     ///
     /// An entry that is no single value is encoded for this; the memory for it is kept.
     pub fn changed(&mut self, knowledge: &dyn Knowledge) -> bool {
@@ -92,8 +94,8 @@ impl<T> fmt::Debug for Entry<T> {
 pub struct Effector<T>(Entry<T>);
 
 impl<T: Field> Effector<T> {
-    /// The entry of this name. Only in [`initialize`](crate::Loop::initialize), and only what the loop declares under `effects` or
-    /// `entries`.
+    /// The entry of this name. Only in [`initialize`](crate::Loop::initialize), and only what the loop declares under
+    /// `effects` or `entries`.
     ///
     /// # Errors
     /// As [`Entry::of`], or the loop does not declare that it changes it.

@@ -4,12 +4,12 @@ use std::fmt;
 use crate::host::{DynEntries, EntryDeclaration};
 use crate::{Entries, Failure};
 
-/// The entries that loops add to the knowledge of their component. A [`Knowledge`](crate::Knowledge) has one field of this type; those who
-/// reach entries by name see no difference.
+/// The entries that loops add to the knowledge of their component. A [`Knowledge`](crate::Knowledge) has one field of
+/// this type; those who reach entries by name see no difference.
 #[derive(Default)]
 pub struct Extras {
     groups: Vec<Box<dyn DynEntries>>,
-    /// What the loop that asks now may change.
+    /// Entries that the present loop may change.
     writable: Writable,
 }
 

@@ -4,10 +4,11 @@ use super::entries::no_entry;
 use crate::host::{DynEntries, EntryDeclaration};
 use crate::{Effector, Entries, Entry, Extras, Failure, Field, Value};
 
-/// What a component knows, as entries that have a declared name and type.
+/// Knowledge of a component: entries with a declared name and type.
 ///
-/// Derive it on a struct, with `#[knowledge(name = "...")]`. Its fields are marked as those of [`Entries`] are, and one field of type
-/// [`Extras`], marked `#[extras]`, takes what loops add. What is not marked is known to code that shares the struct alone.
+/// Derive it on a struct, with `#[knowledge(name = "...")]`. Its fields are marked as those of [`Entries`] are, and one
+/// field of type [`Extras`], marked `#[extras]`, takes what loops add. What is not marked is known to code that shares
+/// the struct alone.
 ///
 /// Loops that are built together with the component work on the struct itself. Others, such as those of a plugin, have
 /// `type Knowledge = dyn Knowledge` and reach the entries by name, through an [`Entry`] or an [`Effector`].
@@ -41,26 +42,28 @@ use crate::{Effector, Entries, Entry, Extras, Failure, Field, Value};
 /// # Ok::<(), saoms_api::Failure>(())
 /// ```
 pub trait Knowledge: DynEntries {
-    /// Name and entries as JSON text; its shape is described in [`crate::host::declaration`]. What loops add is not in it.
+    /// Name and entries as JSON text; its shape is described in [`crate::host::declaration`]. What loops add is not in
+    /// it.
     fn declaration(&self) -> &'static str;
 
-    /// What loops added.
+    /// Entries added by loops.
     fn extras(&self) -> &Extras;
 
-    /// What loops added.
+    /// Entries added by loops.
     fn extras_mut(&mut self) -> &mut Extras;
 }
 
 /// The constants of a [`Knowledge`], which its derive writes.
 pub trait KnowledgeClass: Knowledge + Entries {
-    /// The name by which loops say what they work on.
+    /// The name by which loops declare the knowledge that they work on.
     const NAME: &'static str;
     /// See [`Knowledge::declaration`].
     const DECLARATION: &'static str;
 }
 
 impl dyn Knowledge {
-    /// [`Entry::of`]: the entry of this name, to read it. Ask in [`initialize`](crate::Loop::initialize), keep what you get.
+    /// The entry of this name, to read it ([`Entry::of`]). Call it in [`initialize`](crate::Loop::initialize), and keep
+    /// the result.
     ///
     /// # Errors
     /// There is no such entry (the message names the nearest), or it is of another type.
@@ -68,8 +71,8 @@ impl dyn Knowledge {
         Entry::of(self, name)
     }
 
-    /// [`Effector::of`]: the entry of this name, to read and to change it. Only in [`initialize`](crate::Loop::initialize), and only what the loop declares
-    /// under `effects` or `entries`.
+    /// The entry of this name, to read and to change it ([`Effector::of`]). Only in
+    /// [`initialize`](crate::Loop::initialize), and only entries that the loop declares under `effects` or `entries`.
     ///
     /// # Errors
     /// As [`entry`](#method.entry), or the loop does not declare that it changes it.
@@ -77,7 +80,8 @@ impl dyn Knowledge {
         Effector::of(self, name)
     }
 
-    /// All entries in order: those of the component, then those that loops added. An entry is known by its place in here.
+    /// All entries in order: those of the component, then those that loops added. An entry is known by its place in
+    /// here.
     pub fn all_declared(&self) -> impl Iterator<Item = &'static EntryDeclaration> {
         self.declared().iter().chain(self.extras().declared())
     }
@@ -139,7 +143,7 @@ impl dyn Knowledge {
     }
 }
 
-/// What a [`Loop`](crate::Loop) works on: a struct that is [`Knowledge`], or `dyn Knowledge`.
+/// The knowledge that a [`Loop`](crate::Loop) works on: a struct that is [`Knowledge`], or `dyn Knowledge`.
 pub trait Subject {
     /// The knowledge as this type, if it is of this type.
     fn of(knowledge: &mut dyn Knowledge) -> Option<&mut Self>;

@@ -87,7 +87,8 @@ impl Loops {
         Ok(())
     }
 
-    /// Lets each analyze, plan and execute. What plan and execution changed is compared and told to the journal.
+    /// Lets each loop analyze, plan and execute. Changes of the knowledge by planning and execution are written to the
+    /// journal.
     ///
     /// # Errors
     /// The first failure of a loop; one that changes an effector which it does not declare has failed.

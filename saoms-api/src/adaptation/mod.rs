@@ -1,8 +1,9 @@
-//! MAPE-K: components that adapt themselves by loops over what they know.
+//! MAPE-K: components that adapt themselves by loops over their knowledge.
 //!
-//! What a component knows is its [`Knowledge`]: declared, typed entries. Its behaviour is an ordered list of [loops](Loop), which a composite
-//! can extend, reorder, replace and parametrise. In each execution all loops *monitor* first, in their order; then each of them
-//! *analyzes* and, where it finds a symptom, *plans* and *executes*. Symptom, decision and effect go to the journal as [`Record`]s.
+//! A component's [`Knowledge`] consists of declared, typed entries. Its behaviour is an ordered list of [loops](Loop),
+//! which a composite can extend, reorder, replace and parametrise. In each execution all loops *monitor* first, in
+//! their order; then each of them *analyzes* and, where it finds a symptom, *plans* and *executes*. Symptom, decision
+//! and effect go to the journal as [`Record`]s.
 
 mod class;
 mod cycle;

@@ -56,7 +56,7 @@ impl<T: Into<Value>> From<Option<T>> for Value {
 }
 
 impl Value {
-    /// Whether it is the very same value: as `==`, but a number that is none (NaN) is the same as itself.
+    /// True if both are the same value: as `==`, but NaN is the same as itself.
     #[must_use]
     pub fn is_same(self, other: Value) -> bool {
         match (self, other) {
@@ -66,10 +66,11 @@ impl Value {
     }
 }
 
-/// How many values a record holds at most.
+/// Maximum number of values in a record.
 const VALUES: usize = 6;
 
-/// What a loop saw, decided or did: a text with places for values, and the values. Making one formats and allocates nothing.
+/// A record of a symptom, decision or effect: a text with placeholders, and the values. Constructing one formats and
+/// allocates nothing.
 ///
 /// ```
 /// use saoms_api::record;
@@ -87,8 +88,8 @@ pub struct Record {
 }
 
 impl Record {
-    /// For [`record!`](crate::record): a text with `{name}` where a value goes, the names with a comma behind each, and their values in the
-    /// same order; what is beyond six values is left out.
+    /// For [`record!`](crate::record): a text with `{name}` where a value goes, the names with a comma behind each, and
+    /// their values in the same order; values beyond the sixth are left out.
     #[doc(hidden)]
     #[must_use]
     pub const fn new<const N: usize>(text: &'static str, names: &'static str, values: [Value; N]) -> Record {
@@ -156,7 +157,7 @@ macro_rules! record {
     (@value $name:ident = $value:expr) => { $value };
 }
 
-/// What can be written to the journal: a record itself, or a loop's own symptoms and decisions.
+/// A value that can be written to the journal: a record itself, or a loop's own symptoms and decisions.
 pub trait Recordable {
     /// The record.
     fn record(&self) -> Record;
@@ -171,18 +172,18 @@ impl Recordable for Record {
 /// The phase of a loop that left a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// What the analysis found.
+    /// Finding of the analysis.
     Symptom,
-    /// What was planned.
+    /// Decision of the planning.
     Decision,
-    /// What was done.
+    /// Effect of the execution.
     Effect,
 }
 
 /// The number of a record in the run's journal, for what follows from it; the default one stands for no record.
 ///
-/// A message carries the cause that its sender had ([`Header::cause`](crate::Header)); a loop that acts on it says so with
-/// [`Context::because`](crate::Context::because). So a chain leads from what a robot did back to what it heard, and from there to why
-/// another robot said it.
+/// A message carries the cause that its sender had ([`Header::cause`](crate::Header)); a loop that acts on it says so
+/// with [`Context::because`](crate::Context::because). So a chain leads from an act of a robot back to the message that
+/// it received, and from there to why another robot said it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cause(pub u64);

@@ -3,7 +3,7 @@ use std::mem;
 use super::extras::Writable;
 use crate::{Context, Failure, Knowledge, Value};
 
-/// The entries of a knowledge before a loop acted, to tell what it changed. The memory is kept from one use to the next.
+/// The entries of a knowledge before a loop acts, to find its changes. The memory is reused.
 #[derive(Debug, Default)]
 pub struct Snapshot {
     before: Vec<Value>,
@@ -13,12 +13,12 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// One that takes and tells nothing, where somebody else looks.
+    /// A snapshot that stays empty, for the loops of a plugin: the host compares the entries.
     pub(crate) fn blind() -> Snapshot {
         Snapshot { blind: true, ..Snapshot::default() }
     }
 
-    /// What the loop that acts next may change.
+    /// Sets the entries that the next loop may change.
     pub(crate) fn permit(&mut self, writable: Writable) {
         self.writable = writable;
     }

@@ -124,7 +124,8 @@ impl<C: DynComponent> ExportedComponent<C> {
     }
 
     unsafe extern "C" fn save(this: *mut c_void, saved: Sink, error: Sink) -> Status {
-        // SAFETY: the host calls with what the table's contract says; `this` comes from `into_pointer` and is used by this call alone.
+        // SAFETY: the host calls with what the table's contract says; `this` comes from `into_pointer` and is used by
+        // this call alone.
         unsafe {
             guarded(error, || {
                 saved.put((*this.cast::<Self>()).component.save()?.bytes());

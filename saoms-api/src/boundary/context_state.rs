@@ -18,7 +18,8 @@ pub(super) struct ContextState {
 }
 
 impl ContextState {
-    /// Runs code with the context behind a handle. Messages are taken in when the code `takes_in`, and stay until the next time.
+    /// Runs code with the context behind a handle. Messages are taken in when the code `takes_in`, and stay until the
+    /// next time.
     ///
     /// # Safety
     /// The handle is that of a call that goes on.

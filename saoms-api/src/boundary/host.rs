@@ -249,7 +249,8 @@ unsafe extern "C" fn because(state: *mut c_void, cause: u64) {
 
 /// A record that cannot be read is left out with a warning.
 unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const RecordView) {
-    // SAFETY: callers pass the state of their handle, and lend the view; its texts are part of their library, which stays.
+    // SAFETY: callers pass the state of their handle, and lend the view; its texts are part of their library, which
+    // stays.
     unsafe {
         with_host(state, (), |host| {
             let phase = [Phase::Symptom, Phase::Decision, Phase::Effect].get(phase as usize).copied();

@@ -17,11 +17,11 @@ use super::host::HOST_FUNCTIONS;
 
 /// The memory behind a [`Lease`]: a context, knowledge and sinks that the other side is lent for the time of a call.
 ///
-/// Code in C can keep a pointer that it was lent, and use it later or from a thread of its own. So a cell is never freed,
-/// and says which thread may use it now. Nobody but a thread itself stores its own token, so the comparison needs no
+/// Code in C can keep a pointer that it was lent, and use it later or from a thread of its own. So a cell is never
+/// freed, and says which thread may use it now. Only a thread itself stores its own token, so the comparison needs no
 /// order.
 pub(super) struct LeaseCell {
-    /// The token of the thread whose call goes on; 0: nobody may use the cell.
+    /// The token of the thread whose call goes on; 0: no thread may use the cell.
     pub(super) holder: AtomicUsize,
     /// The number of refused uses.
     pub(super) misuses: AtomicU32,
@@ -40,7 +40,8 @@ pub(super) struct LeaseCell {
     pub(super) findings: UnsafeCell<Findings>,
 }
 
-// SAFETY: all but the two atomic fields is used by the holder alone, or by the one owner of the `Lease` while there is no holder.
+// SAFETY: all but the two atomic fields is used by the holder alone, or by the one owner of the `Lease` while there is
+// no holder.
 unsafe impl Sync for LeaseCell {}
 // SAFETY: the same; what the pointers lead to is used during calls alone, by the thread that lends it.
 unsafe impl Send for LeaseCell {}
@@ -77,7 +78,7 @@ impl LeaseCell {
             findings: UnsafeCell::default(),
         }));
         let state: *mut c_void = ptr::from_ref(lease).cast_mut().cast();
-        // SAFETY: nobody else has the lease yet.
+        // SAFETY: no other thread has the lease yet.
         unsafe {
             (*lease.handle.get()).state = state;
             (*lease.entries.get()).state = state;

@@ -1,6 +1,6 @@
-//! This crate's side of [the boundary to plugins](saoms_abi): exports of classes, loops and rules through its tables, and
-//! the parts that the program needs, too, to call them. Loops cross it in both directions, so that most of it serves both
-//! sides: contexts and knowledge that are lent, and those that come from the other side.
+//! This crate's side of [the boundary to plugins](saoms_abi): exports of classes, loops and rules through its tables,
+//! and the parts that the program needs, too, to call them. Loops cross it in both directions, so that most of it
+//! serves both sides: contexts and knowledge that are lent, and those that come from the other side.
 
 mod buffer;
 mod component;

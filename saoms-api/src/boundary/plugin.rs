@@ -3,8 +3,9 @@ pub const API: &str = env!("CARGO_PKG_VERSION");
 
 /// Offers classes, loops and [rules over whole fleets](crate::rule::FleetRule) in a library, to programs that load it.
 ///
-/// A crate that is built as a `cdylib` says once what it offers: `classes`, `loops` and `rules`, in this order, as far as it has them. The same crate can be linked into a program, too: its classes and loops are
-/// registered by their derives then, its rules by this, as by [`fleet_rules!`](crate::fleet_rules).
+/// Exports a crate that is built as a `cdylib` as a plugin, with its `classes`, `loops` and `rules`, in this order and
+/// each optional. The same crate can be linked into a program, too: its classes and loops are registered by their
+/// derives then, its rules by this, as by [`fleet_rules!`](crate::fleet_rules).
 ///
 /// ```
 /// use saoms_api::{Class, Component, Failure};

@@ -63,7 +63,8 @@ impl<'a> RemoteHost<'a> {
     /// A loop of the host, or of another library.
     fn made_by_host(&self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
         let (mut given, mut error) = (MaybeUninit::<LoopInstance>::uninit(), Buffer::default());
-        // SAFETY: the handle is that of a call that goes on; when it answers that all is well, the host has given a loop away.
+        // SAFETY: the handle is that of a call that goes on; when it answers that all is well, the host has given a
+        // loop away.
         unsafe {
             let make = self.functions.chosen_loop;
             outcome(make(self.handle.state, place, given.as_mut_ptr(), sink(&mut error)), &error.bytes)?;
@@ -192,7 +193,8 @@ impl Host for RemoteHost<'_> {
     fn chance(&mut self) -> &mut Chance {
         let state = get!(self.chance);
         assert!(!state.is_null(), "the host lends no chance");
-        // SAFETY: the host lends the state until the call ends, which is longer than `self` is borrowed; `Chance` is that state.
+        // SAFETY: the host lends the state until the call ends, which is longer than `self` is borrowed; `Chance` is
+        // that state.
         unsafe { &mut *state.cast::<Chance>() }
     }
 

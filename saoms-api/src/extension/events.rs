@@ -28,18 +28,18 @@ pub trait EventReader: Send {
     /// Reads a line, which comes at the time `now` of the run. An empty line or a comment has no events.
     ///
     /// # Errors
-    /// What is wrong with the line; then it has no events at all.
+    /// The fault of the line, which has no events then.
     fn read(&mut self, line: &str, now: Time) -> Result<Vec<TimedMessage>, LineFault>;
 }
 
 /// A message from outside, with its time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimedMessage {
-    /// When it takes effect; `None` is the next instant.
+    /// Time at which it takes effect; `None` is the next instant.
     pub at: Option<Time>,
     /// The message in CDR (see [`crate::host::cdr`]).
     pub bytes: Vec<u8>,
-    /// What it means, in the words of the language.
+    /// Description in the words of the language.
     pub text: String,
 }
 
@@ -48,10 +48,10 @@ pub struct TimedMessage {
 pub struct LineFault {
     /// The bytes of the line that are wrong.
     pub bytes: Range<usize>,
-    /// What was found, and what was expected.
+    /// Found and expected text.
     pub message: String,
-    /// What probably is meant in place of the bytes.
+    /// Suggested replacement of the bytes.
     pub instead: Option<String>,
-    /// What to do.
+    /// Advice.
     pub help: Option<String>,
 }

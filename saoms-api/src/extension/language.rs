@@ -38,7 +38,7 @@ pub struct PropertyText<'a> {
 pub struct Completion {
     /// The text.
     pub label: String,
-    /// What it stands for.
+    /// Kind of the completion.
     pub kind: CompletionKind,
     /// Its meaning, in a few words.
     pub detail: String,
@@ -76,7 +76,7 @@ impl Completion {
     }
 }
 
-/// What a completion stands for; editors show it as an icon.
+/// Kinds of completions; editors show them as icons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CompletionKind {
     /// A word of the language.

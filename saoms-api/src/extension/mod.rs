@@ -1,4 +1,4 @@
-//! What a crate of components adds to the program beside classes, loops and rules.
+//! Extensions that a crate of components adds to the program beside classes, loops and rules.
 //!
 //! A crate knows its domain; the program does not. The crate registers with [`submit!`] what only it can tell, and the
 //! program shows it:

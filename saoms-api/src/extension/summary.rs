@@ -1,4 +1,4 @@
-/// The summary of a run: the counts that a crate's components report, and what they come to in a few words.
+/// The summary of a run: the counts that a crate's components report, and a short text about them.
 #[derive(Clone, Copy, Debug)]
 pub struct RunSummary {
     /// The paths of the counts that every report has; 0 where no component counted. Components count with

@@ -9,25 +9,26 @@ use std::{mem, ptr};
 use crate::Failure;
 
 thread_local! {
-    /// Whether this thread is inside component code, where a panic is a failure of the component and not of the program.
+    /// True while this thread runs component code, where a panic is a failure of the component and not of the program.
     static CAPTURING: Cell<bool> = const { Cell::new(false) };
-    /// Where the last captured panic happened.
+    /// Place of the last captured panic in the source.
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs component code. A panic becomes a failure with its message and place and, after [`install_hook`], writes nothing to standard
-/// error.
+/// Runs component code. A panic becomes a failure with its message and place and, after [`install_hook`], writes
+/// nothing to standard error.
 ///
 /// # Errors
 /// The code panicked.
 ///
-/// What the code has left half changed is only seen by itself: a component that panicked is never called again.
+/// State that the code leaves half changed is never seen: a component that panicked is never called again.
 #[inline]
 pub fn contained<T>(code: impl FnOnce() -> T) -> Result<T, Failure> {
     contained_or(code, Err, Ok)
 }
 
-/// The same with another result than `Result<T, Failure>`, which is large to be moved about on the path of each execution.
+/// The same with another result than `Result<T, Failure>`, which is large to be moved about on the path of each
+/// execution.
 #[inline]
 pub(crate) fn contained_or<T, R>(
     code: impl FnOnce() -> T,
@@ -68,7 +69,8 @@ fn describe(payload: Box<dyn Any + Send>) -> Failure {
     failure
 }
 
-/// Makes panics inside [`contained`] silent, once in the life of the process. All others go to the hook that was there before.
+/// Makes panics inside [`contained`] silent, once in the life of the process. All others go to the hook that was there
+/// before.
 pub fn install_hook() {
     static INSTALLED: Once = Once::new();
     INSTALLED.call_once(|| {

@@ -1,5 +1,5 @@
-//! The contract with hosts of components: the scheduler, the checker, the testkit, the code that the macros generate. Not
-//! for authors of components.
+//! The contract with hosts of components: the scheduler, the checker, the testkit, the code that the macros generate.
+//! Not for authors of components.
 
 pub mod cdr;
 pub mod contain;
@@ -34,9 +34,8 @@ pub const TARGET_SHIFT: u32 = 16;
 /// A function that sees the loops of a component: name, class and values of each.
 pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(SmolStr, PropertyValue)]) + 'a;
 
-/// The world of a component behind its context: the scheduler in a run, a stand-in in a test, a table of functions behind
-/// the boundary to a plugin.
-/// Component authors use [`Context`](crate::Context).
+/// The world of a component behind its context: the scheduler in a run, a stand-in in a test, a table of functions
+/// behind the boundary to a plugin. Component authors use [`Context`](crate::Context).
 pub trait Host {
     /// See [`Context::name`](crate::Context::name).
     fn name(&self) -> &str;
@@ -66,7 +65,8 @@ pub trait Host {
     /// # Errors
     /// As there.
     fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure>;
-    /// See [`Context::subscribe`](crate::Context::subscribe). The index is the place of the subscription's inbox in the context.
+    /// See [`Context::subscribe`](crate::Context::subscribe). The index is the place of the subscription's inbox in the
+    /// context.
     ///
     /// # Errors
     /// As there.
@@ -83,8 +83,8 @@ pub trait Host {
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure>;
     /// See [`Context::is_wired`](crate::Context::is_wired).
     fn is_wired(&self, reference: u32) -> bool;
-    /// How many targets a reference has. The handle of one of them is that of the reference with the number of the target, from 0,
-    /// in the bits from [`TARGET_SHIFT`] on.
+    /// Number of targets of a reference. The handle of one of them is that of the reference with the number of the
+    /// target, from 0, in the bits from [`TARGET_SHIFT`] on.
     fn targets(&self, reference: u32) -> u32 {
         u32::from(self.is_wired(reference))
     }
@@ -102,7 +102,8 @@ pub trait Host {
     fn name_loop(&mut self, place: u32, name: &str) {
         let _ = (place, name);
     }
-    /// For a host across a boundary, which constructs what it has itself: name, class and values of each of the component's loops.
+    /// For a host across a boundary, which constructs loops itself: name, class and values of each of the component's
+    /// loops.
     fn chosen_loops(&mut self, visit: &mut LoopVisit<'_>) {
         let _ = visit;
     }
@@ -125,7 +126,7 @@ pub trait Host {
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
         let _ = (entry, before, after);
     }
-    /// Whether somebody reads the log at this level, or without one the classic console.
+    /// True if an observer wants the log at this level, or, for `None`, the classic console.
     fn listens(&self, level: Option<Level>) -> bool;
     /// See [`Context::log`](crate::Context::log).
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>);

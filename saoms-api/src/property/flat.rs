@@ -3,7 +3,7 @@
 use crate::host::declaration::Text;
 use crate::host::{PropertyValue, SmolStr};
 
-/// How many names there are in all lists.
+/// Number of names in all lists.
 pub const fn count(parts: &[&[&str]]) -> usize {
     let (mut part, mut count) = (0, 0);
     while part < parts.len() {
@@ -28,7 +28,7 @@ pub const fn all_names<const N: usize>(parts: &[&[&'static str]]) -> [&'static s
     names
 }
 
-/// Whether no two names are equal.
+/// True if no two names are equal.
 pub const fn are_distinct(names: &[&str]) -> bool {
     let mut at = 0;
     while at < names.len() {

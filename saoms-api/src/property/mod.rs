@@ -13,7 +13,8 @@ pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits
 use crate::Failure;
 use crate::host::SmolStr;
 
-/// A value as the composite gives it, once `source` and `file` are resolved: as large as a [`SmolStr`], as nearly all values are texts.
+/// A value as the composite gives it, once `source` and `file` are resolved: as large as a [`SmolStr`], as nearly all
+/// values are texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PropertyValue {
     /// The text of an attribute or element.
@@ -43,7 +44,7 @@ impl From<&str> for PropertyValue {
     }
 }
 
-/// What a composite can set of a component: derive it on a struct whose fields are [`PropertyField`]s.
+/// The properties of a component, which a composite sets. Derive it on a struct whose fields are [`PropertyField`]s.
 ///
 /// ```
 /// use std::time::Duration;
@@ -117,7 +118,8 @@ pub trait Properties: Sized {
     /// Reads the values; absent ones take their defaults.
     ///
     /// # Errors
-    /// A value is missing, unknown, given twice, or not what the declaration allows: its name, what was found, what was expected.
+    /// A value is missing, unknown, given twice, or not what the declaration allows: its name, what was found, what was
+    /// expected.
     fn from_values(values: &[(SmolStr, PropertyValue)]) -> Result<Self, Failure>;
 }
 

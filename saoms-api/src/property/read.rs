@@ -53,8 +53,8 @@ fn read_default<T: PropertyField>(text: &str, kind: PropertyKind) -> Result<T, S
 ///
 /// # Errors
 /// It is missing or not what the rule allows.
-// What is called for each property of each component is inlined, so that names are compared by their known lengths, and defaults and bounds
-// are there without being read. Failures are few and large, so that they are boxed.
+// What is called for each property of each component is inlined, so that names are compared by their known lengths, and
+// defaults and bounds are there without being read. Failures are few and large, so that they are boxed.
 #[inline(always)]
 pub fn property<T: PropertyField>(
     values: &mut Values<'_>,

@@ -2,19 +2,20 @@ use crate::host::declaration::{PropertyKind, Rule, Scalar, Text};
 use crate::host::{PropertyValue, SmolStr};
 use crate::time::read_duration;
 
-/// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `SmolStr`, `Duration`, enums (derive it), other
-/// [`Properties`](crate::Properties) structs, `Option` of these (need not be given) and `Vec` of these (any number of values).
+/// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `SmolStr`, `Duration`, enums
+/// (derive it), other [`Properties`](crate::Properties) structs, `Option` of these (need not be given) and `Vec` of
+/// these (any number of values).
 ///
 /// `#[derive(PropertyField)]` on an enum without data allows the names of its variants in lowerCamelCase, or what
 /// `#[property(name = "...")]` on a variant says.
 pub trait PropertyField: Sized {
-    /// What the declaration says about it.
+    /// Shape of the property in its declaration.
     const TYPE: PropertyShape;
 
     /// Reads a value.
     ///
     /// # Errors
-    /// What was found and what was expected.
+    /// The message, with found and expected value.
     fn from_value(value: &PropertyValue) -> Result<Self, String>;
 
     /// The same from the text of a scalar that was read and checked already; `None` where the type is not made of such.
@@ -38,14 +39,14 @@ pub trait PropertyField: Sized {
     }
 }
 
-/// What the type of a property contributes to its declaration.
+/// The part of a property's declaration that its type determines.
 #[derive(Clone, Copy, Debug)]
 pub struct PropertyShape {
-    /// What one value accepts.
+    /// Rule of one value.
     pub rule: Rule<'static>,
-    /// Whether it takes any number of values.
+    /// True if it takes any number of values.
     pub many: bool,
-    /// Whether it may be absent without a default.
+    /// True if it may be absent without a default.
     pub optional: bool,
     /// Further members of the JSON object, each with a comma before it.
     pub details: Text,
@@ -72,8 +73,8 @@ impl PropertyShape {
     }
 }
 
-/// Whether a default is allowed by the rule; while compiling, for what the macro itself cannot see: the compiler checks the literals of plain
-/// `bool`s and numbers.
+/// True if the rule allows a default. Runs at compile time, for types that the macro itself cannot see; the compiler
+/// checks the literals of plain `bool`s and numbers.
 pub const fn default_fits(rule: &Rule<'_>, default: &str) -> bool {
     match rule.kind {
         PropertyKind::Boolean => contains(&["true", "false"], default),
@@ -113,7 +114,7 @@ const fn integer(text: &str) -> Option<i128> {
     }
 }
 
-/// Whether the bounds of the rule are values of its type; while compiling.
+/// True if the bounds of the rule are values of its type. Runs at compile time.
 pub const fn bounds_fit(rule: &Rule<'_>) -> bool {
     let some = rule.min.is_some() || rule.max.is_some() || rule.exclusive_max.is_some();
     match rule.kind {
@@ -137,7 +138,7 @@ const fn nanos(bound: Option<&str>) -> Option<u128> {
     }
 }
 
-/// Whether a name is in a list, while compiling.
+/// True if a name is in a list. Runs at compile time.
 pub const fn contains(names: &[&str], name: &str) -> bool {
     let mut at = 0;
     while at < names.len() {
@@ -149,7 +150,7 @@ pub const fn contains(names: &[&str], name: &str) -> bool {
     false
 }
 
-/// Whether two names are equal, while compiling.
+/// True if two names are equal. Runs at compile time.
 pub const fn equal(one: &[u8], other: &[u8]) -> bool {
     if one.len() != other.len() {
         return false;

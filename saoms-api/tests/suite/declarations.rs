@@ -1,4 +1,4 @@
-//! What the derives say about a class, as text.
+//! Declarations of classes that the derives make, as text.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use saoms_api::{
     Class, Component, Context, Failure, Field, Message, Properties, PropertyField, Topic, interface,
 };
 
-/// Where a robot is.
+/// Position of a robot.
 #[derive(Clone, Debug, PartialEq, Message)]
 #[message(key = "robot")]
 struct Position {
@@ -70,7 +70,7 @@ struct RobotProperties {
     /// Not twice.
     #[property(range = 1..=99, unique = "robot")]
     number: u8,
-    /// How much it "loses".
+    /// Charge that it "loses".
     #[property(default = 2.5, range = 0.0..100.0, unit = "%")]
     discharge: f64,
     #[property(default = "use")]
@@ -172,7 +172,7 @@ fn a_class_declares_everything() {
         r#""also":[{"class":"example.Robot001","preset":{"number":"1","discharge":"-0.5","isAwake":"false","title":"first"}},"#,
         r#"{"class":"example.Plain","preset":{}}],"properties":["#,
         r#"{"name":"number","type":"integer","doc":"The robot's number.\nNot twice.","min":1,"max":99,"required":true,"unique":"robot"},"#,
-        r#"{"name":"discharge","type":"float","doc":"How much it \"loses\".","unit":"%","min":0.0,"exclusiveMax":100.0,"default":"2.5"},"#,
+        r#"{"name":"discharge","type":"float","doc":"Charge that it \"loses\".","unit":"%","min":0.0,"exclusiveMax":100.0,"default":"2.5"},"#,
         r#"{"name":"late","type":"enumeration","default":"use","allowed":["use","dropSilently","ask-me"]},"#,
         r#"{"name":"waitTime","type":"duration","min":"1ms","default":"1.5s"},"#,
         r#"{"name":"color","type":"string","default":"red","allowed":["red","blue"]},"#,

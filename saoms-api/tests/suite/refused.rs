@@ -1,4 +1,4 @@
-//! What the macros refuse, with the words and places of the compiler's messages.
+//! Inputs that the macros refuse, with the words and places of the compiler's messages.
 //! After a deliberate change of the words: `TRYBUILD=overwrite cargo test -p saoms-api --test suite refused`.
 
 #[test]

@@ -2,9 +2,9 @@ use super::Members;
 
 /// The numbers of the components of a fleet, each after those whose services it calls, in their own order otherwise.
 ///
-/// A component may call its references from `initialize` and `shutdown` on: its providers have to be there before it and go after it.
-/// Depth-first search over the wires, without recursion because a chain of wires may be as long as the fleet. In a cycle, which the
-/// checker refuses, the order is some order.
+/// A component may call its references from `initialize` and `shutdown` on: its providers have to start before it and
+/// end after it. Depth-first search over the wires, without recursion because a chain of wires may be as long as the
+/// fleet. In a cycle, which the checker refuses, the order is some order.
 pub(crate) fn providers_first(components: &Members<'_>) -> Vec<usize> {
     let mut order = Vec::with_capacity(components.len());
     let mut seen = vec![false; components.len()];

@@ -19,7 +19,8 @@ use saoms_lang::assembly::{ComponentSpec, LoopSpec, Target, Wire};
 pub struct ChangePlan {
     /// Components of the current fleet that have to end, each before those whose services it calls.
     pub remove: Vec<usize>,
-    /// Components that end and start again, because something about them differs; in the order in which they have to start.
+    /// Components that end and start again, because something about them differs; in the order in which they have to
+    /// start.
     pub replace: Vec<Replacement>,
     /// Components of the wanted fleet that have to start, each after those whose services it calls.
     pub add: Vec<usize>,

@@ -2,9 +2,11 @@ use std::collections::VecDeque;
 
 use saoms_api::host::SharedMessage;
 
-/// What an event topic holds: each message once, until the slowest reader has it, and where each reader stands.
+/// The messages of an event topic, each once and until the slowest reader has read it, and the positions of the
+/// readers.
 ///
-/// Messages are numbered from 0. What all readers have is let go now and then, so that neither publishing nor reading looks at other readers.
+/// Messages are numbered from 0. Messages that all readers have read are removed in batches, so that neither publishing
+/// nor reading looks at other readers.
 #[derive(Default)]
 pub(super) struct EventLog {
     /// The number of the first message held.
@@ -12,14 +14,14 @@ pub(super) struct EventLog {
     pub(super) messages: VecDeque<SharedMessage>,
     readers: Vec<EventReader>,
     free: Vec<u32>,
-    /// The length at which to look for messages that nobody needs any more.
+    /// Number of messages at which those that all readers have read are removed next.
     tidy_at: usize,
 }
 
 struct EventReader {
     /// The number of the next message to read.
     next: u64,
-    /// How many messages may wait; 0 marks a free place.
+    /// Number of messages that may wait; 0 marks a free place.
     queue: u64,
     lost: u64,
 }
@@ -59,7 +61,7 @@ impl EventLog {
         self.readers[place as usize].queue = queue.max(1) as u64;
     }
 
-    /// Frees a reader's place, and returns what it has lost since it last read.
+    /// Frees a reader's place. Returns the number of messages that it lost since its last read.
     pub(super) fn leave(&mut self, place: u32) -> u64 {
         let end = self.end();
         let reader = &mut self.readers[place as usize];
@@ -83,7 +85,8 @@ impl EventLog {
         self.messages.push_back(message);
     }
 
-    /// Lets go what every reader has. A tidying costs as much as there are readers and comes once in so many messages.
+    /// Removes the messages that every reader has read. The cost is linear in the number of readers, and is paid once
+    /// in as many messages.
     fn tidy(&mut self) {
         let end = self.end();
         let mut needed = end;
@@ -97,7 +100,7 @@ impl EventLog {
         self.tidy_at = self.messages.len() + 16 + self.readers.len() / 4;
     }
 
-    /// Appends what is new to a reader, and returns how much it has lost since it last did.
+    /// Appends the messages that are new to a reader. Returns the number of messages that it lost since its last read.
     #[inline]
     pub(super) fn collect(&mut self, place: u32, inbox: &mut Vec<SharedMessage>) -> u64 {
         let end = self.end();

@@ -1,11 +1,13 @@
 //! Topics inside one process: typed, shared not copied, delivered without waiting.
 //!
-//! Publishing puts a message into its topic once, however many readers there are; a reader collects what is new to it when its own
-//! execution starts. A [state topic](saoms_api::host::TopicKind::State) keeps the newest message of each publisher and key, so that a reader that comes later
-//! gets the present state, and one that comes seldom gets each key once. An [event topic](saoms_api::host::TopicKind::Event) keeps each message until
-//! every reader has it; a reader that falls behind by more than its queue loses the oldest, and is told how many.
+//! Publishing puts a message into its topic once, however many readers there are; a reader collects what is new to it
+//! when its own execution starts. A [state topic](saoms_api::host::TopicKind::State) keeps the newest message of each
+//! publisher and key, so that a reader that comes later gets the present state, and one that reads rarely gets each key
+//! once. An [event topic](saoms_api::host::TopicKind::Event) keeps each message until every reader has read it; a
+//! reader that falls behind by more than its queue loses the oldest messages, and gets their number.
 //!
-//! A [`Bus`] has no lock of its own: it belongs to one scheduler, which delivers in batches. It knows neither clock nor components.
+//! A [`Bus`] has no lock of its own: it belongs to one scheduler, which delivers in batches. It knows neither clock nor
+//! components.
 
 mod events;
 mod hash;
@@ -40,7 +42,7 @@ pub struct TopicReader {
     reader: ReadPosition,
 }
 
-/// Two ends of a topic that do not fit together.
+/// A publisher or reader whose type or kind differs from that of the topic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mismatch {
     topic: Arc<str>,
@@ -61,7 +63,7 @@ impl fmt::Display for Mismatch {
 }
 
 impl Bus {
-    /// Registers a publisher of the topic, which comes to be with its first user. `by` is the component, for messages.
+    /// Registers a publisher of the topic, which is created with its first user. `by` is the component, for messages.
     ///
     /// # Errors
     /// The topic carries other messages, or is of the other kind.
@@ -74,12 +76,12 @@ impl Bus {
         self.user(name, declared, by)
     }
 
-    /// The topic of this name, where somebody uses it.
+    /// The topic of this name, if it has a publisher or a reader.
     pub fn find(&self, name: &str) -> Option<TopicId> {
         self.names.get(name).copied().filter(|id| self.topics[id.0 as usize].users > 0)
     }
 
-    /// The names of the topics that somebody uses, in the order in which they came to be.
+    /// The names of the topics in use, in the order of their creation.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.topics.iter().filter(|topic| topic.users > 0).map(|topic| &*topic.name)
     }
@@ -94,8 +96,8 @@ impl Bus {
         self.topics[topic.0 as usize].users -= 1;
     }
 
-    /// Registers a reader. It gets what a state topic retains, and the messages of an event topic from now on; of the latter, at most
-    /// `queue` wait for it.
+    /// Registers a reader. It gets what a state topic retains, and the messages of an event topic from now on; of the
+    /// latter, at most `queue` wait for it.
     ///
     /// # Errors
     /// The topic carries other messages, or is of the other kind.
@@ -111,7 +113,7 @@ impl Bus {
         Ok(TopicReader { topic, reader })
     }
 
-    /// Takes a reader off its topic. Returns how many messages it has lost since it last collected.
+    /// Takes a reader off its topic. Returns the number of messages that it lost since it last collected.
     pub fn unsubscribe(&mut self, subscription: TopicReader) -> u64 {
         let topic = &mut self.topics[subscription.topic.0 as usize];
         topic.users -= 1;
@@ -124,13 +126,14 @@ impl Bus {
         self.topics[topic.0 as usize].publish(message);
     }
 
-    /// Appends the messages that are new to a reader, oldest first. Returns how many it has lost since it last collected.
+    /// Appends the messages that are new to a reader, oldest first. Returns the number of messages that it lost since
+    /// it last collected.
     #[inline]
     pub fn collect(&mut self, subscription: &mut TopicReader, inbox: &mut Vec<SharedMessage>) -> u64 {
         self.topics[subscription.topic.0 as usize].collect(&mut subscription.reader, inbox)
     }
 
-    /// Lets a reader start over: of a state topic it gets everything that is retained again, of an event topic it has missed nothing.
+    /// Resets a reader: on a state topic it gets all retained messages again, on an event topic it has lost none.
     pub fn rewind(&mut self, subscription: &mut TopicReader) {
         subscription.reader.rewind();
     }
@@ -158,7 +161,7 @@ impl Bus {
         }
     }
 
-    /// The numbers of the observers outside the fleet that want its messages; `None` where nobody does.
+    /// The numbers of the observers outside the fleet that want its messages; `None` if there is none.
     #[inline]
     pub fn observers(&self, topic: TopicId) -> Option<&Arc<[u32]>> {
         self.topics[topic.0 as usize].observers.as_ref()

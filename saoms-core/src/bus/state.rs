@@ -6,13 +6,15 @@ use super::hash::KeyHashing;
 
 const NONE: u32 = u32::MAX;
 
-/// What a state topic retains: the newest message of each key from each publisher, linked in the order in which they changed. Of two publishers
-/// none can hide what the other one said, as with the transient-local durability of DDS.
+/// The messages that a state topic retains: the newest one of each key from each publisher, linked in the order of
+/// their changes. A publisher never replaces a message of another publisher, as with the transient-local durability of
+/// DDS.
 ///
-/// A change moves its entry to the end, whatever the number of readers. A reader walks back from the end to the last change it knows.
+/// A change moves its entry to the end, whatever the number of readers. A reader walks back from the end to the last
+/// change it knows.
 pub(super) struct StateTable {
     entries: Vec<Entry>,
-    /// Where the message of a publisher and key is.
+    /// Place of the message of a publisher and key.
     places: HashMap<(u32, u64), u32, KeyHashing>,
     newest: u32,
     changes: u64,
@@ -34,7 +36,7 @@ impl Default for StateTable {
 impl StateTable {
     pub(super) fn publish(&mut self, message: SharedMessage) {
         self.changes += 1;
-        // Of one topic either all messages have a key, or none.
+        // Either all messages of a topic have a key, or none has.
         let key = (message.header().sender, message.key().unwrap_or_default());
         if let Some(&place) = self.places.get(&key) {
             self.unlink(place);

@@ -7,7 +7,7 @@ use super::events::EventLog;
 use super::state::StateTable;
 use crate::hash::fold;
 
-/// One topic: what it carries, and what it holds at present.
+/// A topic of the bus: its type, its users and its stored messages.
 pub(super) struct BusTopic {
     pub(super) name: Arc<str>,
     pub(super) name_hash: u64,
@@ -29,7 +29,7 @@ enum Store {
 /// A reader's place in a topic.
 #[derive(Debug)]
 pub(super) enum ReadPosition {
-    /// In a state topic: up to which change it has read.
+    /// In a state topic: number of the last change that was read.
     State(u64),
     /// In an event topic: its place among the readers.
     Event(u32),
@@ -68,7 +68,7 @@ impl BusTopic {
         }
     }
 
-    /// Counts another user, if it means the same messages.
+    /// Counts another user, if it declares the same kind and message type.
     pub(super) fn join(&mut self, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> Result<(), Mismatch> {
         let same = self.kind() == declared.kind && agree(&self.schema, declared.schema);
         if !same && self.users > 0 {
@@ -127,7 +127,7 @@ impl BusTopic {
         }
     }
 
-    /// How many events it holds.
+    /// Number of events that it holds.
     #[cfg(test)]
     pub(super) fn held(&self) -> usize {
         match &self.store {
@@ -165,7 +165,7 @@ fn store(kind: TopicKind) -> Store {
     }
 }
 
-/// Whether two schemas are the same. Texts that were written by hand may order and space the members in another way.
+/// True if two schemas are the same. Order and spacing of the members may differ in texts written by hand.
 fn agree(one: &str, other: &str) -> bool {
     let value = |text| serde_json::from_str::<serde_json::Value>(text).ok();
     one == other || value(one).is_some_and(|one| Some(one) == value(other))

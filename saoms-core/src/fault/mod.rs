@@ -1,7 +1,8 @@
-//! Faults that are put into a run on purpose, to see what a fleet makes of them.
+//! Fault injection: faults that are put into a run on purpose, to test how a fleet handles them.
 //!
-//! The engine asks for them at two places alone: when an execution begins, and when messages go from their sender to their topic. An empty list
-//! costs one comparison there. In virtual time a run with faults is as deterministic as one without.
+//! The engine looks for them at two places only: when an execution begins, and when messages go from their sender to
+//! their topic. An empty list costs one comparison there. In virtual time a run with faults is as deterministic as one
+//! without.
 
 #[cfg(test)]
 mod tests;
@@ -28,16 +29,16 @@ pub struct MessageFault {
     pub from: Time,
     /// The first instant at which they are not affected any more.
     pub until: Time,
-    /// What becomes of the messages.
+    /// Kind of the fault.
     pub kind: MessageFaultKind,
 }
 
 /// Kinds of faults of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MessageFaultKind {
-    /// They reach nobody.
+    /// They reach no reader.
     Lost,
-    /// They reach their topic so much later.
+    /// They reach their topic later by this duration.
     Late(Duration),
     /// They reach their topic twice.
     Duplicated,
@@ -50,7 +51,7 @@ pub struct TaskFault {
     pub component: String,
     /// The first execution that starts at this time or later is affected.
     pub at: Time,
-    /// What the execution does instead, or before, of what it should.
+    /// Kind of the fault.
     pub kind: TaskFaultKind,
 }
 
@@ -61,12 +62,12 @@ pub enum TaskFaultKind {
     Fails,
     /// It panics.
     Panics,
-    /// It takes so much longer, on the machine's clock.
+    /// It takes longer by this duration, on the machine's clock.
     Stalls(Duration),
 }
 
 impl Faults {
-    /// True if there is none, or none any more.
+    /// True if there is no fault left.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.messages.is_empty() && self.tasks.is_empty()

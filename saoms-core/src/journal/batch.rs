@@ -1,7 +1,7 @@
 use saoms_api::host::Phase;
 use saoms_api::{Cause, Record, Time, Value};
 
-/// The place of what a component wrote outside its loops.
+/// The loop number of records that a component writes outside its loops.
 pub(crate) const OUTSIDE: u16 = u16::MAX;
 
 /// A record of the journal without its values, as the engine keeps it.
@@ -14,27 +14,27 @@ pub(crate) struct Head {
     pub(crate) fingerprint: u64,
     text: &'static str,
     names: &'static str,
-    /// Where its values begin among those of the batch.
+    /// Index of its first value among those of the batch.
     values: u32,
     pub(crate) component: u32,
     /// The loop, or [`OUTSIDE`].
     pub(crate) place: u16,
     count: u8,
     pub(crate) phase: Phase,
-    /// It says that an entry of the knowledge changed.
+    /// True if it records a change of an entry of the knowledge.
     pub(crate) change: bool,
-    /// For a decision: something followed from it in the same execution.
+    /// For a decision: true if an effect, a message or a call followed in the same execution.
     pub(crate) acted: bool,
 }
 
-/// Records, one after the other, in memory that is used again and again.
+/// A list of records in memory that is reused.
 #[derive(Debug, Default)]
 pub(crate) struct Batch {
     heads: Vec<Head>,
     values: Vec<Value>,
 }
 
-/// What a component notes down: a record, and where it belongs.
+/// A record to add, with its loop and its cause.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Note<'a> {
     pub(super) id: Cause,
@@ -73,7 +73,7 @@ impl Batch {
         });
     }
 
-    /// Puts in a record of another batch.
+    /// Copies a record of another batch.
     #[inline]
     pub(super) fn copy(&mut self, head: &Head, other: &Batch) {
         let values = self.values.len() as u32;

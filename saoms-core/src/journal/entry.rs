@@ -14,7 +14,7 @@ pub struct JournalEntry {
     pub(super) loop_name: Option<Arc<str>>,
     pub(super) phase: Phase,
     pub(super) cause: Cause,
-    /// It says that an entry of the knowledge changed.
+    /// True if it records a change of an entry of the knowledge.
     pub(super) change: bool,
     pub(super) what: What,
 }
@@ -22,9 +22,9 @@ pub struct JournalEntry {
 /// Text and values.
 #[derive(Clone, Debug)]
 pub(super) enum What {
-    /// As the component gave them.
+    /// Text and values as written by a component.
     Noted(Record),
-    /// As a file gave them.
+    /// Text and values as read from a file.
     Read { text: String, values: Map<String, Value> },
 }
 
@@ -54,12 +54,12 @@ impl JournalEntry {
         }
     }
 
-    /// Its number in the run, from 1: what came later has a larger one.
+    /// Its number in the run, from 1, in the order of writing.
     pub fn id(&self) -> Cause {
         self.id
     }
 
-    /// When the execution began that wrote it.
+    /// Start time of the execution that wrote it.
     pub fn time(&self) -> Time {
         self.time
     }
@@ -74,17 +74,18 @@ impl JournalEntry {
         self.loop_name.as_deref()
     }
 
-    /// Whether it tells what was seen, decided or done.
+    /// Phase of the loop: symptom, decision or effect.
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// The record that it follows from, of this component or of another that sent a message; the default one stands for none.
+    /// The record that it follows from, of this component or of another that sent a message; the default one stands for
+    /// none.
     pub fn cause(&self) -> Cause {
         self.cause
     }
 
-    /// The text, with the values in.
+    /// The text with the values inserted.
     pub fn text(&self) -> String {
         match &self.what {
             What::Noted(record) => record.to_string(),
@@ -112,7 +113,7 @@ impl JournalEntry {
         }
     }
 
-    /// Which entry of the component's knowledge changed, if that is what the record tells.
+    /// The change of an entry of the component's knowledge, if the record is one.
     pub fn change(&self) -> Option<Change> {
         let value = |name| self.value(name).unwrap_or_default();
         self.change.then(|| Change {
@@ -123,7 +124,7 @@ impl JournalEntry {
     }
 }
 
-/// Two records are equal when they tell the same.
+/// Records are equal when all fields are equal, wherever they were read from.
 impl PartialEq for JournalEntry {
     fn eq(&self, other: &JournalEntry) -> bool {
         (self.id, self.time, self.phase, self.cause, self.change)
@@ -147,7 +148,7 @@ impl fmt::Display for JournalEntry {
     }
 }
 
-/// What files call a phase.
+/// Name of a phase in files.
 pub(super) fn phase_name(phase: Phase) -> &'static str {
     match phase {
         Phase::Symptom => "symptom",
@@ -156,7 +157,7 @@ pub(super) fn phase_name(phase: Phase) -> &'static str {
     }
 }
 
-/// A value as files hold it.
+/// A value as JSON.
 pub(super) fn json(value: saoms_api::Value) -> Value {
     match value {
         saoms_api::Value::Nothing => Value::Null,

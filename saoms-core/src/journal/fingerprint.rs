@@ -11,7 +11,7 @@ pub(super) fn fingerprint(phase: Phase, record: &Record) -> u64 {
             Value::Nothing => fold(hash, 0),
             Value::Bool(value) => fold(fold(hash, 1), u64::from(value)),
             Value::Integer(value) => fold(fold(hash, 2), value as u64),
-            // So that both zeros are one.
+            // Adding 0.0 makes -0.0 and 0.0 the same.
             Value::Number(value) => fold(fold(hash, 3), (value + 0.0).to_bits()),
             Value::Pair(x, y) => fold(fold(hash, 4), u64::from(x as u32) << 32 | u64::from(y as u32)),
             Value::Word(word) => text(fold(hash, 5), word),

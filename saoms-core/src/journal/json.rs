@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 use super::entry::{What, phase_name};
 use super::{Journal, JournalEntry, LoopCounts};
 
-/// A record as it is written. What is not there says nothing.
+/// A record as it is written; fields without a value are left out.
 #[derive(Serialize)]
 struct Line<'a> {
     id: u64,
@@ -120,7 +120,7 @@ impl<'de> Deserialize<'de> for JournalEntry {
     }
 }
 
-/// What is wrong in a journal that is JSON.
+/// Error in the content of a journal that is valid JSON.
 #[derive(Debug)]
 pub(super) struct Wrong(String);
 
@@ -130,7 +130,7 @@ impl fmt::Display for Wrong {
     }
 }
 
-/// A time of the run, as files hold it.
+/// A time of the run from seconds.
 pub(super) fn time(seconds: f64) -> Result<Time, Wrong> {
     let nanos = (seconds * 1e9).round();
     if !(0.0..u64::MAX as f64).contains(&nanos) {
@@ -139,7 +139,7 @@ pub(super) fn time(seconds: f64) -> Result<Time, Wrong> {
     Ok(Time::from_nanos(nanos as u64))
 }
 
-/// Brings records into their order.
+/// Sorts records by number and checks them.
 pub(super) fn in_order(mut entries: Vec<JournalEntry>) -> Result<Vec<JournalEntry>, Wrong> {
     entries.sort_by_key(JournalEntry::id);
     match entries.windows(2).find(|pair| pair[0].id == pair[1].id) {
@@ -169,7 +169,7 @@ impl Serialize for Journal {
     }
 }
 
-/// One line for each, also where the rest is indented.
+/// Writes each value on one line, even in indented JSON.
 fn in_lines<T: Serialize, E: serde::ser::Error>(values: &[T]) -> Result<Vec<Box<RawValue>>, E> {
     values.iter().map(|value| to_raw_value(value).map_err(E::custom)).collect()
 }

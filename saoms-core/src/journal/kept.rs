@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::entry::What;
 use super::{JournalEntry, OutsideRing, Ring, Selection};
 
-/// What is left of the records of a run, and counts of all that were written.
+/// The kept records of a run, and counts of all that were written.
 ///
 /// ```
 /// use saoms_core::journal::Journal;
@@ -23,11 +23,12 @@ use super::{JournalEntry, OutsideRing, Ring, Selection};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Journal {
-    /// How many records were written.
+    /// Number of records written.
     pub records: u64,
-    /// How many of them were overwritten by newer ones of the same component.
+    /// Number of records overwritten by newer ones of the same component.
     pub overwritten: u64,
-    /// How many came faster than the file of the journal could take them, or could not be written to it. 0 where there was no file.
+    /// Number of records that did not reach the observers of the journal (`--journal`), because they were too slow or
+    /// failed. 0 without such an observer.
     pub lost: u64,
     /// Counts of the records of each loop that wrote any.
     pub loops: Vec<LoopCounts>,
@@ -35,7 +36,7 @@ pub struct Journal {
     pub(super) entries: Vec<JournalEntry>,
 }
 
-/// How many records a loop wrote.
+/// Counts of the records of one loop.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LoopCounts {
     /// The path of the component.
@@ -43,11 +44,11 @@ pub struct LoopCounts {
     /// The loop; `null` is the component itself, outside all loops.
     #[serde(rename = "loop")]
     pub loop_name: Option<String>,
-    /// What it found, without repetitions.
+    /// Symptoms, without repetitions.
     pub symptoms: u64,
-    /// What it decided, without repetitions.
+    /// Decisions, without repetitions.
     pub decisions: u64,
-    /// What it did, changes of the knowledge included.
+    /// Effects, including changes of the knowledge.
     pub effects: u64,
     /// Decisions from which nothing followed: no effect, no message, no call.
     pub without_effect: u64,
@@ -61,7 +62,7 @@ impl LoopCounts {
 }
 
 impl Journal {
-    /// What the components of a run have written.
+    /// The journal of a run, collected from the rings of its components.
     pub(crate) fn of_rings<'a>(
         rings: impl Iterator<Item = (&'a Arc<str>, &'a Ring)>,
         outside: &OutsideRing,
@@ -105,35 +106,35 @@ impl Journal {
         journal
     }
 
-    /// All records that are left, oldest first.
+    /// All kept records, oldest first.
     pub fn entries(&self) -> &[JournalEntry] {
         &self.entries
     }
 
-    /// All records that are left, to choose from.
+    /// A selection of all kept records.
     pub fn all(&self) -> Selection<'_> {
         Selection::new(self.entries.iter())
     }
 
-    /// The records of one component that are left, by its path.
+    /// A selection of the kept records of one component, by its path.
     pub fn of(&self, component: &str) -> Selection<'_> {
         Selection::new(self.entries.iter().filter(|entry| entry.component() == component))
     }
 
-    /// The record with this number, if it is left.
+    /// The record with this number, if it is kept.
     pub fn entry(&self, id: Cause) -> Option<&JournalEntry> {
         self.entries.binary_search_by_key(&id, JournalEntry::id).ok().map(|place| &self.entries[place])
     }
 
-    /// What led to a record: the record that it follows from, the one that this follows from, and so on back to the root. The number is that
-    /// of the record at which the way back is lost, because it was overwritten.
+    /// The causes of a record: the record that it follows from, then the cause of that one, and so on to the root. The
+    /// number is that of the first cause that is missing, because it was overwritten.
     pub fn reasons(&self, entry: &JournalEntry) -> (Vec<&JournalEntry>, Option<Cause>) {
         let mut reasons = Vec::new();
         let mut next = entry.cause();
         while next != Cause::default() {
             let Some(entry) = self.entry(next) else { return (reasons, Some(next)) };
             reasons.push(entry);
-            // A cause is always older, so that this ends; a journal that says otherwise is not read.
+            // A cause has a smaller number than its record (the reader of files checks it), so this ends.
             next = entry.cause();
         }
         (reasons, None)

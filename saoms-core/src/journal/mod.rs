@@ -1,8 +1,8 @@
-//! The journal of a run: what each loop of each component saw, decided and did, and what came from what.
+//! The journal of a run: symptoms, decisions and effects of each loop of each component, each with its cause.
 //!
-//! While a component's code runs, its records go to a buffer of its own; they are handed over together with the messages that it sent, into a
-//! ring of the newest records of each component, and to a file where one was asked for. A record keeps its text and values apart: it is formatted
-//! when somebody reads it.
+//! While a component's code runs, its records go to a buffer of its own. They are delivered together with the messages
+//! that it sent, to a ring of the newest records of each component, and to the observers that want them. A record keeps
+//! its text and values apart: it is formatted when it is read.
 
 mod batch;
 mod entry;

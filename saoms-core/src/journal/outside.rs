@@ -2,10 +2,10 @@ use std::collections::VecDeque;
 
 use super::JournalEntry;
 
-/// The fewest records from outside that are kept.
+/// Minimum number of records from outside that are kept.
 const LEAST: usize = 128;
 
-/// The newest records of what came from outside the fleet.
+/// The newest records of messages from outside the fleet.
 #[derive(Debug, Default)]
 pub(crate) struct OutsideRing {
     pub(super) entries: VecDeque<JournalEntry>,
@@ -13,7 +13,7 @@ pub(crate) struct OutsideRing {
 }
 
 impl OutsideRing {
-    /// Takes a record, and keeps at most so many.
+    /// Adds a record and drops the oldest beyond `capacity`.
     pub(crate) fn push(&mut self, entry: JournalEntry, capacity: usize) {
         if self.entries.len() >= capacity.max(LEAST) {
             self.entries.pop_front();

@@ -9,21 +9,23 @@ use super::recorder::{Notice, Recorder};
 use super::ring::LoopNames;
 use super::{ComponentName, JournalEntry};
 
-/// How many records may wait for their reader.
+/// Maximum number of records that wait for the reader.
 const CAPACITY: usize = 65_536;
-/// From how many waiting records on the reader is woken; before that it looks by itself.
+/// Number of waiting records at which the reader is woken; below it, the reader polls.
 const HURRY: usize = CAPACITY / 4;
-/// How often it looks.
+/// Polling interval of the reader.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// A queue of records for the thread that tells the observers of the journal. Putting one in never waits in real time.
+/// A queue of records for the thread that calls the observers of the journal. In real time, adding a record never
+/// blocks.
 #[derive(Debug)]
 pub(crate) struct RecordQueue {
     waiting: Mutex<Waiting>,
     reader: Mutex<Reader>,
     filled: Condvar,
     emptied: Condvar,
-    /// True if those who write wait for room, as in virtual time; otherwise records that find no room are counted and lost.
+    /// True if those who write wait for room, as in virtual time; otherwise records that find no room are counted and
+    /// lost.
     is_patient: bool,
 }
 
@@ -34,15 +36,15 @@ struct Waiting {
     names: Vec<(u32, u16, String)>,
     /// Components in the order of their numbers; the flag says that they joined a running fleet.
     joined: Vec<(ComponentName, bool)>,
-    /// Records of what came from outside.
+    /// Records of messages from outside.
     outside: Vec<JournalEntry>,
     lost: u64,
     writers_sleep: bool,
-    /// When the run ended.
+    /// End of the run.
     closed: Option<Time>,
 }
 
-/// What the reading thread knows of the records before.
+/// State of the reading thread.
 #[derive(Debug, Default)]
 struct Reader {
     batch: Batch,
@@ -65,17 +67,17 @@ impl RecordQueue {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A component has the next number from now on. `later` says that the fleet runs already.
+    /// Adds a component, which gets the next number. `later` is true if it joins a running fleet.
     pub(crate) fn join(&self, component: ComponentName, later: bool) {
         self.lock().joined.push((component, later));
     }
 
-    /// Takes a record of what came from outside.
+    /// Adds a record of a message from outside.
     pub(crate) fn put_outside(&self, entry: JournalEntry) {
         self.lock().outside.push(entry);
     }
 
-    /// Takes over what a component has written.
+    /// Copies the new records of a component.
     pub(crate) fn put(&self, component: u32, recorder: &Recorder) {
         let mut waiting = self.lock();
         for notice in &recorder.notices {
@@ -94,7 +96,7 @@ impl RecordQueue {
         }
     }
 
-    /// Whether those who are patient should wait.
+    /// True if writers that wait for room (in virtual time) have to wait.
     pub(crate) fn is_full(&self) -> bool {
         self.is_patient && self.lock().batch.len() >= CAPACITY
     }
@@ -108,15 +110,15 @@ impl RecordQueue {
         }
     }
 
-    /// The run has ended: [`write_to`](RecordQueue::write_to) returns when it has written what is there.
+    /// Closes the queue at the end of the run; its waiting records are still delivered.
     pub(crate) fn close(&self, end: Time) {
         self.lock().closed = Some(end);
         self.filled.notify_all();
         self.emptied.notify_all();
     }
 
-    /// Waits until there is something to tell, and takes all of it. Returns how many records found no room, and when the run ended, where
-    /// these are the last ones. `joined` are the components that joined a running fleet.
+    /// Waits for records and takes all of them. Returns the number of records that were lost for want of room, and the
+    /// end of the run if these are the last ones. `joined` gets the components that joined the running fleet.
     pub(crate) fn next(
         &self,
         entries: &mut Vec<JournalEntry>,

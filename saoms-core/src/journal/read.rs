@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::json::{in_order, time};
 use super::{Journal, JournalEntry};
 
-/// A component of the fleet whose journal it is.
+/// A component of the fleet, as journals name it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ComponentName {
     /// Its path in the composite.
@@ -24,29 +24,29 @@ impl ComponentName {
     }
 }
 
-/// What a file tells about a run: the report that `saoms run --report` writes, or the lines of `--journal`.
+/// The journal of a run as read from a file: a report that `saoms run --report` wrote, or the lines of `--journal`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JournalDocument {
     /// The records.
     pub journal: Journal,
     /// The components of the fleet, in document order.
     pub components: Vec<ComponentName>,
-    /// When the run ended; `None` in a file whose run has not ended, or not properly.
+    /// End of the run; `None` if the run goes on or was killed.
     pub end: Option<Time>,
-    /// Whether it is a report, which holds the newest records alone.
+    /// True if the file is a report, which holds only the newest records.
     pub is_report: bool,
 }
 
 /// Why a file could not be read as a journal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JournalReadError {
-    /// Something in it is not as it should be.
+    /// A part of it is malformed.
     Malformed {
         /// The line, from 1.
         line: usize,
         /// The column, from 1; 0 is the line as a whole.
         column: usize,
-        /// What was found and what was expected.
+        /// Found and expected content.
         message: String,
     },
     /// It is no JSON object at all.
@@ -74,7 +74,7 @@ impl fmt::Display for JournalReadError {
 
 impl std::error::Error for JournalReadError {}
 
-/// What is needed of a report.
+/// The fields of a report that are read.
 #[derive(Deserialize)]
 struct Report {
     time_s: f64,
@@ -85,7 +85,7 @@ struct Report {
 /// The first line of the file of a journal.
 #[derive(Deserialize)]
 struct Head {
-    /// The version of the form.
+    /// Version of the format.
     journal: u32,
     components: Vec<ComponentName>,
 }
@@ -108,10 +108,10 @@ struct End {
     lost: u64,
 }
 
-/// Reads a report or the file of a journal, whichever it is.
+/// Reads a report or the file of a journal.
 ///
 /// # Errors
-/// The text is neither, or not whole.
+/// The text is neither, or is malformed.
 pub fn read(text: &str) -> Result<JournalDocument, JournalReadError> {
     if !text.trim_start().starts_with('{') {
         return Err(JournalReadError::Other);
@@ -178,7 +178,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
     Ok(JournalDocument { journal, components: head.components, end, is_report: false })
 }
 
-/// What the reader of JSON says, with the place in the whole text.
+/// An error of the JSON parser, with its place in the whole text.
 fn malformed(lines_before: usize, error: &serde_json::Error, about: &str) -> JournalReadError {
     let text = error.to_string();
     let what = text.rfind(" at line ").map_or(text.as_str(), |end| &text[..end]);

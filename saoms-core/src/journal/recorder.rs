@@ -6,31 +6,31 @@ use saoms_api::{Cause, Record, Value};
 use super::batch::{Batch, Note, OUTSIDE};
 use super::fingerprint::fingerprint;
 
-/// What a component writes to the journal while its code runs, and what it has in mind for that: where each of its loops is on the way from
+/// The journal records of a component while its code runs, and the state of each of its loops on the way from
 /// symptom to effect.
 #[derive(Debug, Default)]
 pub(crate) struct Recorder {
     present: Option<u16>,
-    /// The way of what happens outside all loops.
+    /// State of the component outside all loops.
     outside: Trail,
     loops: Vec<Way>,
     /// The newest change of each entry by each loop.
     changes: Vec<(&'static str, u16, Cause)>,
-    /// What is to be handed over.
+    /// Records to be delivered.
     pub(crate) batch: Batch,
     pub(crate) notices: Vec<Notice>,
 }
 
-/// What is handed over beside the records.
+/// Notices that are delivered beside the records.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Notice {
     /// The name of the loop at this place.
     Name(u16, String),
-    /// The decision of this loop that goes on since an earlier execution had an effect now.
+    /// A decision of this loop, made in an earlier execution, has now had an effect.
     Acted(u16),
 }
 
-/// Where records come from: the run's counter of records, the component and the time.
+/// Origin of records: the run's counter of records, the component and the time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stamp<'a> {
     pub(crate) ids: &'a AtomicU64,
@@ -51,7 +51,7 @@ struct Trail {
 struct Noted {
     fingerprint: u64,
     id: Cause,
-    /// Its place in the batch, where it is new.
+    /// Its index in the batch, if it is new.
     at: Option<u32>,
     acted: bool,
 }
@@ -69,20 +69,20 @@ struct Way {
 }
 
 impl Recorder {
-    /// Whether there is nothing to hand over.
+    /// True if there is nothing to deliver.
     #[inline]
     pub(crate) fn is_empty(&self) -> bool {
         self.batch.is_empty() && self.notices.is_empty()
     }
 
-    /// An execution begins, or a call whose caller has this cause.
+    /// Begins an execution, or a call whose caller has this cause.
     #[inline]
     pub(crate) fn begin(&mut self, because: Cause) {
         self.present = None;
         self.outside = Trail::because(because);
     }
 
-    /// A new instance begins, which knows nothing of the one before.
+    /// Clears the state, for a new instance of the component.
     pub(crate) fn reset(&mut self) {
         self.loops.clear();
         self.changes.clear();
@@ -92,7 +92,7 @@ impl Recorder {
         self.notices.push(Notice::Name(bounded(place), name.to_owned()));
     }
 
-    /// A loop acts from now on in this execution, or none.
+    /// Sets the loop that writes from now on in this execution.
     pub(crate) fn enter(&mut self, place: Option<u32>, execution: u64) {
         self.present = place.map(bounded);
         let Some(place) = self.present.map(usize::from) else { return };
@@ -107,7 +107,7 @@ impl Recorder {
         let trail = std::mem::take(&mut way.trail);
         std::mem::swap(&mut way.effects, &mut way.last_effects);
         way.effects.clear();
-        // Whoever was away for a while begins anew.
+        // A loop that skipped an execution starts with an empty state.
         way.last = if way.execution + 1 == number { trail } else { Trail::default() };
         if way.execution + 1 != number {
             way.last_effects.clear();
@@ -142,13 +142,13 @@ impl Recorder {
         }
     }
 
-    /// The loop that acts.
+    /// The loop that writes at present.
     pub(crate) fn present(&self) -> Option<u16> {
         self.present
     }
 
-    /// Notes down what the present loop saw, decided or did, unless it is what it saw, decided and did in its last execution. A symptom that
-    /// nobody gave a reason for follows from the newest change that another loop made to an entry which this one `senses`.
+    /// Writes a symptom, decision or effect of the present loop, unless its last execution wrote the same. A symptom
+    /// without a given cause follows from the newest change that another loop made to an entry which this one `senses`.
     pub(crate) fn write(&mut self, stamp: Stamp<'_>, phase: Phase, record: &Record, senses: &[String]) {
         let fingerprint = fingerprint(phase, record);
         match phase {
@@ -206,7 +206,7 @@ impl Recorder {
         }
     }
 
-    /// Notes down that the present loop changed an entry of the knowledge.
+    /// Records a change of an entry of the knowledge by the present loop.
     pub(crate) fn changed(&mut self, stamp: Stamp<'_>, entry: &'static str, before: Value, after: Value) {
         if before.is_same(after) {
             return;
@@ -224,7 +224,7 @@ impl Recorder {
         }
     }
 
-    /// Something followed from the present decision: an effect, a message, a call.
+    /// Marks the present decision as one with an effect, a message or a call.
     #[inline]
     pub(crate) fn acted(&mut self) {
         let Some(decision) = self.trail().decision.as_mut().filter(|decision| !decision.acted) else {
@@ -268,7 +268,7 @@ impl Trail {
         self.symptom.map_or(Cause::default(), |symptom| symptom.id)
     }
 
-    /// Where a decision comes from.
+    /// Cause of a decision.
     fn reason(&self) -> Cause {
         self.symptom.map_or(self.because, |symptom| symptom.id)
     }
@@ -278,7 +278,7 @@ impl Trail {
     }
 }
 
-/// Nobody has so many loops.
+/// No component has so many loops.
 fn bounded(place: u32) -> u16 {
     u16::try_from(place).unwrap_or(OUTSIDE).min(OUTSIDE - 1)
 }

@@ -6,7 +6,7 @@ use saoms_api::host::Phase;
 use super::batch::{Batch, Head, OUTSIDE};
 use super::recorder::{Notice, Recorder};
 
-/// How many records lie together: they come to be and are overwritten together, so that none is ever moved.
+/// Number of records in a chunk. A chunk is allocated and overwritten as a whole, so that no record is ever moved.
 const CHUNK: usize = 64;
 
 /// The newest records of one component, and counts of all that it has written.
@@ -14,12 +14,12 @@ const CHUNK: usize = 64;
 pub(crate) struct Ring {
     chunks: VecDeque<Batch>,
     pub(super) overwritten: u64,
-    /// Those of each loop by its place, first those of none.
+    /// Counts of each loop by its place, after those of records outside all loops.
     pub(super) tallies: Vec<Tally>,
     names: LoopNames,
 }
 
-/// What a component's loops are called.
+/// Names of the loops of a component.
 #[derive(Debug, Default)]
 pub(super) struct LoopNames(Vec<Option<Arc<str>>>);
 
@@ -42,15 +42,15 @@ impl LoopNames {
     }
 }
 
-/// How many records of each phase one loop has written.
+/// Counts of the records of one loop by phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub(super) symptoms: u64,
     pub(super) decisions: u64,
     pub(super) effects: u64,
-    /// Decisions from which nothing followed, before the present one.
+    /// Decisions without effect, before the present one.
     idle: u64,
-    /// Nothing has followed from the present one.
+    /// True if the present decision has had no effect.
     waiting: bool,
 }
 
@@ -65,7 +65,7 @@ impl Tally {
 }
 
 impl Ring {
-    /// Takes over what a component has written, and keeps at most so many records.
+    /// Moves in the new records of a component, and keeps at most `capacity` records.
     pub(crate) fn take(&mut self, recorder: &mut Recorder, capacity: usize) {
         for notice in recorder.notices.drain(..) {
             match notice {
@@ -103,7 +103,7 @@ impl Ring {
     /// The chunk with room for the next record.
     fn room(&mut self, capacity: usize) -> &mut Batch {
         if self.chunks.back().is_none_or(|chunk| chunk.len() >= CHUNK) {
-            // Never the newest chunk itself: it would leave nothing.
+            // At least two chunks: overwriting the only one would leave no record.
             let full = self.chunks.len() >= capacity.div_ceil(CHUNK).max(2);
             let mut chunk = full.then(|| self.chunks.pop_front()).flatten().unwrap_or_default();
             self.overwritten += chunk.len() as u64;
@@ -114,7 +114,7 @@ impl Ring {
         &mut self.chunks[last]
     }
 
-    /// The records that are left, oldest first.
+    /// The kept records, oldest first.
     pub(super) fn batches(&self) -> impl Iterator<Item = &Batch> {
         self.chunks.iter()
     }

@@ -8,7 +8,7 @@ use super::JournalEntry;
 
 /// Records of a journal, oldest first: all, or those that are left after some were filtered out.
 ///
-/// It shows as one line for each record, so that a test can compare all of them with a text.
+/// `Display` writes one line for each record, so that a test can compare a selection with a text.
 #[derive(Clone, Debug, Default)]
 pub struct Selection<'a> {
     entries: Vec<&'a JournalEntry>,
@@ -19,31 +19,31 @@ impl<'a> Selection<'a> {
         Selection { entries: entries.collect() }
     }
 
-    /// Those of one component, by its path.
+    /// The records of one component, by its path.
     #[must_use]
     pub fn of(self, component: &str) -> Selection<'a> {
         self.only(|entry| entry.component() == component)
     }
 
-    /// Those of the loops with this name.
+    /// The records of the loops with this name.
     #[must_use]
     pub fn of_loop(self, name: &str) -> Selection<'a> {
         self.only(|entry| entry.loop_name() == Some(name))
     }
 
-    /// What was seen.
+    /// The symptoms.
     #[must_use]
     pub fn symptoms(self) -> Selection<'a> {
         self.only(|entry| entry.phase() == Phase::Symptom)
     }
 
-    /// What was decided.
+    /// The decisions.
     #[must_use]
     pub fn decisions(self) -> Selection<'a> {
         self.only(|entry| entry.phase() == Phase::Decision)
     }
 
-    /// What was done, the changes of knowledge among it.
+    /// The effects, including changes of knowledge.
     #[must_use]
     pub fn effects(self) -> Selection<'a> {
         self.only(|entry| entry.phase() == Phase::Effect)
@@ -55,31 +55,31 @@ impl<'a> Selection<'a> {
         self.only(|one| one.change().is_some_and(|change| change.entry == entry))
     }
 
-    /// Those of this time of the run.
+    /// The records of this period of the run.
     #[must_use]
     pub fn during(self, times: RangeInclusive<Time>) -> Selection<'a> {
         self.only(|entry| times.contains(&entry.time()))
     }
 
-    /// Those whose text contains this.
+    /// The records whose text contains `text`.
     #[must_use]
     pub fn with(self, text: &str) -> Selection<'a> {
         self.only(|entry| entry.text().contains(text))
     }
 
-    /// Those for which this holds.
+    /// The records for which `holds` is true.
     #[must_use]
     pub fn only(mut self, holds: impl Fn(&JournalEntry) -> bool) -> Selection<'a> {
         self.entries.retain(|entry| holds(entry));
         self
     }
 
-    /// How many there are.
+    /// Number of records.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether there is none.
+    /// True if there is no record.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
@@ -94,12 +94,12 @@ impl<'a> Selection<'a> {
         self.entries.last().copied()
     }
 
-    /// Each of them, oldest first.
+    /// The records, oldest first.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &'a JournalEntry> {
         self.entries.iter().copied()
     }
 
-    /// Their texts, oldest first.
+    /// The texts of the records, oldest first.
     pub fn texts(&self) -> Vec<String> {
         self.iter().map(JournalEntry::text).collect()
     }

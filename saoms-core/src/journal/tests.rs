@@ -6,7 +6,7 @@ use saoms_api::{Cause, Time, Value, record};
 use super::recorder::{Recorder, Stamp};
 use super::{Journal, JournalReadError, read};
 
-/// A recorder in its first execution, and what stamps its records.
+/// A recorder in its first execution, and the counter of its records.
 fn recorder() -> (Recorder, AtomicU64) {
     let mut recorder = Recorder::default();
     recorder.begin(Cause::default());

@@ -8,46 +8,46 @@ use serde_json::Value;
 
 use super::{Journal, JournalEntry};
 
-/// Why a component did what it did.
+/// Explanation of the last act of a component.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Why<'a> {
-    /// When it acted; `null` when it had not yet.
+    /// Time of the act; `null` if there is none yet.
     #[serde(rename = "time_s", serialize_with = "seconds")]
     pub time: Option<Time>,
-    /// What it did then, and what led to it: one chain for each reason that it had.
+    /// Acts with their causes: one chain for each cause.
     pub chains: Vec<Chain<'a>>,
-    /// What it knew at the time that was asked about, as far as that ever changed.
+    /// Knowledge at the given time: the entries that ever changed.
     pub knowledge: Vec<KnowledgeEntry>,
 }
 
-/// What was done for one reason, and what led to it.
+/// Acts of one cause, and the chain of causes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chain<'a> {
-    /// What was done.
+    /// The acts.
     pub acts: Vec<&'a JournalEntry>,
-    /// What led to it, from the last reason back to the first.
+    /// The causes, from the last one back to the first.
     pub reasons: Vec<&'a JournalEntry>,
-    /// The record at which the way back is lost, because it is not in the journal any more.
+    /// The first cause that is missing, because it is not in the journal any more.
     #[serde(serialize_with = "number")]
     pub missing: Option<Cause>,
 }
 
-/// The value of an entry of what a component knows.
+/// The value of an entry of a component's knowledge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KnowledgeEntry {
     /// The entry.
     pub entry: String,
     /// Its value.
     pub value: Value,
-    /// Since when; `null` is earlier than the journal reaches.
+    /// Time of its last change; `null` if it is older than the journal.
     #[serde(rename = "since_s", serialize_with = "seconds")]
     pub since: Option<Time>,
 }
 
-/// What the component did is not in the journal any more.
+/// Error: the acts of the component at that time are not in the journal any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WhyError {
-    /// How far the journal of the component reaches back; `None` when nothing of it is left.
+    /// Time of the oldest kept record of the component; `None` if none is kept.
     pub since: Option<Time>,
 }
 
@@ -91,13 +91,14 @@ fn shown(value: &Value) -> String {
 }
 
 impl Journal {
-    /// What a component did last, up to this time of the run or at all, what led to it, and what it knew then.
+    /// Explains the last act of a component, up to this time of the run or at all: its causes, and the knowledge at
+    /// that time.
     ///
-    /// An act is an effect or a decision. A change of the knowledge that no loop had a reason for, such as a measured value, is an act only where
-    /// there is nothing else.
+    /// An act is an effect or a decision. A change of the knowledge without a cause, such as a measured value, is an
+    /// act only if the execution has no other.
     ///
     /// # Errors
-    /// What it did then is not in the journal any more.
+    /// The records of that time are not in the journal any more.
     pub fn why(&self, component: &str, at: Option<Time>) -> Result<Why<'_>, WhyError> {
         let own: Vec<&JournalEntry> = self.of(component).iter().collect();
         let until = own.iter().filter(|entry| at.is_none_or(|at| entry.time() <= at));
@@ -111,7 +112,7 @@ impl Journal {
         Ok(Why { time, chains, knowledge: knowledge(&own, at) })
     }
 
-    /// The records of one execution as acts with their reasons.
+    /// The records of one execution as acts with their causes.
     fn chains<'a>(&'a self, then: &[&'a JournalEntry]) -> Vec<Chain<'a>> {
         let acts: Vec<&JournalEntry> = then.iter().copied().filter(|entry| is_act(entry)).collect();
         let told = if acts.is_empty() { then } else { &acts };
@@ -132,7 +133,7 @@ impl Journal {
         chains
     }
 
-    /// How many records of a component are not left.
+    /// Number of records of a component that were overwritten.
     fn overwritten_of(&self, component: &str) -> u64 {
         let counts = self.loops.iter().filter(|counts| counts.component == component);
         let written: u64 = counts.map(super::LoopCounts::records).sum();
@@ -148,7 +149,7 @@ fn is_act(entry: &JournalEntry) -> bool {
     }
 }
 
-/// The newest values at a time. Of what changed only later, the first change tells what it was before.
+/// The values at a time. An entry that changed only later has the `before` value of its first change.
 fn knowledge(own: &[&JournalEntry], at: Option<Time>) -> Vec<KnowledgeEntry> {
     let mut known: BTreeMap<String, KnowledgeEntry> = BTreeMap::new();
     for entry in own {

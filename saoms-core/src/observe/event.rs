@@ -8,11 +8,11 @@ use saoms_api::{Level, Time};
 /// Something that happened in a fleet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunEvent {
-    /// When, in the time of the run.
+    /// Time of the run.
     pub time: Time,
     /// The path of the component that it concerns; `None` is the fleet as a whole.
     pub component: Option<Arc<str>>,
-    /// What happened.
+    /// Kind of the event.
     pub what: Occurrence,
 }
 
@@ -22,12 +22,12 @@ pub struct RunEvent {
 pub enum Occurrence {
     /// A component wrote a line to its log.
     Log {
-        /// How much it matters.
+        /// Severity.
         level: Level,
         /// The line.
         text: String,
     },
-    /// A component wrote a line of the original's console.
+    /// A component wrote a line to the classic console.
     Console {
         /// The line.
         text: String,
@@ -38,22 +38,23 @@ pub enum Occurrence {
     Left,
     /// The component failed, by an error or a panic.
     Failed {
-        /// Why, in its own words.
+        /// Message of the failure.
         message: String,
-        /// When a new one takes its place; `None` is never.
+        /// Delay until a new instance replaces it; `None` is never.
         restart: Option<Duration>,
     },
-    /// A new component has taken the place of a failed one.
+    /// A new instance has replaced a failed one.
     Restarted {
-        /// How often that happened.
+        /// Number of restarts so far.
         number: u32,
     },
-    /// A component of a new build of its class has taken its place.
+    /// An instance of a new build of its class has replaced the component.
     Replaced {
-        /// Whether it goes on where the earlier one was.
+        /// True if it restored the state of the earlier one.
         continued: bool,
     },
-    /// An execution took so long that another thread had to go on with the others. From now on the component runs on a thread of its own.
+    /// An execution took so long that another thread had to go on with the others. From now on the component runs on a
+    /// thread of its own.
     Slow {
         /// The watchdog's budget.
         budget: Duration,
@@ -62,19 +63,19 @@ pub enum Occurrence {
     Dropped {
         /// The topic.
         topic: Arc<str>,
-        /// How many messages were lost in this period.
+        /// Number of messages lost in this period.
         count: u64,
     },
     /// Executions were due faster than they could be run, and the component's `overrun` is `stop`.
     Overrun {
-        /// How many executions were left out.
+        /// Number of executions left out.
         missed: u64,
     },
-    /// The component did not end in time, and is left behind.
+    /// The component did not end in time and was abandoned.
     Abandoned,
     /// A remark about the whole fleet.
     Note {
-        /// How much it matters.
+        /// Severity.
         level: Level,
         /// The remark.
         text: String,
@@ -82,7 +83,7 @@ pub enum Occurrence {
 }
 
 impl Occurrence {
-    /// How much it matters.
+    /// Severity.
     pub fn level(&self) -> Level {
         match self {
             Occurrence::Log { level, .. } | Occurrence::Note { level, .. } => *level,
@@ -168,6 +169,6 @@ pub struct RunProgress {
     pub time: Time,
     /// Executions of all components so far.
     pub periods: u64,
-    /// What the counts of the report so far come to, in a few words each ([`RunSummary::progress`](saoms_api::extension::RunSummary)).
+    /// Short summaries of the report's counts so far ([`RunSummary::progress`](saoms_api::extension::RunSummary)).
     pub summaries: Vec<String>,
 }

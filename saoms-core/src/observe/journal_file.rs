@@ -11,7 +11,8 @@ use super::{Beginning, Interest, Observer, Records};
 
 /// An observer that writes every record of the journal to a file, as lines of JSON.
 ///
-/// The file is created when the fleet starts. Its first line says what it is and which components there are, its last one when the run ended.
+/// The file is created when the fleet starts. The first line holds the format version and the components, the last one
+/// the end of the run.
 pub struct JournalFile {
     path: PathBuf,
     file: Mutex<Option<Open>>,

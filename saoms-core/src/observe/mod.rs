@@ -1,8 +1,9 @@
 //! Observers of a run: programs that see what happens in a fleet without being part of it.
 //!
-//! An [`Observer`] is told events, the messages of topics that it asks for, records of the journal, and the report at the end. What it does
-//! changes nothing in the fleet, the trace included, and what nobody asks for costs nothing. Events and messages are put into a queue
-//! while the fleet runs, and told by a thread that does nothing else; records go by a queue and a thread of their own.
+//! An [`Observer`] receives events, the messages of topics that it asks for, records of the journal, and the report at
+//! the end. It changes nothing in the fleet, the trace included, and data that no observer asks for costs nothing.
+//! Events and messages are put into a queue while the fleet runs, and delivered by a thread of their own; so are
+//! records, by a second queue and thread.
 
 mod event;
 mod journal_file;

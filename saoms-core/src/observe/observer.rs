@@ -11,11 +11,11 @@ use crate::report::RunReport;
 
 /// A program that sees what happens in a fleet.
 ///
-/// Events, messages and progress come from one thread that does nothing else, in the order in which they happened, so that an observer may take
-/// its time; but observers wait for each other. In real time, events that pile up beyond a bound are counted and lost; in virtual time the
-/// run waits. An observer that panics over something loses that alone.
+/// Events, messages and progress come from one thread of their own, in the order in which they happened, so that an
+/// observer may take its time; but observers wait for each other. In real time, events that pile up beyond a bound are
+/// counted and lost; in virtual time the run waits. An observer that panics in a call loses that call only.
 pub trait Observer: Send + Sync + 'static {
-    /// Events that the observer wants beside those that everybody gets. Asked once, before the start.
+    /// Optional events that the observer wants. Called once, before the start.
     fn interest(&self) -> Interest {
         Interest::default()
     }
@@ -29,51 +29,51 @@ pub trait Observer: Send + Sync + 'static {
         Ok(())
     }
 
-    /// Something happened.
+    /// An event happened.
     fn event(&self, event: &RunEvent) {
         let _ = event;
     }
 
-    /// True if the messages of a topic are wanted, where its publishers declare it so and call it `name` after renaming. Asked when a
-    /// component becomes a publisher, on a thread of the run, and not to be answered slowly.
+    /// True if the messages of a topic are wanted, where its publishers declare it so and call it `name` after
+    /// renaming. Called when a component becomes a publisher, on a thread of the run, so it has to be fast.
     fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
         let _ = (name, declared);
         false
     }
 
-    /// A component sent a message on a topic that is wanted. All messages are told, those that no reader gets as well.
+    /// A component sent a message on a topic that is wanted. Messages without a reader are included.
     fn message(&self, sent: &SentMessage) {
         let _ = sent;
     }
 
-    /// How far the run is.
+    /// Periodic report of the progress of the run.
     fn progress(&self, progress: &RunProgress) {
         let _ = progress;
     }
 
-    /// New records of the journal, from a thread that does nothing else.
+    /// New records of the journal, from a thread of their own.
     ///
     /// # Errors
-    /// The observer cannot take them, nor any that follow: the run says so at once, and fails at its end.
+    /// The observer can take neither them nor any that follow: the run reports it at once, and fails at its end.
     fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
         let _ = records;
         Ok(())
     }
 
-    /// The run has ended, and everything before has been told. Called by the thread that waited for the end.
+    /// The run has ended, and all events before have been delivered. Called by the thread that waited for the end.
     fn end(&self, report: &RunReport) {
         let _ = report;
     }
 }
 
-/// What an observer wants to be told beside the events that everybody gets.
+/// Optional events that an observer wants beside those that every observer gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Interest {
-    /// Up to which level it wants lines of the log. A line that nobody wants is not even formatted.
+    /// Highest level of log lines. A line that no observer wants is not even formatted.
     pub log: Option<Level>,
-    /// Lines of the original's console.
+    /// Lines of the classic console.
     pub console: bool,
-    /// How often it wants [`Observer::progress`]; `None` is never.
+    /// Interval of [`Observer::progress`]; `None` is never.
     pub progress: Option<Duration>,
     /// Records of the journal.
     pub journal: bool,
@@ -107,11 +107,11 @@ pub struct Beginning<'a> {
 pub struct Records<'a> {
     /// The records.
     pub entries: &'a [JournalEntry],
-    /// Components that joined the running fleet since the last ones.
+    /// Components that joined the running fleet since the last call.
     pub joined: &'a [ComponentName],
-    /// How many found no room since the last ones, and are lost.
+    /// Number of records that were lost for want of room since the last call.
     pub lost: u64,
-    /// When the run ended; these are the last ones then.
+    /// End of the run, with the last records.
     pub end: Option<Time>,
 }
 
@@ -140,7 +140,7 @@ impl Observers {
         }
     }
 
-    /// All wishes together.
+    /// The union of all interests.
     pub(crate) fn interest(&self) -> Interest {
         let wider = |one: Interest, other: Interest| Interest {
             log: one.log.max(other.log),

@@ -6,12 +6,12 @@ use saoms_api::{Level, Time};
 
 use super::{Interest, Observers, Occurrence, RunEvent, RunProgress, SentMessage};
 
-/// How many events may wait for the observers.
+/// Maximum number of events that wait for the observers.
 const CAPACITY: usize = 65_536;
 
 /// An event or a message on its way to the observers.
 pub(crate) enum News {
-    /// Something happened.
+    /// An event of the run.
     Event(RunEvent),
     /// A component sent a message on a topic that the observers of these numbers want.
     Sent(SentMessage, Arc<[u32]>),
@@ -39,12 +39,12 @@ impl From<RunEvent> for News {
     }
 }
 
-/// A queue of news for the thread that tells the observers. Putting one in never waits in real time.
+/// A queue of events and messages for the thread that calls the observers. In real time, adding one never blocks.
 pub(crate) struct EventQueue {
     waiting: Mutex<Waiting>,
     filled: Condvar,
     emptied: Condvar,
-    /// True if a full queue holds up whoever has an event, as in virtual time.
+    /// True if a writer waits when the queue is full, as in virtual time.
     is_patient: bool,
     interest: Interest,
 }
@@ -101,19 +101,19 @@ impl EventQueue {
         }
     }
 
-    /// True if somebody who has an event waits for room.
+    /// True if a writer waits for room.
     pub(crate) fn is_jammed(&self) -> bool {
         self.lock().writers_sleep
     }
 
-    /// Nothing more comes: [`tell`](EventQueue::tell) returns when it has told what is there.
+    /// Closes the queue: [`tell`](EventQueue::tell) returns when it has delivered the waiting events.
     pub(crate) fn close(&self) {
         self.lock().closed = true;
         self.filled.notify_all();
         self.emptied.notify_all();
     }
 
-    /// Tells events as they come, until the queue is closed and empty.
+    /// Delivers events as they come, until the queue is closed and empty.
     pub(crate) fn tell(&self, observers: &Observers, progress: impl Fn() -> RunProgress) {
         let every = self.interest.progress;
         let mut next_progress = every.map(|every| Instant::now() + every);
@@ -140,7 +140,7 @@ impl EventQueue {
         }
     }
 
-    /// Waits until there is something to tell, and takes all of it. The flag says that nothing more comes.
+    /// Waits for events and takes all of them. The flag is true if the queue is closed.
     fn next_batch(&self, batch: &mut VecDeque<News>, until: Option<Instant>) -> (u64, bool) {
         let mut waiting = self.lock();
         while waiting.news.is_empty() && !waiting.closed {

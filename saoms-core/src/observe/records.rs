@@ -13,8 +13,8 @@ pub(crate) struct RecordDelivery {
     pub(crate) failures: Vec<Failure>,
 }
 
-/// Delivers records as they come, until the queue is closed and empty. `failed` is called with the first failure of each observer, when it happens;
-/// after that, its records are only counted.
+/// Delivers records as they come, until the queue is closed and empty. `failed` is called with the first failure of
+/// each observer, when it happens; after that, its records are only counted.
 pub(crate) fn deliver_records(
     queue: &RecordQueue,
     observers: &Observers,

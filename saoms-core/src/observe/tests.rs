@@ -12,7 +12,7 @@ use super::{
 };
 use crate::journal::{ComponentName, RecordQueue, Recorder, Stamp};
 
-/// Listens slowly.
+/// A slow observer.
 #[derive(Default)]
 struct Listener {
     told: Mutex<Vec<String>>,
@@ -102,7 +102,7 @@ fn an_observer_gets_the_lines_that_it_wants_and_panics_alone() {
     assert_eq!(*listener.told.lock().unwrap(), ["[0.000 s] asked", "[0.000 s] started"]);
 }
 
-/// Counts records until it has no room for more.
+/// An observer that fails after a number of records.
 struct Shelf {
     room: usize,
     records: AtomicUsize,
@@ -119,7 +119,7 @@ impl Observer for Shelf {
     }
 }
 
-/// A recorder with so many records of the component with number 0.
+/// A recorder with this number of records of component 0.
 fn recorder(records: usize) -> Recorder {
     let (mut recorder, ids) = (Recorder::default(), AtomicU64::new(0));
     recorder.begin(Cause::default());

@@ -9,7 +9,7 @@ use saoms_abi::{EntryPoint, PluginTable, VERSION};
 
 use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
 
-/// Loads a library for good.
+/// Loads a library. It is never unloaded.
 pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
     let unloadable = |message: String| PluginError::Unloadable {
         path: path.to_owned(),
@@ -26,11 +26,11 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
     // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
     let library = unsafe { Library::new(file) }.map_err(|error| unloadable(whole(&error)));
     if let Some(copy) = &copy {
-        // What is loaded needs the name no more.
+        // The loaded library does not need the file name any more.
         let _ = fs::remove_file(copy);
     }
     let library = library?;
-    // It stays: its functions, its texts and its threads are in use until the program ends.
+    // Never unloaded: its functions, texts and threads are in use until the program ends.
     let library: &'static Library = Box::leak(Box::new(library));
     let table = {
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
@@ -115,7 +115,8 @@ unsafe fn one<T>(table: *const T) -> Result<&'static T, String> {
     }
     // SAFETY: as the caller promises; all tables begin with their size.
     let size = unsafe { *table.cast::<usize>() };
-    // Where a table grows within a version, this has to be what that version began with, and what is missing none.
+    // If a table gains fields within a version, this has to compare with the first size of that version, and missing
+    // fields are `None`.
     if size < size_of::<T>() {
         return Err(format!("a table has {size} bytes, expected {}", size_of::<T>()));
     }

@@ -9,7 +9,7 @@ use serde_json::value::RawValue;
 
 use super::PluginError;
 
-/// What a library says about itself.
+/// Metadata of a library.
 #[derive(Debug, Deserialize)]
 pub struct Metadata {
     /// The version of `saoms-api` that it was built with; empty for one in another language.
@@ -21,7 +21,7 @@ pub struct Metadata {
     /// Its version.
     #[serde(default)]
     pub version: String,
-    /// Whether its panics unwind or abort.
+    /// Panic strategy: `unwind` or `abort`.
     #[serde(default)]
     pub(super) panic: String,
     /// The name of the function that gives its tables.
@@ -37,7 +37,7 @@ pub struct Metadata {
     pub(super) rules: Vec<RuleMetadata>,
 }
 
-/// What a library says about a rule.
+/// Metadata of a rule.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RuleMetadata {
     pub(super) code: &'static Code,
@@ -70,7 +70,8 @@ impl<'de> Deserialize<'de> for RuleMetadata {
     }
 }
 
-/// The code as a constant, as diagnostics have it. Those that are kept stay few: a plugin that is read again has the same.
+/// The code as a leaked constant, as diagnostics need it. Equal codes are leaked once, so a plugin that is read again
+/// costs nothing.
 fn kept(id: &str, name: &str, meaning: &str, severity: Severity, rule: Option<&str>) -> &'static Code {
     static KNOWN: Mutex<Vec<&'static Code>> = Mutex::new(Vec::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -88,7 +89,7 @@ fn kept(id: &str, name: &str, meaning: &str, severity: Severity, rule: Option<&s
     new
 }
 
-/// What every version has.
+/// The part of the metadata that every version has.
 #[derive(Deserialize)]
 struct Head {
     saoms: String,
@@ -100,7 +101,7 @@ struct Head {
 /// Reads metadata.
 pub(super) fn read(path: &Path, text: &str) -> Result<Metadata, PluginError> {
     let malformed = |message: String| PluginError::Metadata { path: path.to_owned(), message };
-    // First of all the version: another one may have another shape.
+    // The version first: metadata of another version may have another shape.
     let head: Head = serde_json::from_str(text).map_err(|error| malformed(error.to_string()))?;
     if head.saoms != "plugin" {
         return Err(malformed(format!("found `{}` for `saoms`, expected `plugin`", head.saoms)));

@@ -1,7 +1,8 @@
-//! Libraries that bring classes, loops and rules over whole fleets.
+//! Plugins: libraries with classes, loops and rules over whole fleets.
 //!
-//! A [`Plugin`] is known by its metadata, which lie in a section of the file and are read before anything in it runs (see
-//! [`saoms_abi`]). Its code is loaded when the first component of its classes is constructed, and stays until the program ends.
+//! A [`Plugin`] is known by its metadata, which lie in a section of the file and are read before anything in it runs
+//! (see [`saoms_abi`]). Its code is loaded when the first component of its classes is constructed, and stays until the
+//! program ends.
 
 mod boundary;
 mod error;
@@ -26,7 +27,7 @@ pub use search::{FoundLibraries, Search};
 
 use saoms_lang::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};
 
-/// What a loaded library offers, in the order of its metadata.
+/// The tables of a loaded library, in the order of its metadata.
 #[derive(Debug)]
 struct Code {
     classes: Vec<ImportedClass>,
@@ -34,20 +35,20 @@ struct Code {
     rules: Vec<ImportedRule>,
 }
 
-/// A library that brings classes, loops and rules.
+/// A library with classes, loops and rules.
 #[derive(Debug)]
 pub struct Plugin {
     path: PathBuf,
     text: String,
     metadata: Metadata,
-    /// Whether a copy of it is loaded, so that the file may change.
+    /// True if a copy of the file is loaded, so that the file may change.
     copied: bool,
     /// Its code, once it is loaded.
     code: OnceLock<Result<Code, PluginError>>,
 }
 
 impl Plugin {
-    /// Reads what a library offers. Nothing in it runs.
+    /// Reads the metadata of a library. No code of it runs.
     ///
     /// # Errors
     /// It is no library for this machine, has no metadata, or was built for another version of the boundary.
@@ -55,7 +56,8 @@ impl Plugin {
         Plugin::read(path, false)
     }
 
-    /// The same; a copy is loaded then, so that the file may be written anew while the program runs, and a new build of it loaded beside this one.
+    /// The same; a copy is loaded then, so that the file may be written anew while the program runs, and a new build of
+    /// it loaded beside this one.
     ///
     /// # Errors
     /// As [`open`](Plugin::open).
@@ -69,12 +71,12 @@ impl Plugin {
         Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, copied, code: OnceLock::new() }))
     }
 
-    /// Where it is.
+    /// Path of the library.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What it says about itself.
+    /// Metadata of the library.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
     }
@@ -110,7 +112,7 @@ impl Plugin {
     }
 }
 
-/// A class, a loop or a rule of a plugin, by its place.
+/// A class, a loop or a rule of a plugin, by its index in the metadata.
 #[derive(Debug)]
 struct Part {
     plugin: Arc<Plugin>,
@@ -119,7 +121,7 @@ struct Part {
 
 impl Provider for Part {
     fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
-        // There is one for each of the metadata.
+        // The loader checked that each of the metadata has its table.
         self.plugin.code()?.classes.get(self.place).ok_or("the library has no such class")?.construct(values)
     }
 
@@ -130,7 +132,7 @@ impl Provider for Part {
 
 impl LoopProvider for Part {
     fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
-        // There is one for each of the metadata.
+        // The loader checked that each of the metadata has its table.
         self.plugin.code()?.loops.get(self.place).ok_or("the library has no such loop")?.construct(values)
     }
 
@@ -141,7 +143,7 @@ impl LoopProvider for Part {
 
 impl RuleProvider for Part {
     fn check(&self, fleet: &FleetView<'_>) -> Result<Vec<Finding>, Failure> {
-        // There is one for each of the metadata.
+        // The loader checked that each of the metadata has its table.
         self.plugin.code()?.rules.get(self.place).ok_or("the library has no such rule")?.check(fleet)
     }
 

@@ -9,8 +9,8 @@ use saoms_lang::project::LibraryResolver;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::identity;
 
-/// A name is a path relative to the folder of its composite, or to a place of the search; `lib` before the name and `.so` behind it may be
-/// left out.
+/// A name is a path relative to the folder of its composite, or to a place of the search; `lib` before the name and
+/// `.so` behind it may be left out.
 impl LibraryResolver for Search {
     fn open(&self, folder: &Path, name: &str, registry: &mut Registry) -> LibraryLink {
         match self.find(folder, name) {

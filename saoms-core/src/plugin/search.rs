@@ -9,25 +9,25 @@ use saoms_lang::registry::{Registry, RegistryError};
 
 use super::{Plugin, PluginError};
 
-/// Where libraries are looked for.
+/// Places in which libraries are searched.
 #[derive(Clone, Debug, Default)]
 pub struct Search {
-    /// Files and folders that somebody named: what is wrong with them is an error.
+    /// Files and folders named by the user: a fault in one of them is an error.
     pub named: Vec<PathBuf>,
-    /// Folders that are looked through where they exist; files in them without metadata are not ours.
+    /// Folders that are searched if they exist; files in them without metadata are ignored.
     pub folders: Vec<PathBuf>,
-    /// Whether copies are loaded, so that the files may be written anew while the program runs.
+    /// True if copies are loaded, so that the files may be overwritten while the program runs.
     pub copies: bool,
 }
 
-/// What a search came to.
+/// Result of a search.
 #[derive(Debug, Default)]
 pub struct FoundLibraries {
     /// The plugins, in the order of the places and by name within a folder; each file once.
     pub plugins: Vec<Arc<Plugin>>,
-    /// What is wrong with those that somebody named.
+    /// Faults of the libraries that the user named.
     pub errors: Vec<PluginError>,
-    /// What is wrong with others, which are left out.
+    /// Faults of other libraries, which are left out.
     pub left_out: Vec<PluginError>,
 }
 
@@ -56,7 +56,7 @@ impl Search {
         Classes { registry, libraries: Some(Rc::new(self.clone())), problems }
     }
 
-    /// Reads the metadata of all libraries; nothing in them runs.
+    /// Reads the metadata of all libraries. No code of them runs.
     pub fn run(&self) -> FoundLibraries {
         let mut found = FoundLibraries::default();
         let mut seen = BTreeSet::new();

@@ -2,14 +2,16 @@ use serde::{Deserialize, Serialize};
 
 /// Steps of the histogram within each power of two.
 const STEPS: usize = 8;
-/// Powers of two covered: up to 2^26 us, a bit more than a minute. What is later counts as that late, except for the maximum.
+/// Powers of two covered: up to 2^26 us, a bit more than a minute. Larger values count as the largest one, except for
+/// the maximum.
 const OCTAVES: usize = 24;
 const BUCKETS: usize = STEPS * OCTAVES;
 
-/// How late executions started: a histogram whose steps grow with the value, in less than 1 kB and a few nanoseconds for each entry.
+/// Lateness of executions: a histogram whose steps grow with the value. It takes less than 1 kB, and a few nanoseconds
+/// for each entry.
 ///
-/// Below 8 us each microsecond has its own bucket, above each power of two has eight, so that a quantile is at most 1/16 off. (The layout is that
-/// of Gil Tene's HdrHistogram with three significant bits.)
+/// Below 8 us each microsecond has its own bucket, above each power of two has eight, so that a quantile is at most
+/// 1/16 off. (The layout is that of Gil Tene's HdrHistogram with three significant bits.)
 #[derive(Clone, Debug, Default)]
 pub struct Lateness {
     buckets: Option<Box<[u32; BUCKETS]>>,
@@ -30,12 +32,12 @@ pub struct LatenessSummary {
 }
 
 impl Lateness {
-    /// Counts one execution that started so many nanoseconds after it was due.
+    /// Counts one execution that started `nanos` nanoseconds after it was due.
     pub fn record(&mut self, nanos: u64) {
         self.count += 1;
         let micros = nanos / 1_000;
         if micros == 0 {
-            // In virtual time nothing is ever late, and no memory is needed.
+            // In virtual time no execution is late, and no memory is needed.
             self.punctual += 1;
             return;
         }
@@ -45,7 +47,7 @@ impl Lateness {
         *bucket = bucket.saturating_add(1);
     }
 
-    /// Adds what another histogram counted.
+    /// Adds the counts of another histogram.
     pub fn merge(&mut self, other: &Lateness) {
         self.count += other.count;
         self.punctual += other.punctual;
@@ -58,7 +60,7 @@ impl Lateness {
         }
     }
 
-    /// The value that this share (0 to 1) of all executions did not exceed, in microseconds.
+    /// The quantile of this share (0 to 1), in microseconds.
     pub fn quantile(&self, share: f64) -> u64 {
         let rank = ((self.count as f64 * share).ceil() as u64).clamp(1, self.count.max(1));
         let mut below = self.punctual;

@@ -1,4 +1,4 @@
-//! What a run leaves behind: one [`RunReport`], and the small statistics that it is made from.
+//! The report of a run: one [`RunReport`], and the statistics that it is made from.
 
 mod lateness;
 mod run;

@@ -11,24 +11,24 @@ use crate::journal::Journal;
 pub struct RunReport {
     /// The seed of all chance.
     pub seed: u64,
-    /// How long the run lasted, in seconds of its own clock.
+    /// Duration of the run, in seconds of its own clock.
     pub time_s: f64,
     /// Executions of all periodic components together.
     pub periods: u64,
-    /// What components contributed, as nested objects.
+    /// Values contributed by components, as nested objects.
     #[serde(flatten)]
     pub sections: Map<String, Value>,
     /// Every component, in document order.
     pub components: Vec<ComponentReport>,
-    /// What the loops saw, decided and did.
+    /// Symptoms, decisions and effects of the loops.
     #[serde(default)]
     pub journal: Journal,
-    /// Who said whether the work is done.
+    /// Votes of the components about the work that is left.
     pub votes: Votes,
-    /// How the run ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
-    /// A digest of everything that happened, 16 hexadecimal digits: equal for equal runs, on every machine. `null` in real time, where no
-    /// two runs are equal.
+    /// A digest of everything that happened, 16 hexadecimal digits: equal for equal runs, on every machine. `null` in
+    /// real time, where no two runs are equal.
     pub trace_hash: Option<String>,
 }
 
@@ -52,22 +52,22 @@ pub struct ComponentReport {
     pub id: Option<String>,
     /// Its class.
     pub class: String,
-    /// How many executions it began.
+    /// Number of executions begun.
     pub executions: u64,
-    /// How many due executions were left out, because the one before had not started in time.
+    /// Number of due executions that were left out, because the one before had not started in time.
     pub missed: u64,
-    /// How late executions started, in microseconds.
+    /// Lateness of the starts of executions, in microseconds.
     pub late_us: LatenessSummary,
-    /// How many executions ended after their deadline.
+    /// Number of executions that ended after their deadline.
     pub deadline_misses: u64,
-    /// How many executions took longer than the watchdog's budget.
+    /// Number of executions that took longer than the watchdog's budget.
     pub slow: u64,
-    /// How often a new instance took the place of a failed one.
+    /// Number of new instances that replaced a failed one.
     pub restarts: u32,
-    /// How often a component of a new build of its class took its place (`saoms run --reload`).
+    /// Number of replacements by a new build of its class (`saoms run --reload`).
     #[serde(default)]
     pub replaced: u32,
-    /// How often it failed, by an error or a panic.
+    /// Number of failures, by an error or a panic.
     pub failures: u64,
     /// Messages that its event queues could not hold.
     pub dropped: u64,
@@ -75,7 +75,7 @@ pub struct ComponentReport {
     pub messages: MessageCounts,
 }
 
-/// How many messages a component sent and received.
+/// Numbers of messages that a component sent and received.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MessageCounts {
     /// Sent, each counted once however many readers it had.
@@ -84,25 +84,25 @@ pub struct MessageCounts {
     pub received: u64,
 }
 
-/// What components said about the work that is left.
+/// Votes of the components about the work that is left.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Votes {
-    /// How many said that it is done.
+    /// Number of components that voted that all work is done.
     pub done: u64,
-    /// The names of those who saw work left.
+    /// The names of the components that voted that work is left.
     pub open: Vec<String>,
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// In one word.
+    /// Status in one word.
     pub status: RunStatus,
-    /// What went wrong, and what ended the run where that is not evident.
+    /// Failures, and the cause of the end where it is not evident.
     pub reasons: Vec<String>,
 }
 
-/// How a run ended, in one word.
+/// Status of an ended run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunStatus {
@@ -110,8 +110,8 @@ pub enum RunStatus {
     Done,
     /// The time given for the run was over.
     Elapsed,
-    /// Something failed for good, whatever ended the run.
+    /// A component or observer failed for good, whatever ended the run.
     Failed,
-    /// The run was told to stop.
+    /// The run was interrupted, as by Ctrl-C.
     Interrupted,
 }

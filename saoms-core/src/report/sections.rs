@@ -42,7 +42,8 @@ impl Sections {
         }
     }
 
-    /// Adds to a count. A whole number that was [`set`](Sections::set) is counted on from; any other value gives way to the count.
+    /// Adds to a count. A whole number that was [`set`](Sections::set) is counted on from; any other value gives way to
+    /// the count.
     pub fn add(&mut self, path: &str, more: i64) {
         let Some(entry) = self.entries.get_mut(path) else {
             self.entries.insert(path.to_owned(), Entry::Count(more));
@@ -63,7 +64,8 @@ impl Sections {
         }
     }
 
-    /// Everything as nested objects. Where a path has a value and leads further too, the value stands beside the rest as `value`.
+    /// All sections as nested objects. If a path has both a value and paths below it, the value stands beside those as
+    /// `value`.
     pub fn to_json(&self) -> Map<String, Value> {
         let mut root = Map::new();
         for (path, entry) in &self.entries {

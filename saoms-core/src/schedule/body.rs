@@ -13,7 +13,8 @@ use saoms_api::host::contain::contained;
 use saoms_lang::assembly::ComponentSpec;
 use saoms_lang::schema::Schema;
 
-/// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for others.
+/// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for
+/// others.
 pub(super) struct Body {
     pub(super) instance: Option<Box<dyn DynComponent>>,
     /// The messages of the present period, one list for each subscription.
@@ -21,15 +22,15 @@ pub(super) struct Body {
     pub(super) part: Part,
 }
 
-/// What the component's context works with.
+/// The part of a body that the component's context works with.
 pub(super) struct Part {
     pub(super) index: u32,
     pub(super) name: Arc<str>,
     pub(super) publishers: Vec<TopicId>,
-    /// Of topics on which bytes were sent.
+    /// Schemas of the topics on which messages were sent as bytes.
     pub(super) schemas: Vec<(TopicId, Arc<Schema>)>,
     pub(super) subscriptions: Vec<TopicReader>,
-    /// Subscriptions of a failed instance, for the one that takes its place.
+    /// Subscriptions of a failed instance, for the instance that replaces it.
     pub(super) kept: Vec<TopicReader>,
     pub(super) outbox: Vec<(TopicId, SharedMessage)>,
     pub(super) chance: Chance,
@@ -43,22 +44,22 @@ pub(super) struct Part {
     pub(super) initializing: bool,
     /// The fault of the present execution.
     pub(super) fault: Option<TaskFaultKind>,
-    /// What goes to the journal.
+    /// Records for the journal.
     pub(super) recorder: Recorder,
-    /// What the component is made of; the targets of its wires are numbers of slots.
+    /// Specification of the component; the targets of its wires are slot numbers.
     pub(super) spec: Arc<ComponentSpec>,
-    /// The instance is part of a change that is not committed: what it sends waits.
+    /// True if the instance is part of a change that is not committed: its messages are held back.
     pub(super) held: bool,
 }
 
-/// What can be asked of a component.
+/// Jobs of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Job {
-    /// To come to be and initialize.
+    /// Construct and initialize.
     Start,
-    /// One execution.
+    /// Execute once.
     Execute,
-    /// To shut down.
+    /// Shut down.
     Shutdown,
 }
 
@@ -94,7 +95,7 @@ impl Body {
         Body { instance: None, inboxes: Vec::new(), part }
     }
 
-    /// Does what is asked, whatever the component's code does. After a failure and after the shutdown there is no instance any more.
+    /// Performs a job, and contains panics of the component's code. A failure or a shutdown drops the instance.
     #[inline]
     pub(super) fn perform(&mut self, shared: &Arc<Shared>, job: Job) -> Result<(), Failure> {
         self.part.recorder.begin(Cause::default());
@@ -131,7 +132,8 @@ impl Body {
         result?
     }
 
-    /// Serves a call to one of the component's services, for a caller with this cause. The outer error is a panic: then there is no instance any more.
+    /// Serves a call to one of the component's services, for a caller with this cause. The outer error is a panic,
+    /// which drops the instance.
     pub(super) fn serve(
         &mut self,
         shared: &Arc<Shared>,
@@ -160,16 +162,16 @@ impl Body {
         contained(|| code(instance.as_mut(), &mut context))
     }
 
-    /// Lets go of the instance. What its destructor does is contained, too.
+    /// Drops the instance. A panic of its destructor is contained, too.
     pub(super) fn discard(&mut self) {
         if let Some(instance) = self.instance.take() {
-            // A panic here says nothing that the failure or the shutdown before has not said.
+            // A panic here is ignored: the failure or the shutdown before it has been reported.
             let _ = contained(|| drop(instance));
         }
     }
 }
 
-/// Does what a fault demands of an execution.
+/// Carries out the injected fault of an execution.
 #[cold]
 fn commit_fault(fault: TaskFaultKind) -> Result<(), Failure> {
     match fault {

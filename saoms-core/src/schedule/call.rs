@@ -10,8 +10,8 @@ use super::lifecycle::Request;
 use super::shared::Shared;
 use super::slot::NEVER;
 
-/// Calls through a reference of a component whose code runs on this thread. The provider's code runs right here, as if the caller had called a
-/// function: it is taken out of the engine meanwhile, and is busy for everybody else.
+/// Calls through a reference of a component whose code runs on this thread. The provider's code runs on the same
+/// thread, as in a function call: it is taken out of the engine meanwhile, and is busy for all others.
 pub(super) fn call(
     shared: &Arc<Shared>,
     caller: &Part,
@@ -52,7 +52,7 @@ pub(super) fn call(
     result.map_err(|error| named(error, &name))
 }
 
-/// Says which component it was that failed, where the provider's own code could not.
+/// Adds the provider's path to an error that lacks it.
 fn named(error: CallError, name: &str) -> CallError {
     match error {
         CallError::Failed { provider, failure } if provider.is_empty() => {
@@ -101,7 +101,8 @@ impl Engine {
         declaration.offers().any(|offered| offered.name == service && offered.is_of_host())
     }
 
-    /// Takes a component's body to serve a call. An instance that is not committed serves others of the same change alone.
+    /// Takes a component's body to serve a call. An instance that is not committed serves only others of the same
+    /// change.
     fn begin_call(&mut self, index: u32, is_held: bool) -> Result<Box<Body>, CallError> {
         let slot = &mut self.slots[index as usize];
         let provider = || slot.name.to_string();
@@ -115,7 +116,7 @@ impl Engine {
         Ok(body)
     }
 
-    /// Gives the body back; what the component sent in the call leaves now.
+    /// Gives the body back; messages sent in the call are delivered now.
     fn finish_call(&mut self, index: u32, mut body: Box<Body>, panic: Option<Failure>, now: u64) {
         if self.is_abandoned(index) {
             std::mem::forget(body);

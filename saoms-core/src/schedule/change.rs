@@ -1,8 +1,9 @@
-//! Changes of a fleet: components end, start and are replaced as a plan says, or everything stays as it was.
+//! Changes of a fleet: components end, start and are replaced by a plan, or everything stays as it was.
 //!
-//! The change from nothing starts a fleet. New instances initialize on the caller's thread, providers before those that call them, while those
-//! that they replace and those that end are out of the engine, as if they served a call: the timer never waits. What new instances
-//! send is held back until all have initialized; then the change is committed at one instant, and the others shut down.
+//! The start of a fleet is the change from an empty one. New instances initialize on the caller's thread, providers
+//! before those that call them, while those that they replace and those that end are out of the engine, as if they
+//! served a call: the timer never waits. Messages of new instances are held back until all have initialized; then the
+//! change is committed at one instant, and the old instances shut down.
 
 use std::fmt;
 use std::sync::{Arc, MutexGuard};
@@ -22,7 +23,7 @@ use crate::assemble::{ChangePlan, Difference, providers_first};
 use crate::journal::ComponentName;
 use crate::observe::Occurrence;
 
-/// How long a change waits for code that runs.
+/// Maximum time that a change waits for running code.
 const WAIT: Duration = Duration::from_millis(500);
 
 /// A change that was made, by the paths of components.
@@ -36,23 +37,23 @@ pub struct Changed {
     pub replaced: Vec<(String, Takeover)>,
 }
 
-/// Why a change was not made. The fleet is as it was.
+/// Error of a change that was not made. The fleet is as it was.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ChangeError {
-    /// A component cannot end or be replaced now, and may be later: its code runs, or it said so.
+    /// A component cannot end or be replaced now: its code runs, or it refused. A later try may succeed.
     NotNow {
         /// Its path.
         component: String,
-        /// Why.
+        /// The reason.
         why: String,
     },
-    /// A new instance of a component does not come to be, or cannot go on where the earlier one was.
+    /// A new instance of a component cannot be constructed, initialized or restored.
     Failed {
         /// Its path.
         component: String,
         /// Its class.
         class: String,
-        /// Why, in its own words.
+        /// Its failure.
         failure: Failure,
     },
     /// The fleet has no such component.
@@ -76,7 +77,7 @@ impl fmt::Display for ChangeError {
 
 impl std::error::Error for ChangeError {}
 
-/// Makes the fleet that of an assembly.
+/// Changes the fleet to that of an assembly.
 pub(super) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, ChangeError> {
     let _one_at_a_time = shared.lock_changes();
     let current = shared.lock().specs();
@@ -85,7 +86,7 @@ pub(super) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, C
     Change::new(shared).make(&plan, wanted)
 }
 
-/// Replaces one component by one of this specification, whatever differs. How its task runs stays as it is.
+/// Replaces one component by one of this specification, even if nothing differs. Its task settings stay.
 pub(super) fn replace(shared: &Arc<Shared>, spec: ComponentSpec) -> Result<Takeover, ChangeError> {
     let _one_at_a_time = shared.lock_changes();
     let mut wanted = shared.lock().specs();
@@ -124,7 +125,7 @@ struct Change<'a> {
     leaving: Vec<(u32, Box<Body>)>,
 }
 
-/// What becomes of a component of the fleet that is wanted.
+/// Kinds of change of a component of the wanted fleet.
 #[derive(Clone, Copy)]
 enum Fate {
     Kept,
@@ -151,7 +152,7 @@ impl<'a> Change<'a> {
         mut wanted: Vec<Option<Arc<ComponentSpec>>>,
     ) -> Result<Changed, ChangeError> {
         let order = providers_first(&as_members(&wanted));
-        // One of another class cannot go on where the present one is.
+        // An instance of another class cannot restore the state of the present one.
         let (anew, replaced): (Vec<_>, Vec<_>) =
             plan.replace.iter().partition(|one| one.differences.contains(&Difference::Class));
         let removed: Vec<u32> =
@@ -254,7 +255,8 @@ impl<'a> Change<'a> {
         }
     }
 
-    /// A failure may be that of a provider which was called.
+    /// Initializes a new component. The number in the error is that of the component that failed, which may be a
+    /// provider.
     fn initialize(&self, number: u32) -> Result<(), (u32, Failure)> {
         let mut engine = self.shared.lock();
         let now = engine.time_of_change(self.shared);
@@ -280,7 +282,7 @@ impl<'a> Change<'a> {
         result
     }
 
-    /// Lets a new instance take over.
+    /// Constructs the new instance and lets it take over.
     fn replace(&mut self, number: u32, spec: Arc<ComponentSpec>) -> Result<(), ChangeError> {
         let place = self.present.iter().position(|(known, _)| *known == number);
         let Some(mut body) = place.map(|place| self.present.swap_remove(place).1) else {
@@ -340,7 +342,7 @@ impl<'a> Change<'a> {
         self.shared.release(engine);
     }
 
-    /// Shuts down a new component of a change that is not made after all.
+    /// Shuts down a new component of a change that is undone.
     fn take_back(&self, number: u32) {
         let mut engine = self.shared.lock();
         if engine.slots[number as usize].state != SlotState::Active {
@@ -360,7 +362,7 @@ impl<'a> Change<'a> {
         self.shared.release(engine);
     }
 
-    /// All have initialized: what they sent leaves, and what is not wanted any more shuts down.
+    /// Commits the change after all have initialized: their messages are delivered, and removed components shut down.
     fn commit(mut self, removed: &[u32]) -> Result<Changed, ChangeError> {
         let mut engine = self.shared.lock();
         if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
@@ -372,7 +374,8 @@ impl<'a> Change<'a> {
         if engine.phase == RunPhase::Starting {
             self.shared.clock.start();
             engine.phase = RunPhase::Running;
-            // The timer sleeps without a term so far; where nobody is due, the end of the run still is.
+            // The timer sleeps without a deadline so far. It has to sleep until the end of the run if no component is
+            // due.
             engine.wake = true;
         }
         let name = |engine: &Engine, number: u32| engine.slots[number as usize].name.to_string();
@@ -426,7 +429,7 @@ impl<'a> Change<'a> {
     }
 }
 
-/// A specification whose wires lead to slots.
+/// The specification with slot numbers as targets of its wires.
 fn retargeted(spec: Arc<ComponentSpec>, numbers: &[u32]) -> Arc<ComponentSpec> {
     let number = |target: usize| numbers.get(target).map_or(usize::MAX, |number| *number as usize);
     let mut targets = spec.references.iter().flat_map(|wire| &wire.targets);
@@ -451,7 +454,7 @@ impl Engine {
         if self.phase == RunPhase::Starting { 0 } else { shared.clock.now() }
     }
 
-    /// The numbers of new components. One that was removed and comes again has its number again.
+    /// The numbers of new components. A removed component that returns gets its number again.
     fn number<'s>(&self, specs: impl Iterator<Item = &'s Arc<ComponentSpec>>) -> Vec<u32> {
         let mut next = self.slots.len() as u32;
         let number = |spec: &Arc<ComponentSpec>| {
@@ -496,7 +499,7 @@ impl Engine {
     /// Gives a body back.
     fn put_back(&mut self, number: u32, body: Box<Body>) {
         if self.is_abandoned(number) {
-            // Nobody waits for it any more, and its destructor is as little to be trusted: it stays where it is.
+            // It was abandoned, and its destructor may block as its code did: it is leaked.
             std::mem::forget(body);
             return;
         }
@@ -513,7 +516,7 @@ impl Engine {
         }
     }
 
-    /// A component is not part of the fleet any more.
+    /// Removes a component from the fleet.
     fn forget(&mut self, number: u32) {
         let slot = &mut self.slots[number as usize];
         if slot.state != SlotState::Abandoned {
@@ -529,7 +532,7 @@ impl Engine {
         }
     }
 
-    /// A new component is part of the fleet: what it sent leaves, and its time begins.
+    /// Adds a new component to the fleet: its messages are delivered, and its first execution is scheduled.
     fn join(&mut self, number: u32, now: u64) {
         let slot = &mut self.slots[number as usize];
         (slot.joined, slot.held) = (true, false);
@@ -584,7 +587,7 @@ impl Engine {
         self.resume(number, now);
     }
 
-    /// A component that does not run is made of this from the next time on.
+    /// Sets the specification that a component which does not run has from its next start on.
     fn await_spec(&mut self, number: u32, spec: Arc<ComponentSpec>, now: u64) {
         let slot = &mut self.slots[number as usize];
         slot.renew(Arc::clone(&spec));
@@ -599,13 +602,13 @@ impl Engine {
 }
 
 impl Slot {
-    /// The component is made of something else.
+    /// Sets a new specification.
     fn renew(&mut self, spec: Arc<ComponentSpec>) {
         self.policy = TaskPolicy::of(&spec);
         self.spec = spec;
     }
 
-    /// A component that was removed comes again.
+    /// Reuses the slot of a removed component that returns.
     fn revive(&mut self, spec: Arc<ComponentSpec>) {
         self.renew(Arc::clone(&spec));
         (self.state, self.held) = (SlotState::Idle, true);

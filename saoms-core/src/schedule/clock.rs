@@ -6,7 +6,8 @@ use super::sys;
 /// The time of a run in nanoseconds since its start, from the machine's clock or from a number that jumps.
 #[derive(Debug)]
 pub(super) enum Clock {
-    /// The machine's monotonic clock, where the run started on it, and which local date its zero is. Before the start time stands at zero.
+    /// The machine's monotonic clock: `start` is the start of the run on it, `zero` the local date of its zero. Until
+    /// the start the time is zero.
     Real { start: AtomicU64, zero: u64 },
     /// From one due execution to the next.
     Virtual { now: AtomicU64 },
@@ -41,7 +42,7 @@ impl Clock {
         }
     }
 
-    /// Where a time of the run lies on the machine's clock.
+    /// A time of the run on the machine's clock.
     pub(super) fn on_machine(&self, time: u64) -> u64 {
         match self {
             Clock::Real { start, .. } => start.load(Ordering::Relaxed).saturating_add(time),
@@ -49,8 +50,8 @@ impl Clock {
         }
     }
 
-    /// The local date and time of day since 1970-01-01 00:00. It does not follow what happens to the machine's date during the run, so
-    /// that it never jumps.
+    /// The local date and time of day since 1970-01-01 00:00. It does not follow changes of the machine's date during
+    /// the run, so that it never jumps.
     pub(super) fn date(&self) -> Option<Duration> {
         match self {
             Clock::Real { zero, .. } => Some(Duration::from_nanos(zero.saturating_add(sys::monotonic()))),

@@ -10,18 +10,18 @@ use crate::report::{
     ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes,
 };
 
-/// What ended a run.
+/// Causes of the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EndCause {
-    /// All who voted see no work left.
+    /// All voters see no work left.
     Done,
     /// The time given for the run is over.
     Elapsed,
-    /// Somebody asked for it.
+    /// A stop was requested.
     Interrupted,
-    /// Nobody is left who could go on.
+    /// No component is left that could go on.
     Lost,
-    /// Nobody is scheduled, and in virtual time nobody ever will be.
+    /// No component is scheduled, and in virtual time none ever will be.
     Idle,
 }
 
@@ -48,13 +48,13 @@ impl Engine {
             ChangePlan::between(&members, &[]).remove.into_iter().map(|number| number as u32).collect();
     }
 
-    /// The engine itself is at fault: nothing can go on.
+    /// Ends the run after a fault of the engine itself.
     pub(super) fn break_down(&mut self) {
         self.phase = RunPhase::Ended;
         self.reasons.push("a fault of the program itself, told on standard error, ended the run".to_owned());
     }
 
-    /// The next component that has to shut down. Those whose code runs come when it returns.
+    /// The next component that has to shut down. A component whose code runs follows when the code returns.
     pub(super) fn next_to_end(&mut self) -> Option<u32> {
         while let Some(index) = self.ending.pop_front() {
             let slot = &mut self.slots[index as usize];
@@ -103,7 +103,7 @@ impl Engine {
     }
 
     fn components(&self) -> Vec<ComponentReport> {
-        // All that were ever part of the fleet.
+        // All components that ever joined the fleet.
         let joined = self.slots.iter().filter(|slot| slot.joined);
         joined
             .map(|slot| {

@@ -20,40 +20,40 @@ use crate::journal::{OutsideRing, RecordQueue};
 use crate::observe::{News, Occurrence, RunEvent, SentMessage};
 use saoms_lang::assembly::Loss;
 
-/// The bookkeeping of a run: who is due when, who is where in its life, what is on the topics. It runs no component code itself; whoever drives
-/// it takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the body back with
-/// [`finish`](Engine::finish).
+/// The state of a run: due times, states of components, topics. It runs no component code itself; a driving thread
+/// takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the
+/// body back with [`finish`](Engine::finish).
 pub(super) struct Engine {
     pub(super) slots: Vec<Slot>,
     pub(super) queue: Queue,
     pub(super) bus: Bus,
     pub(super) phase: RunPhase,
     pub(super) roles: Roles,
-    /// Events for the program, told when the lock is free.
+    /// Events for the observers, delivered when the lock is free.
     pub(super) news: Vec<News>,
-    /// Somebody gave the sleeping timer something to do.
+    /// True if the sleeping timer has to be woken.
     pub(super) wake: bool,
     pub(super) trace: Option<Trace>,
-    /// Records for the observers of the journal; `None` where there is none.
+    /// Records for the observers of the journal; `None` without such observers.
     pub(super) records: Option<Arc<RecordQueue>>,
-    /// How many records of each component are kept.
+    /// Number of records that are kept for each component.
     pub(super) journal_capacity: usize,
     /// Records that did not reach those observers.
     pub(super) lost_records: u64,
     /// Executions of all components.
     pub(super) executions: Arc<AtomicU64>,
-    /// Bodies that are with code that runs.
+    /// Number of bodies whose code runs.
     pub(super) out: usize,
-    /// Threads that wait for a body to return, and whether they have to look.
+    /// Number of threads that wait for a body to return, and whether one has returned.
     pub(super) awaited: usize,
     pub(super) has_returned: bool,
     /// Components that still have to shut down, once the run ends.
     pub(super) ending: VecDeque<u32>,
     /// Messages from outside, and those that faults hold up.
     pub(super) injections: Injections,
-    /// The newest records of what came from outside.
+    /// The newest records of messages from outside.
     pub(super) outside: OutsideRing,
-    /// Records of the journal.
+    /// Counter of the journal's records.
     pub(super) record_ids: Arc<AtomicU64>,
     pub(super) faults: Faults,
     /// The number of each component, by its path.
@@ -62,41 +62,41 @@ pub(super) struct Engine {
     pub(super) held_failure: Option<(u32, Failure)>,
     pub(super) cause: Option<EndCause>,
     pub(super) reasons: Vec<String>,
-    /// When the end began, in the time of the run and on the machine's clock.
+    /// Beginning of the end, in the time of the run and on the machine's clock.
     pub(super) ended: (u64, u64),
     pub(super) votes: VoteTally,
-    /// When the run ends at the latest.
+    /// Latest end of the run.
     pub(super) limit: u64,
-    /// How far virtual time may go for now.
+    /// Time up to which virtual time may advance for now.
     pub(super) pause: u64,
     pub(super) real: bool,
     pub(super) budget: u64,
     pub(super) seed: u64,
 }
 
-/// Where a run is in its life.
+/// Phases of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RunPhase {
-    /// Components initialize; what they send is held back.
+    /// Components initialize; their messages are held back.
     Starting,
-    /// Time goes on.
+    /// Time advances and components execute.
     Running,
     /// Components shut down.
     Stopping,
-    /// Nothing happens any more.
+    /// The run is over.
     Ended,
 }
 
-/// Which threads do what.
+/// Roles of the threads.
 #[derive(Debug, Default)]
 pub(super) struct Roles {
     /// The number of the thread that does the timer's work: it changes when another takes over.
     pub(super) timer: u64,
     /// The kernel's number of that thread.
     pub(super) thread: i32,
-    /// Whose code that thread runs.
+    /// Component whose code that thread runs.
     pub(super) running: Option<u32>,
-    /// Until when it sleeps; 0 while it is awake.
+    /// Time until which it sleeps; 0 while it is awake.
     pub(super) asleep_until: u64,
     /// Components for the worker threads.
     pub(super) work: VecDeque<u32>,
@@ -104,23 +104,23 @@ pub(super) struct Roles {
     pub(super) idle_workers: usize,
 }
 
-/// What components said about the work that is left.
+/// Counts of the votes about the work that is left.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct VoteTally {
     pub(super) voters: usize,
     pub(super) done: usize,
 }
 
-/// What the timer has to do next.
+/// Next action of the timer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// This job of this component.
+    /// Run this job of this component.
     Run(u32, Job),
-    /// There is work for a worker thread.
+    /// Hand work over to a worker thread.
     HandOver,
-    /// Nothing until then.
+    /// Sleep until this time.
     Wait(u64),
-    /// Nothing ever again.
+    /// The run is over.
     Ended,
 }
 
@@ -161,12 +161,12 @@ impl Engine {
         }
     }
 
-    /// What is to be done at this time.
+    /// The action at this time.
     pub(super) fn next(&mut self, now: u64) -> Next {
         loop {
             match self.phase {
                 RunPhase::Running => {
-                    // What was due before the limit still runs, however late it is.
+                    // Executions due before the limit still run, however late.
                     if now >= self.limit && self.earliest().is_none_or(|when| when >= self.limit) {
                         self.begin_stop(EndCause::Elapsed, self.limit);
                         continue;
@@ -204,12 +204,12 @@ impl Engine {
         }
     }
 
-    /// The next time at which something is due.
+    /// The earliest due time.
     fn earliest(&self) -> Option<u64> {
         self.queue.earliest().into_iter().chain(self.injections.earliest()).min()
     }
 
-    /// What a component whose time has come has to do.
+    /// The job of a component that is due.
     pub(super) fn job(&mut self, index: u32, now: u64) -> Option<Job> {
         let slot = &mut self.slots[index as usize];
         match slot.state {
@@ -235,7 +235,7 @@ impl Engine {
         }
     }
 
-    /// Executions could not start in time, and the composite wants the component to stop then.
+    /// Stops a component whose executions could not start in time, as its `overrun` demands.
     fn condemn(&mut self, index: u32, missed: u64, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.statistics.missed += missed;
@@ -333,7 +333,7 @@ impl Engine {
         ended: u64,
     ) {
         if self.is_abandoned(index) {
-            // Nobody waits for it any more, and its destructor is as little to be trusted: it stays where it is.
+            // It was abandoned, and its destructor may block as its code did: it is leaked.
             std::mem::forget(body);
             return;
         }
@@ -376,7 +376,7 @@ impl Engine {
         }
     }
 
-    /// A body is back. At the end of a run the timer may wait for just that.
+    /// Notes that a body has returned. At the end of a run the timer may wait for it.
     pub(super) fn came_back(&mut self) {
         self.out -= 1;
         self.has_returned |= self.awaited > 0;
@@ -387,7 +387,7 @@ impl Engine {
         self.slots[index as usize].state == SlotState::Abandoned
     }
 
-    /// Takes over what a component has written to the journal.
+    /// Takes over the journal records of a component.
     #[inline]
     pub(super) fn record(&mut self, part: &mut Part) {
         let recorder = &mut part.recorder;
@@ -405,7 +405,8 @@ impl Engine {
         self.slots[part.index as usize].journal.take(recorder, self.journal_capacity);
     }
 
-    /// Lets the messages of an outbox go to their topics, and its records to the journal. At the end of a run nobody reads them any more, so that no queue can overflow either.
+    /// Publishes the messages of an outbox, and takes over its records. At the end of a run messages have no reader any
+    /// more, so that no queue can overflow.
     #[inline]
     pub(super) fn deliver(&mut self, part: &mut Part, now: u64) {
         self.record(part);
@@ -429,7 +430,7 @@ impl Engine {
         }
     }
 
-    /// Lets a message go to its topic, unless a fault is in its way.
+    /// Publishes a message, or applies its injected fault.
     #[cold]
     fn publish_with_faults(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
         match self.faults.of_message(self.bus.name(topic), Time::from_nanos(now)) {
@@ -469,13 +470,13 @@ impl Engine {
         }
     }
 
-    /// Notes what a component says about the work that is left, and ends the run when none is.
+    /// Records a component's vote about the work that is left, and ends the run if none is left.
     pub(super) fn vote(&mut self, index: u32, vote: Work, now: u64) {
         self.note_vote(index, vote, now);
         self.end_if_done(now);
     }
 
-    /// Notes what a component says about the work that is left.
+    /// Records a component's vote about the work that is left.
     pub(super) fn note_vote(&mut self, index: u32, vote: Work, now: u64) {
         let before = self.slots[index as usize].vote.replace(vote);
         if before == Some(vote) {
@@ -489,14 +490,14 @@ impl Engine {
         self.step(now, index, TraceStep::Voted);
     }
 
-    /// Ends the run when all who voted see no work left, and none can come from outside.
+    /// Ends the run if all voters see no work left, and none can come from outside.
     pub(super) fn end_if_done(&mut self, now: u64) {
         if self.votes.voters > 0 && self.votes.done == self.votes.voters && self.injections.are_over() {
             self.begin_stop(EndCause::Done, now);
         }
     }
 
-    /// Tells the program something about a component, as soon as the lock is free.
+    /// Queues an event about a component for the observers.
     pub(super) fn tell(&mut self, now: u64, index: u32, what: Occurrence) {
         let component = Some(Arc::clone(&self.slots[index as usize].name));
         self.news.push(RunEvent { time: Time::from_nanos(now), component, what }.into());

@@ -43,16 +43,17 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 /// # Ok::<(), saoms_core::schedule::StartError>(())
 /// ```
 ///
-/// In real time the fleet runs from [`start`](Fleet::start) on. In virtual time it goes on only while somebody waits for it in
-/// [`run_to_end`](Fleet::run_to_end) or [`run_until`](Fleet::run_until), so that a program can act at exact times. Dropping a fleet ends it.
+/// In real time the fleet runs from [`start`](Fleet::start) on. In virtual time it advances only while a caller waits
+/// in [`run_to_end`](Fleet::run_to_end) or [`run_until`](Fleet::run_until), so that a program can act at exact times.
+/// Dropping a fleet ends it.
 #[derive(Debug)]
 pub struct Fleet {
     handle: Handle,
-    /// Under `realtime`, what keeps the processors awake.
+    /// Under `realtime`, the open file that keeps the processors awake.
     _awake: Option<File>,
-    /// Tells observers what happens.
+    /// The thread that delivers events to observers.
     teller: Option<JoinHandle<()>>,
-    /// Tells observers the records of the journal.
+    /// The thread that delivers records of the journal to observers.
     journal: Option<JoinHandle<RecordDelivery>>,
 }
 
@@ -62,7 +63,7 @@ pub struct Handle {
     shared: Arc<Shared>,
 }
 
-/// A fleet has no such periodic component.
+/// Error: a fleet has no such periodic component.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownComponent {
     name: String,
@@ -86,12 +87,12 @@ impl fmt::Display for UnknownComponent {
 impl std::error::Error for UnknownComponent {}
 
 impl Fleet {
-    /// Starts a fleet: constructs and initializes every component that runs from the start and every passive one, providers before
-    /// those that call them, and then lets time begin.
+    /// Starts a fleet: constructs and initializes every component that runs from the start and every passive one,
+    /// providers before those that call them, and then lets time begin.
     ///
     /// # Errors
-    /// A component could not be constructed or initialized: then those before it have been shut down, what they had sent has reached nobody, and
-    /// nothing runs. Or the system refuses threads, or real-time scheduling.
+    /// A component could not be constructed or initialized: then those before it have been shut down, their messages
+    /// have reached no reader, and nothing runs. Or the system refuses threads, or real-time scheduling.
     pub fn start(
         assembly: Assembly,
         settings: Settings,
@@ -116,7 +117,7 @@ impl Fleet {
             .name("saoms-events".to_owned())
             .spawn(move || teller.events.tell(&teller.observers, || teller.progress()))
             .map_err(StartError::Thread)?;
-        // From here on, dropping the fleet ends whatever has begun.
+        // From here on, dropping the fleet ends the run.
         let handle = Handle { shared };
         if let Err(error) = &awake {
             let text = format!(
@@ -138,8 +139,8 @@ impl Fleet {
         self.handle.clone()
     }
 
-    /// Waits until the fleet has reached this time, or has ended. Virtual time goes exactly so far: executions due at that very instant are
-    /// still to come.
+    /// Waits until the fleet has reached this time, or has ended. Virtual time advances exactly to it: executions due
+    /// at that instant are still to come.
     pub fn run_until(&self, time: Time) {
         let (shared, time) = (&self.handle.shared, time.as_nanos());
         if shared.clock.is_virtual() {
@@ -157,8 +158,8 @@ impl Fleet {
         }
     }
 
-    /// Lets the fleet run to its end: all who voted see no work left, the time given is over, somebody asked for it, or nobody is left who
-    /// could go on. Every component has shut down then, or is named in the outcome.
+    /// Runs the fleet to its end: all voters see no work left, the given time is over, a stop was requested, or no
+    /// component is left that could go on. Afterwards every component has shut down, or is named in the outcome.
     pub fn run_to_end(mut self) -> RunReport {
         let shared = &self.handle.shared;
         if shared.clock.is_virtual() {
@@ -173,7 +174,7 @@ impl Fleet {
         report
     }
 
-    /// Lets virtual time go on up to this time.
+    /// Lets virtual time advance to this time.
     fn resume(&self, time: u64) {
         let shared = &self.handle.shared;
         let mut engine = shared.lock();
@@ -183,7 +184,7 @@ impl Fleet {
         shared.timer.wake();
     }
 
-    /// Lets the last records be told.
+    /// Waits until the last records are delivered.
     fn finish_journal(&mut self) {
         let Some(journal) = self.journal.take() else { return };
         let shared = &self.handle.shared;
@@ -194,25 +195,25 @@ impl Fleet {
         if let Some(records) = records {
             records.close(end);
         }
-        // An observer that panics over records has said so on standard error.
+        // The panic of an observer was written to standard error.
         let Ok(told) = journal.join() else { return };
         let mut engine = shared.lock();
         engine.lost_records = told.lost;
         engine.reasons.extend(told.failures.iter().map(ToString::to_string));
     }
 
-    /// Lets the last events be told.
+    /// Waits until the last events are delivered.
     fn finish(&mut self) {
         self.finish_journal();
         self.handle.shared.close_events();
         if let Some(teller) = self.teller.take() {
-            // A program that panics over an event has been told so on standard error.
+            // The panic of an observer was written to standard error.
             let _ = teller.join();
         }
     }
 }
 
-/// Starts the thread that tells observers the records of the journal, where one wants them.
+/// Starts the thread that delivers records of the journal, if an observer wants them.
 fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDelivery>>> {
     let Some(records) = shared.lock().records.clone() else { return Ok(None) };
     let shared = Arc::clone(shared);
@@ -244,15 +245,16 @@ impl Drop for Fleet {
 }
 
 impl Handle {
-    /// Asks the fleet to end, as Ctrl-C does. Returns at once. It takes no lock, so that a thread that handles signals may call it, and so may a
-    /// signal handler.
+    /// Asks the fleet to end, as Ctrl-C does. Returns at once. It takes no lock, so that a thread that handles signals
+    /// may call it, and so may a signal handler.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::SeqCst);
         self.shared.timer.wake();
         self.shared.end.wake();
     }
 
-    /// Schedules a periodic component. Returns at once; the component initializes as soon as no code runs, and begins after its delay.
+    /// Schedules a periodic component. Returns at once; the component initializes as soon as no code runs, and begins
+    /// after its delay.
     ///
     /// # Errors
     /// There is no such component, or it is passive.
@@ -268,8 +270,8 @@ impl Handle {
         self.request(component, Request::Schedule { lasting: nanos(duration) })
     }
 
-    /// Unschedules a periodic component. Returns at once; the component shuts down as soon as its present execution has ended, which ends early
-    /// only with `mayInterruptIfRunning`.
+    /// Unschedules a periodic component. Returns at once; the component shuts down as soon as its present execution has
+    /// ended, which ends early only with `mayInterruptIfRunning`.
     ///
     /// # Errors
     /// As [`schedule`](Handle::schedule).
@@ -277,7 +279,7 @@ impl Handle {
         self.request(component, Request::Unschedule)
     }
 
-    /// Whether a periodic component is scheduled, or about to be.
+    /// True if a periodic component is scheduled, or is about to be.
     ///
     /// # Errors
     /// As [`schedule`](Handle::schedule).
@@ -286,20 +288,22 @@ impl Handle {
         Ok(self.shared.lock().slots[index].is_scheduled())
     }
 
-    /// Makes the fleet that of an assembly: components of other paths end and start, those in which something differs are replaced, and
-    /// all others go on. Wires lead to components of the assembly.
+    /// Changes the fleet to that of an assembly: components whose paths differ end and start, components that differ
+    /// are replaced, and all others go on. Wires lead to components of the assembly.
     ///
-    /// All new instances initialize first; then what is new takes part from one instant on, and what is not wanted any more shuts down. A replaced
-    /// component [saves](saoms_api::Component::save) what its successor goes on with; one of another class begins anew.
+    /// All new instances initialize first; then they take part from one instant on, and removed components shut down. A
+    /// replaced component [saves](saoms_api::Component::save) the state for its successor; a component of another class
+    /// starts without it.
     ///
     /// # Errors
-    /// Nothing has changed: a component does not come to be, or cannot be replaced or ended now, or the run ends.
+    /// The fleet is unchanged: a component cannot be constructed or initialized, cannot be replaced or ended now, or
+    /// the run ends.
     pub fn apply(&self, assembly: &Assembly) -> Result<Changed, ChangeError> {
         change::apply(&self.shared, assembly.clone())
     }
 
-    /// Replaces a component by one of a new build of its class, as [`apply`](Handle::apply) does. The targets of its wires are those that
-    /// they were at the start; how its task runs (period, delay, policies) stays as it is.
+    /// Replaces a component by one of a new build of its class, as [`apply`](Handle::apply) does. The targets of its
+    /// wires are the same as at the start; its task settings (period, delay, policies) stay.
     ///
     /// # Errors
     /// As [`apply`](Handle::apply), or there is no such component.
@@ -307,16 +311,18 @@ impl Handle {
         change::replace(&self.shared, spec)
     }
 
-    /// Sends a message from outside on a topic of the fleet. It is checked against the schema of the topic, takes effect at the next instant, or
-    /// at its time, before components that are due then, and is part of the journal and of the trace.
+    /// Sends a message from outside on a topic of the fleet. It is checked against the schema of the topic, takes
+    /// effect at the next instant, or at its time, before components that are due then, and is part of the journal and
+    /// of the trace.
     ///
     /// # Errors
-    /// The fleet has no such topic, the message is none of that topic, or the run ends.
+    /// The fleet has no such topic, the message does not fit its schema, or the run ends.
     pub fn inject(&self, injection: Injection) -> Result<(), InjectError> {
         inject::inject(&self.shared, injection)
     }
 
-    /// Keeps the run from ending because no work is left, as long as what is returned lives: more may come from outside.
+    /// Keeps the run from ending for want of work until the returned value is dropped: more messages may come from
+    /// outside.
     pub fn hold(&self) -> Hold {
         self.shared.lock().injections.holds += 1;
         Hold { shared: Arc::clone(&self.shared) }
@@ -327,12 +333,12 @@ impl Handle {
         self.shared.sections().add(path, more);
     }
 
-    /// Tells the program something about the fleet as a whole, among its other events.
+    /// Queues a note about the fleet as a whole for the observers.
     pub fn note(&self, level: Level, text: String) {
         self.shared.note(level, text);
     }
 
-    /// How far the run is.
+    /// Progress of the run.
     pub fn progress(&self) -> RunProgress {
         self.shared.progress()
     }
@@ -362,7 +368,7 @@ impl fmt::Debug for Handle {
     }
 }
 
-/// A promise that more may come from outside, from [`Handle::hold`].
+/// A guard from [`Handle::hold`]: while it lives, a run does not end for want of work.
 #[must_use = "the run may end as soon as it is dropped"]
 pub struct Hold {
     shared: Arc<Shared>,

@@ -17,13 +17,13 @@ use saoms_lang::assembly::{ComponentSpec, TaskSettings, Wire};
 use saoms_lang::registry::{ClassDeclaration, LoopDeclaration, TopicDeclaration as DeclaredTopic};
 use saoms_lang::schema::Schema;
 
-/// What the scheduler gives to a component while its code runs.
+/// The host of a component while its code runs.
 pub(super) struct ComponentHost<'a> {
     pub(super) shared: &'a Arc<Shared>,
     pub(super) part: &'a mut Part,
 }
 
-/// How many targets of one reference a handle can tell apart.
+/// Maximum number of targets of one reference that a handle can address.
 const MOST_TARGETS: usize = (1 << (32 - TARGET_SHIFT)) - 1;
 
 impl ComponentHost<'_> {
@@ -37,7 +37,7 @@ impl ComponentHost<'_> {
         self.spec().references.get(place as usize)
     }
 
-    /// Checks that the component may take a topic now, and gives its task settings.
+    /// Checks that the component may use a topic now, and returns its task settings.
     fn may_use(&self, topic: &str, use_as: Use) -> Result<Option<&TaskSettings>, Failure> {
         let verb = use_as.verb();
         if !self.part.initializing {
@@ -52,7 +52,7 @@ impl ComponentHost<'_> {
                 self.part.name
             )));
         }
-        // The checker and the pictures of a fleet know what is declared, and nothing else.
+        // Only declared topics: the checker and the pictures of a fleet know no others.
         let spec = self.spec();
         let of_class = use_as.declared(spec.class.declaration());
         let of_loops = spec.loops.iter().flat_map(|one| use_as.declared_of_loop(one.class.declaration()));
@@ -67,7 +67,7 @@ impl ComponentHost<'_> {
         Ok(task)
     }
 
-    /// Checks a message that came as bytes alone, from a plugin, before others get it.
+    /// Checks a message that a plugin sent as bytes, before it is published.
     #[cold]
     fn check(&mut self, topic: TopicId, message: &SharedMessage) -> Result<(), Failure> {
         let known =
@@ -90,7 +90,7 @@ impl ComponentHost<'_> {
     }
 }
 
-/// What a component wants of a topic.
+/// Use of a topic by a component.
 #[derive(Clone, Copy)]
 enum Use {
     Publish,
@@ -105,7 +105,7 @@ impl Use {
         }
     }
 
-    /// The attribute that declares it, which is its third person, too.
+    /// The attribute that declares the use, which messages take as a verb, too.
     const fn attribute(self) -> &'static str {
         match self {
             Use::Publish => "publishes",
@@ -128,7 +128,7 @@ impl Use {
     }
 }
 
-/// Records carry the time at which the execution began: it costs no look at the clock, and an execution is one moment.
+/// Records carry the time at which the execution began: an execution is one instant, and the clock need not be read.
 fn stamp<'a>(shared: &'a Shared, part: &Part) -> Stamp<'a> {
     Stamp { ids: &shared.records, component: part.index, time: part.now }
 }
@@ -209,7 +209,7 @@ impl Host for ComponentHost<'_> {
             .bus
             .subscribe(name, topic, &self.part.name, task.queue)
             .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
-        // An instance that takes the place of a failed one gets the events that came meanwhile.
+        // An instance that replaces a failed one gets the events that came meanwhile.
         let same = |kept: &crate::bus::TopicReader| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
         let subscription = match self.part.kept.iter().position(same) {
             Some(place) => {
@@ -262,7 +262,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn targets(&self, reference: u32) -> u32 {
-        // More than a handle can number are a fault of the fleet that nobody has.
+        // No real fleet has more targets than a handle can address.
         self.wire(reference).map_or(0, |wire| wire.targets.len().min(MOST_TARGETS)) as u32
     }
 
@@ -367,7 +367,7 @@ impl ComponentHost<'_> {
         });
     }
 
-    /// Components cannot write over what the program itself reports.
+    /// True if the path is not one of the report's own fields.
     fn may_report(&mut self, path: &str) -> bool {
         let reserved = Sections::is_reserved(path);
         if reserved {

@@ -20,8 +20,8 @@ use crate::observe::{News, SentMessage};
 pub(super) const OUTSIDE: u32 = u32::MAX;
 /// The name of that sender, which no component can have.
 pub(super) const OUTSIDE_NAME: &str = "(outside)";
-/// How many of the longest periods of the fleet pass after an injection until the run may end because no work is left: a message needs one to be
-/// read, and what its reader sends needs another one.
+/// Number of the fleet's longest periods after an injection before the run may end for want of work: a message needs
+/// one period to be read, and the messages of its reader need another one.
 const SETTLING: u64 = 3;
 
 /// A message for a topic of a running fleet, from outside.
@@ -31,9 +31,9 @@ pub struct Injection {
     pub topic: String,
     /// The message.
     pub content: InjectedContent,
-    /// When it takes effect, in the time of the run; `None`, or a time that is over, is the next instant.
+    /// Time at which it takes effect, in the time of the run; `None` or a past time is the next instant.
     pub at: Option<Time>,
-    /// What it means, for the journal.
+    /// Description for the journal.
     pub text: String,
 }
 
@@ -46,25 +46,25 @@ pub enum InjectedContent {
     Bytes(Vec<u8>),
 }
 
-/// Why a message from outside was not taken.
+/// Error of a message from outside that was not accepted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum InjectError {
     /// The fleet has no such topic.
     UnknownTopic {
         /// The name that was given.
         topic: String,
-        /// The nearest one, if one is near.
+        /// The most similar topic, if there is a similar one.
         nearest: Option<String>,
         /// All topics of the fleet.
         known: Vec<String>,
     },
-    /// It is no message of the topic.
+    /// The message does not fit the schema of the topic.
     Content {
         /// The topic.
         topic: String,
         /// The name of its messages.
         message: String,
-        /// What was found, and what was expected.
+        /// Found and expected content.
         error: String,
     },
     /// The run ends.
@@ -93,12 +93,13 @@ impl fmt::Display for InjectError {
 
 impl std::error::Error for InjectError {}
 
-/// Messages that wait for their time, in the order in which they take effect: those from outside, and those that a fault holds up.
+/// Messages that wait for their time, in the order in which they take effect: those from outside, and those that a
+/// fault holds up.
 #[derive(Default)]
 pub(super) struct Injections {
     waiting: BTreeMap<(u64, u64), Due>,
     count: u64,
-    /// Programs that may inject more, so that the run goes on although no work is left.
+    /// Number of holds that keep the run from ending for want of work.
     pub(super) holds: usize,
 }
 
@@ -114,7 +115,7 @@ enum Due {
         topic: TopicId,
         message: SharedMessage,
     },
-    /// What was injected has reached everybody by now.
+    /// The effects of earlier injections have reached all components.
     Settled,
 }
 
@@ -143,7 +144,7 @@ impl Injections {
     }
 }
 
-/// Takes a message from outside.
+/// Checks a message from outside and queues it.
 pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), InjectError> {
     let Injection { topic, content, at, text } = injection;
     let (id, schema) = {
@@ -183,7 +184,7 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
 }
 
 impl Engine {
-    /// Lets the messages that are due take effect.
+    /// Publishes the messages that are due.
     #[cold]
     pub(super) fn deliver_injections(&mut self, now: u64) {
         let mut delivered = false;
@@ -191,7 +192,7 @@ impl Engine {
             let when = entry.key().0;
             match entry.remove() {
                 Due::Message { topic, bytes, key, text } => {
-                    // In real time the timer may be late; the message is of the time when it was due.
+                    // In real time the timer may be late; the message has the time at which it was due.
                     self.deliver_injection(when, topic, bytes, key, text);
                     delivered = true;
                 }

@@ -11,13 +11,13 @@ use super::trace::TraceStep;
 use crate::observe::Occurrence;
 use saoms_lang::assembly::Restart;
 
-/// What can be asked of the engine about a periodic component, at any time and from anywhere. It takes effect after the code that runs at
+/// Requests about a periodic component, at any time and from any thread. They take effect after the code that runs at
 /// present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Request {
-    /// To be scheduled, for so many nanoseconds.
+    /// Schedule it for this number of nanoseconds.
     Schedule { lasting: u64 },
-    /// To be unscheduled.
+    /// Unschedule it.
     Unschedule,
 }
 
@@ -48,7 +48,7 @@ impl Engine {
             }
             (SlotState::Starting, Wish::None) => slot.until = until,
             (SlotState::Active, Wish::None) => {
-                // One that runs goes on; only for how long may be new.
+                // A running component goes on; only its end may change.
                 slot.until = until;
                 if slot.entry != NEVER {
                     let when = slot.due.min(until).max(now);
@@ -81,7 +81,7 @@ impl Engine {
         }
     }
 
-    /// Lets a component shut down as soon as possible.
+    /// Shuts a component down as soon as possible.
     fn leave(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.state = SlotState::Leaving;
@@ -90,7 +90,7 @@ impl Engine {
         }
     }
 
-    /// What comes next for a component that is alive and whose code has just returned.
+    /// Schedules the next job of a component that is alive and whose code has just returned.
     pub(super) fn resume(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         if self.phase == RunPhase::Stopping {
@@ -109,7 +109,7 @@ impl Engine {
         }
     }
 
-    /// A component has initialized.
+    /// Handles the return of a component's initialization.
     pub(super) fn started(&mut self, index: u32, now: u64) {
         self.release_kept(index, now);
         let slot = &mut self.slots[index as usize];
@@ -123,7 +123,7 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         slot.due = now.saturating_add(slot.policy.delay);
         if let Some(last) = slot.last_due.filter(|last| slot.due <= *last) {
-            // One that schedules itself anew without a delay would never let time go on.
+            // Otherwise a component that schedules itself anew without a delay would keep virtual time from advancing.
             slot.due = last.saturating_add(slot.policy.period);
         }
         if self.phase == RunPhase::Running && slot.wish == Wish::None {
@@ -134,7 +134,7 @@ impl Engine {
         }
     }
 
-    /// A component has shut down.
+    /// Handles the end of a component's shutdown.
     pub(super) fn left(&mut self, index: u32, now: u64) {
         self.leave_topics(index, now);
         self.step(now, index, TraceStep::Left);
@@ -155,9 +155,9 @@ impl Engine {
         }
     }
 
-    /// A component has failed, whatever it was doing: its policy decides.
+    /// Handles the failure of a component in any job, by its policy.
     pub(super) fn fail(&mut self, index: u32, body: &mut Body, job: Job, failure: Failure, now: u64) {
-        // What it decided before it failed is worth knowing.
+        // The journal keeps its records of the time before the failure.
         self.record(&mut body.part);
         let unsent = body.part.outbox.len();
         body.part.outbox.clear();
@@ -176,7 +176,7 @@ impl Engine {
         slot.statistics.failures += 1;
         slot.waiting = false;
         if body.part.held {
-            // Its change is not made.
+            // The change it belongs to is undone.
             slot.state = SlotState::Failed;
             let reason = format!("component `{}` failed: {message}", slot.name);
             self.held_failure = Some((index, Failure::new(reason)));
@@ -216,7 +216,7 @@ impl Engine {
         }
     }
 
-    /// A component is gone for good: does the run still have a meaning?
+    /// Ends the run if a component that was lost for good leaves it without purpose.
     fn lost(&mut self, index: u32, now: u64) {
         if self.phase != RunPhase::Running {
             return;
@@ -232,7 +232,7 @@ impl Engine {
         }
     }
 
-    /// A component that does not take part has no say about the work that is left.
+    /// Removes the vote of a component that does not take part any more.
     pub(super) fn forget_vote(&mut self, index: u32, now: u64) {
         if self.phase != RunPhase::Running {
             return;
@@ -244,7 +244,7 @@ impl Engine {
         }
     }
 
-    /// Takes a failed instance off its topics, but keeps its place in them for the next instance.
+    /// Removes a failed instance from its topics, but keeps its read positions for the next instance.
     fn keep_subscriptions(&mut self, body: &mut Body) {
         for topic in body.part.publishers.drain(..) {
             self.bus.unpublish(topic);
@@ -253,7 +253,7 @@ impl Engine {
         body.inboxes.clear();
     }
 
-    /// Takes a component off all topics.
+    /// Removes a component from all topics.
     pub(super) fn leave_topics(&mut self, index: u32, now: u64) {
         if let Some(mut body) = self.slots[index as usize].body.take() {
             self.keep_subscriptions(&mut body);
@@ -262,7 +262,7 @@ impl Engine {
         }
     }
 
-    /// What a new instance did not ask for again is given up.
+    /// Releases the kept subscriptions that a new instance did not use again.
     fn release_kept(&mut self, index: u32, now: u64) {
         if let Some(mut body) = self.slots[index as usize].body.take() {
             self.release(index, &mut body, now);

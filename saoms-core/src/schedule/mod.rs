@@ -1,12 +1,13 @@
 //! Runs a fleet: every component when it is due, under a clock that is real or virtual.
 //!
-//! One engine keeps the books: who is due when (a heap of absolute times), who is where in its life, what is on the topics. One thread does
-//! the timer's work: it sleeps until something is due, takes the component out of the engine, runs it right there without holding the lock, and
-//! gives it back; what it sent is delivered then. In real time a spare thread watches it, and takes over its work when an execution holds up the
-//! others for longer than a budget; the slow component runs on a thread of its own from then on. In virtual time the same engine runs on
-//! one thread alone, and time jumps from one due execution to the next.
+//! One engine holds the state: due times (a heap of absolute times), states of components, topics. One thread does the
+//! timer's work: it sleeps until something is due, takes the component out of the engine, runs it on this thread
+//! without holding the lock, and gives it back; its messages are delivered then. In real time a spare thread watches
+//! it, and takes over its work when an execution holds up the others for longer than a budget; the slow component runs
+//! on a thread of its own from then on. In virtual time the same engine runs on one thread alone, and time jumps from
+//! one due execution to the next.
 //!
-//! The entry point is [`Fleet`]. A component sees nothing of all this but its [`Context`](saoms_api::Context).
+//! The entry point is [`Fleet`]. A component sees only its [`Context`](saoms_api::Context).
 
 mod body;
 mod call;

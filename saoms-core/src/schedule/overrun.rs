@@ -11,8 +11,8 @@ pub(super) enum Decision {
 
 /// Decides about an execution that was due at `due` and can start at `now`, by the component's `overrun`.
 ///
-/// An execution is overrun when the next one is due before it starts. Executions that would be due from `limit` on, the end of the run, are
-/// not missed.
+/// An execution is overrun when the next one is due before it starts. Executions that would be due from `limit` on, the
+/// end of the run, are not missed.
 #[inline]
 pub(super) fn decide(overrun: Overrun, due: u64, now: u64, period: u64, limit: u64) -> Decision {
     let late = now.saturating_sub(due);
@@ -45,13 +45,13 @@ mod tests {
             (20, 29, NEVER, [execute(30, 0), execute(30, 0), execute(30, 0)]),
             (20, 30, NEVER, [execute(40, 1), execute(30, 0), Decision::Stop { missed: 1 }]),
             (20, 55, NEVER, [execute(60, 3), execute(30, 0), Decision::Stop { missed: 3 }]),
-            // Before its time, which a clock that was read earlier can say.
+            // Before its due time, as with a clock that was read earlier.
             (20, 19, NEVER, [execute(30, 0), execute(30, 0), execute(30, 0)]),
-            // Those that would be due from the end of the run on are not missed.
+            // Executions that would be due from the end of the run on are not missed.
             (20, 55, 40, [execute(60, 1), execute(30, 0), Decision::Stop { missed: 3 }]),
             (20, 55, 41, [execute(60, 2), execute(30, 0), Decision::Stop { missed: 3 }]),
             (20, 55, 0, [execute(60, 0), execute(30, 0), Decision::Stop { missed: 3 }]),
-            // At the end of all time.
+            // At the largest time.
             (NEVER - 5, NEVER - 5, NEVER, [execute(NEVER, 0), execute(NEVER, 0), execute(NEVER, 0)]),
         ];
         for (due, now, limit, expected) in cases {

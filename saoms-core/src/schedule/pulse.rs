@@ -1,26 +1,27 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What the thread with the timer's work does at present, written without locks and system calls for those who watch it.
+/// Heartbeat of the thread with the timer's work: its present state, written without locks and system calls, for the
+/// watching thread.
 #[derive(Debug)]
 pub(super) struct Pulse {
     /// Counts the pieces of component code begun; a watcher that sees the same number twice sees the same piece.
     begun: AtomicU64,
-    /// When the present piece began, on the machine's clock; 0 is none.
+    /// Start of the present piece, on the machine's clock; 0 is none.
     since: AtomicU64,
-    /// When the timer woke, or wants to be awake again, on the machine's clock.
+    /// Time at which the timer woke or has to wake, on the machine's clock.
     next: AtomicU64,
-    /// Until when the watcher sleeps, on the machine's clock.
+    /// Time until which the watcher sleeps, on the machine's clock.
     watch: AtomicU64,
 }
 
-/// What the timer does at one moment.
+/// State of the timer at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Present {
     /// The number of the piece of component code that runs, or was the last to run.
     pub(super) piece: u64,
-    /// Since when it runs.
+    /// Start of the piece, if it runs.
     pub(super) since: Option<u64>,
-    /// When the timer woke, or wants to be awake again.
+    /// Time at which the timer woke or has to wake.
     pub(super) next: u64,
 }
 
@@ -55,7 +56,7 @@ impl Pulse {
         self.next.store(time, Ordering::Release);
     }
 
-    /// What the timer does at present.
+    /// The present state of the timer.
     pub(super) fn present(&self) -> Present {
         let since = self.since.load(Ordering::Acquire);
         Present {
@@ -74,7 +75,7 @@ impl Pulse {
         self.watch.store(until, Ordering::SeqCst);
     }
 
-    /// Whether the watcher would wake too late for a piece that begins now: then it has to be woken.
+    /// True if the watcher would wake too late for a piece that begins now, so that it has to be woken.
     #[inline]
     pub(super) fn unwatched(&self, now: u64, budget: u64) -> bool {
         now.saturating_add(budget) < self.watch.load(Ordering::Relaxed)

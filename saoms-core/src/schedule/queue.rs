@@ -1,7 +1,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What is due when: a heap of absolute times. At one instant the order is that of the document.
+/// Queue of due times: a heap of absolute times. Equal times are in document order.
 #[derive(Debug, Default)]
 pub(super) struct Queue {
     heap: BinaryHeap<Reverse<(u64, u32)>>,
@@ -30,7 +30,7 @@ impl Queue {
         self.heap.len()
     }
 
-    /// Forgets the entries that do not hold any more.
+    /// Removes the entries that are not valid any more.
     pub(super) fn retain(&mut self, mut holds: impl FnMut(u64, u32) -> bool) {
         self.heap.retain(|Reverse((when, component))| holds(*when, *component));
     }

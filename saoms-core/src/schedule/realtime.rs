@@ -4,12 +4,13 @@ use std::io::{self, Write as _};
 
 use super::sys;
 
-/// The priority of the timer among real-time threads: in the middle, below what Linux uses for its own interrupt threads.
+/// The priority of the timer among real-time threads: in the middle, below what Linux uses for its own interrupt
+/// threads.
 pub(super) const TIMER_PRIORITY: i32 = 49;
-/// That of the spare thread, which has to come through when the timer's thread spins.
+/// Priority of the spare thread: above the timer, so that it runs when the timer's thread spins.
 pub(super) const SPARE_PRIORITY: i32 = 50;
 
-/// Why real-time scheduling is not possible, and what to grant.
+/// Error: real-time scheduling is not possible. The message names the missing permission.
 #[derive(Debug)]
 pub struct RealtimeError {
     what: What,
@@ -56,7 +57,7 @@ pub(super) fn enter() -> Result<(), RealtimeError> {
     let thread = sys::thread_id();
     sys::set_fifo(thread, SPARE_PRIORITY).map_err(scheduling)?;
     sys::set_normal(thread).map_err(scheduling)?;
-    // With a limit, the process would run into it later and die of it.
+    // With a limit, later allocations would fail and end the process.
     if let Some(limit) = sys::lockable_memory()
         && !may_lock_any_memory()
     {
@@ -65,15 +66,16 @@ pub(super) fn enter() -> Result<(), RealtimeError> {
     sys::lock_memory().map_err(memory)
 }
 
-/// Keeps the processors out of their deep idle states as long as the file is open: waking from those takes tens of microseconds, most of
-/// the lateness of a few tasks. This is the kernel's interface for it (Documentation/power/pm_qos_interface.rst).
+/// Keeps the processors out of their deep idle states as long as the file is open: waking from those takes tens of
+/// microseconds, most of the lateness of a few tasks. This is the kernel's interface for it
+/// (Documentation/power/pm_qos_interface.rst).
 pub(super) fn keep_awake() -> io::Result<File> {
     let mut file = fs::OpenOptions::new().write(true).open("/dev/cpu_dma_latency")?;
     file.write_all(&0_i32.to_ne_bytes())?;
     Ok(file)
 }
 
-/// Whether the process has the capability CAP_IPC_LOCK, which is number 14.
+/// True if the process has the capability CAP_IPC_LOCK, which is number 14.
 fn may_lock_any_memory() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let effective = status.lines().find_map(|line| line.strip_prefix("CapEff:"));

@@ -2,42 +2,45 @@ use std::time::Duration;
 
 use crate::fault::Faults;
 
-/// How a fleet runs.
+/// Settings of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Which time the components see.
+    /// Clock that the components see.
     pub clock: ClockKind,
     /// The seed of all chance.
     pub seed: u64,
-    /// When the run ends at the latest, in its own time. Executions due at that very instant are not run any more.
+    /// Latest end of the run, in its own time. Executions due at that very instant are not run any more.
     pub limit: Option<Duration>,
-    /// How long an execution may hold up the others: after that another thread goes on with them. At least 10 us. Real time only.
+    /// Budget of an execution: after it, another thread goes on with the other components. At least 10 us. Real time
+    /// only.
     pub budget: Duration,
-    /// How much later than asked the kernel may end the timer's sleeps to save energy. At most the shortest period should bear it; 1 ns is
-    /// the least. Real time only, and without effect under `realtime`.
+    /// Maximum delay that the kernel may add to the timer's sleeps to save energy. It should be small against the
+    /// shortest period; 1 ns is the least. Real time only, and without effect under `realtime`.
     pub timer_slack: Duration,
-    /// Whether the timer runs under `SCHED_FIFO`, with all memory locked and, where that is permitted, the processors kept out of their
-    /// deep idle states. Real time only. It is for fleets that leave the processor much time: one that never pauses loses its priority, and
-    /// the kernel lets real-time threads have 95 % of the time at most.
+    /// True if the timer runs under `SCHED_FIFO`, with all memory locked and, where that is permitted, the processors
+    /// kept out of their deep idle states. Real time only. It is for fleets that leave the processor much time: one
+    /// that never pauses loses its priority, and the kernel lets real-time threads have 95 % of the time at most.
     pub realtime: bool,
-    /// How long components may take to end; who takes longer is abandoned.
+    /// Maximum time for the shutdown of components; a component that takes longer is abandoned.
     pub grace: Duration,
-    /// How long, on the machine's clock, an execution in virtual time may take before the run ends as failed. At least 10 ms.
+    /// Maximum duration of an execution in virtual time, on the machine's clock; beyond it the run ends as failed. At
+    /// least 10 ms.
     pub virtual_watchdog: Duration,
-    /// How many records of the journal stay in memory, shared out evenly among the components; each keeps its newest 128 at least. What is
-    /// older is overwritten, and counted.
+    /// Number of journal records in memory, divided evenly among the components; each keeps its newest 128 at least.
+    /// Records that are older are overwritten and counted.
     pub journal: usize,
     /// Faults that are put into the run on purpose.
     pub faults: Faults,
 }
 
-/// Which time a fleet runs in.
+/// Clock of a fleet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ClockKind {
     /// The time of the machine.
     #[default]
     Real,
-    /// A time that jumps from one due execution to the next: the same seed gives the same run, as fast as the machine goes.
+    /// A time that jumps from one due execution to the next: the same seed gives the same run, as fast as the machine
+    /// goes.
     Virtual,
 }
 
@@ -66,7 +69,7 @@ impl Settings {
 }
 
 impl Settings {
-    /// With values that work.
+    /// The settings with values raised to their minimum.
     pub(super) fn checked(mut self) -> Settings {
         self.budget = self.budget.max(Duration::from_micros(10));
         self.virtual_watchdog = self.virtual_watchdog.max(Duration::from_millis(10));
@@ -74,7 +77,7 @@ impl Settings {
     }
 }
 
-/// Nanoseconds, as times are counted; longer than 584 years is for ever.
+/// Nanoseconds, as times are counted; more than 584 years is without end.
 pub(super) fn nanos(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -15,39 +15,39 @@ use crate::journal::RecordQueue;
 use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunProgress};
 use crate::report::Sections;
 
-/// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while component code runs or a
-/// thread sleeps.
+/// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while
+/// component code runs or a thread sleeps.
 pub(super) struct Shared {
     engine: Mutex<Engine>,
     sections: Mutex<Sections>,
     /// The paths of components by their numbers.
     pub(super) names: SlotNames,
-    /// Held by who changes the fleet: one change at a time.
+    /// Lock of changes of the fleet: one at a time.
     changes: Mutex<()>,
-    /// A body that somebody waits for has returned.
+    /// Signals that an awaited body has returned.
     returned: Condvar,
     pub(super) settings: Settings,
     pub(super) clock: Clock,
-    /// What happens, on its way to the observers.
+    /// Events and messages on their way to the observers.
     pub(super) events: EventQueue,
     pub(super) observers: Observers,
-    /// Where the thread with the timer's work sleeps.
+    /// Gate at which the thread with the timer's work sleeps.
     pub(super) timer: Gate,
-    /// Where the spare thread that watches it sleeps.
+    /// Gate at which the spare thread that watches it sleeps.
     pub(super) spare: Gate,
-    /// Where the thread that waits for the end sleeps.
+    /// Gate at which the thread that waits for the end sleeps.
     pub(super) end: Gate,
     pub(super) pulse: Pulse,
-    /// Work for the worker threads is there, or the end is.
+    /// Signals work for the worker threads, or the end of the run.
     pub(super) work: Condvar,
-    /// Somebody asked for the end.
+    /// True if the end was requested.
     pub(super) stop: AtomicBool,
     /// The run has ended.
     pub(super) ended: AtomicBool,
-    /// Records of the journal.
+    /// Counter of the journal's records.
     pub(super) records: Arc<AtomicU64>,
     executions: Arc<AtomicU64>,
-    /// How many threads have freed the engine and not told yet what was new.
+    /// Number of threads that have unlocked the engine and not yet queued their events.
     telling: AtomicUsize,
     /// The queue of events is about to be closed.
     closing: AtomicBool,
@@ -92,7 +92,7 @@ impl Shared {
         self.engine.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Frees the engine; then tells what is new, and wakes the timer if it has something new to do.
+    /// Unlocks the engine, then queues its events, and wakes the timer if necessary.
     #[inline]
     pub(super) fn release(&self, mut engine: MutexGuard<'_, Engine>) {
         let wake = std::mem::take(&mut engine.wake);
@@ -108,7 +108,8 @@ impl Shared {
         for event in news {
             self.events.put(event);
         }
-        // Both are sequentially consistent: either the thread that closes the queue sees the lower count, or it is woken.
+        // Both are sequentially consistent: either the thread that closes the queue sees the lower count, or it is
+        // woken.
         if is_telling
             && self.telling.fetch_sub(1, Ordering::SeqCst) == 1
             && self.closing.load(Ordering::SeqCst)
@@ -120,9 +121,9 @@ impl Shared {
         }
     }
 
-    /// Lets everything be told that was new when the run ended, and closes the queue behind it.
+    /// Waits until all threads have queued their events at the end of the run, and closes the queue.
     pub(super) fn close_events(&self) {
-        // Whoever has something to tell took the engine before it was seen to have ended.
+        // A thread with events took the lock before the end was visible, so that it is counted by now.
         drop(self.lock());
         self.closing.store(true, Ordering::SeqCst);
         loop {
@@ -139,12 +140,12 @@ impl Shared {
         self.sections.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets nobody else change the fleet.
+    /// Locks out other changes of the fleet.
     pub(super) fn lock_changes(&self) -> MutexGuard<'_, ()> {
         self.changes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Frees the engine until a body returns, or for so long.
+    /// Unlocks the engine until a body returns, or until the time is over.
     pub(super) fn wait_for_return<'a>(
         &self,
         mut engine: MutexGuard<'a, Engine>,
@@ -157,7 +158,7 @@ impl Shared {
         engine
     }
 
-    /// Something about the fleet as a whole.
+    /// Queues a note about the fleet as a whole.
     pub(super) fn note(&self, level: saoms_api::Level, text: String) {
         let time = Time::from_nanos(self.clock.now());
         self.events.put(RunEvent { time, component: None, what: Occurrence::Note { level, text } });

@@ -13,52 +13,52 @@ use saoms_lang::assembly::{ComponentSpec, Loss, Overrun, Restart};
 /// A time that never comes.
 pub(super) const NEVER: u64 = u64::MAX;
 
-/// One component as the engine keeps it.
+/// State of one component in the engine.
 pub(super) struct Slot {
-    /// What runs; absent while its code runs.
+    /// Body of the component; absent while its code runs.
     pub(super) body: Option<Box<Body>>,
     pub(super) state: SlotState,
-    /// What the component is made of, as its body has it.
+    /// Specification of the component, the same as in its body.
     pub(super) spec: Arc<ComponentSpec>,
-    /// Its instance is part of a change that is not committed: it is not executed.
+    /// True if its instance is part of a change that is not committed: it is not executed.
     pub(super) held: bool,
-    /// It has been part of the fleet.
+    /// True if it has ever joined the fleet.
     pub(super) joined: bool,
     /// The time of its entry in the queue: an entry with another time does not hold any more.
     pub(super) entry: u64,
-    /// When the next execution is due.
+    /// Due time of the next execution.
     pub(super) due: u64,
-    /// When the last execution was due.
+    /// Due time of the last execution.
     pub(super) last_due: Option<u64>,
-    /// When it is unscheduled by itself.
+    /// Time at which it is unscheduled automatically.
     pub(super) until: u64,
     /// Executions of the present instance.
     pub(super) execution: u64,
-    /// What became of requests while its code runs.
+    /// Request that came while its code ran.
     pub(super) wish: Wish,
-    /// Its time came while it served a call.
+    /// True if it became due while it served a call.
     pub(super) waiting: bool,
-    /// It stands in the line for the worker threads.
+    /// True if it is queued for the worker threads.
     pub(super) queued: bool,
-    /// Messages were lost in its last period, too.
+    /// True if messages were lost in its last period.
     pub(super) dropping: bool,
     pub(super) apart: Apart,
     pub(super) policy: TaskPolicy,
     pub(super) vote: Option<Work>,
     pub(super) statistics: Statistics,
     pub(super) journal: Ring,
-    /// Why it has to stop, when its own `overrun` says so.
+    /// Reason of a stop by its own `overrun`.
     pub(super) condemned: Option<String>,
     pub(super) name: Arc<str>,
     pub(super) cancelled: Arc<AtomicBool>,
-    /// How many instances there have been.
+    /// Number of instances so far.
     pub(super) instances: u64,
     pub(super) restarts: u32,
-    /// The next instance takes the place of a failed one.
+    /// True if the next instance replaces a failed one.
     pub(super) restarting: bool,
 }
 
-/// Where a component is in its life.
+/// States of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SlotState {
     /// It does not take part: not scheduled yet, or unscheduled.
@@ -71,52 +71,52 @@ pub(super) enum SlotState {
     Leaving,
     /// It has failed for good.
     Failed,
-    /// Its code did not return, and nobody waits for it any more.
+    /// Its code did not return in time, and it was given up.
     Abandoned,
     /// It is not part of the fleet any more, or not yet.
     Removed,
 }
 
-/// What was asked for while the component's code was running.
+/// Request that came while the component's code was running.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wish {
     /// Nothing.
     None,
-    /// To be unscheduled.
+    /// Unschedule it.
     Leave,
-    /// To be unscheduled, and scheduled again for so long.
+    /// Unschedule it, and schedule it again for this number of nanoseconds.
     Return { lasting: u64 },
 }
 
-/// Whether a component runs on a worker thread, because it held up the others.
+/// State of a component that runs on a worker thread, because it held up the others.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Apart {
     pub(super) now: bool,
-    /// Executions within the budget since it runs apart.
+    /// Executions within the budget since it runs on a worker thread.
     pub(super) well: u32,
-    /// How many of them bring it back; doubles each time.
+    /// Number of such executions that bring it back to the timer; doubles each time.
     pub(super) needed: u32,
 }
 
-/// The first number of well-behaved executions that bring a component back.
+/// Initial number of executions within the budget that bring a component back to the timer.
 const WELL_BEHAVED: u32 = 100;
 const WELL_BEHAVED_AT_MOST: u32 = 1 << 20;
 
 impl Apart {
-    /// It held up the others.
+    /// Moves it to a worker thread, because it held up the others.
     pub(super) fn send_away(&mut self) {
         let needed = if self.needed == 0 { WELL_BEHAVED } else { self.needed.saturating_mul(2) };
         *self = Apart { now: true, well: 0, needed: needed.min(WELL_BEHAVED_AT_MOST) };
     }
 
-    /// It ran apart, within the budget or not.
+    /// Counts an execution on a worker thread, within the budget or not.
     pub(super) fn ran(&mut self, slow: bool) {
         self.well = if slow { 0 } else { self.well + 1 };
         self.now = self.well < self.needed;
     }
 }
 
-/// What the composite says about running a component, in the engine's terms.
+/// Task settings of the composite in the engine's units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TaskPolicy {
     pub(super) periodic: bool,
@@ -159,7 +159,7 @@ impl TaskPolicy {
     }
 }
 
-/// What the report says about a component.
+/// Statistics of a component for the report.
 #[derive(Debug, Default)]
 pub(super) struct Statistics {
     pub(super) executions: u64,

@@ -6,7 +6,7 @@ use saoms_api::Failure;
 use super::change::ChangeError;
 use super::realtime::RealtimeError;
 
-/// Why a fleet did not start. Nothing of it runs.
+/// Error of a fleet that did not start. No part of it runs.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum StartError {
@@ -16,14 +16,14 @@ pub enum StartError {
         component: String,
         /// Its class.
         class: String,
-        /// Why, in its own words.
+        /// Its failure.
         failure: Failure,
     },
     /// Real-time scheduling was asked for and is not permitted.
     Realtime(RealtimeError),
     /// An observer of the run cannot do its work.
     Observer(Failure),
-    /// The system gives no thread.
+    /// The system refused to create a thread.
     Thread(io::Error),
 }
 
@@ -58,7 +58,7 @@ impl From<ChangeError> for StartError {
             ChangeError::Failed { component, class, failure } => {
                 StartError::Component { component, class, failure }
             }
-            // Nothing runs yet that could be busy or end.
+            // The other errors need a running fleet.
             other => StartError::Observer(Failure::new(other.to_string())),
         }
     }

@@ -1,5 +1,6 @@
-//! The system calls that the standard library does not offer: the monotonic clock in nanoseconds, a sleep until an absolute time
-//! that another thread can end, scheduling classes and locked memory. All the `unsafe` of the scheduler is here.
+//! The system calls that the standard library does not offer: the monotonic clock in nanoseconds, a sleep until an
+//! absolute time that another thread can end, scheduling classes and locked memory. All the `unsafe` of the scheduler
+//! is here.
 
 use std::io;
 use std::ptr;
@@ -20,15 +21,16 @@ pub(super) fn local_date() -> u64 {
     unsafe { libc::clock_gettime(libc::CLOCK_REALTIME, &raw mut now) };
     // SAFETY: all of the struct are numbers and a pointer, for which zero is a value.
     let mut local: libc::tm = unsafe { std::mem::zeroed() };
-    // SAFETY: both point to valid values for the length of the call, which keeps neither pointer. It reads the environment, as does every
-    // caller of `std::env`; nothing in this process writes to it.
+    // SAFETY: both point to valid values for the length of the call, which keeps neither pointer. It reads the
+    // environment, as does every caller of `std::env`; nothing in this process writes to it.
     unsafe { libc::localtime_r(&raw const now.tv_sec, &raw mut local) };
     (now.tv_sec + local.tm_gmtoff) as u64 * 1_000_000_000 + now.tv_nsec as u64
 }
 
-/// Where one thread sleeps until an absolute time, and others wake it.
+/// Gate at which one thread sleeps until an absolute time, and others wake it.
 ///
-/// A futex wait with an absolute deadline has no drift, respects the thread's timer slack, and costs nothing to those who do not wake.
+/// A futex wait with an absolute deadline has no drift, respects the thread's timer slack, and costs nothing to those
+/// who do not wake.
 #[derive(Debug, Default)]
 pub(super) struct Gate(AtomicU32);
 
@@ -38,15 +40,16 @@ impl Gate {
         self.0.load(Ordering::Acquire)
     }
 
-    /// Sleeps until somebody woke the gate since `ticket` was drawn, or `CLOCK_MONOTONIC` has reached `deadline` (`None`: without end).
-    /// May return early.
+    /// Sleeps until the gate is woken after `ticket` was drawn, or `CLOCK_MONOTONIC` has reached `deadline` (`None`:
+    /// without end). May return early.
     pub(super) fn wait(&self, ticket: u32, deadline: Option<u64>) {
         let until = deadline.map(|nanos| libc::timespec {
             tv_sec: (nanos / 1_000_000_000) as libc::time_t,
             tv_nsec: (nanos % 1_000_000_000) as libc::c_long,
         });
         let until_pointer = until.as_ref().map_or(ptr::null(), ptr::from_ref);
-        // SAFETY: the futex word lives as long as `self`; the timespec, where there is one, outlives the call; the kernel keeps neither.
+        // SAFETY: the futex word lives as long as `self`; the timespec, where there is one, outlives the call; the
+        // kernel keeps neither.
         unsafe {
             libc::syscall(
                 libc::SYS_futex,
@@ -81,8 +84,8 @@ pub(super) fn thread_id() -> i32 {
     unsafe { libc::gettid() }
 }
 
-/// How much later than asked the kernel may end the sleeps of the calling thread, to join them with others. Zero would mean the default,
-/// so that the least is 1 ns. Real-time threads have none.
+/// Sets the maximum delay that the kernel may add to the sleeps of the calling thread, to join them with others. Zero
+/// would mean the default, so the minimum is 1 ns. Real-time threads have no slack.
 pub(super) fn set_timer_slack(nanos: u64) {
     let nanos = libc::c_ulong::try_from(nanos.max(1)).unwrap_or(libc::c_ulong::MAX);
     // SAFETY: PR_SET_TIMERSLACK takes one integer and concerns the calling thread alone.
@@ -117,7 +120,7 @@ pub(super) fn lock_memory() -> io::Result<()> {
     }
 }
 
-/// How many bytes the process may lock; `None` is without limit.
+/// Number of bytes that the process may lock; `None` is without limit.
 pub(super) fn lockable_memory() -> Option<u64> {
     let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
     // SAFETY: `limit` is a valid, writable rlimit for the length of the call.

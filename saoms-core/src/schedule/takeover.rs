@@ -13,30 +13,31 @@ use crate::journal::Recorder;
 /// The outcome of a replacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Takeover {
-    /// The new instance runs, and goes on where the earlier one was.
+    /// The new instance runs, with the restored state of the earlier one.
     Continued,
-    /// The new instance runs, from the beginning.
+    /// The new instance runs, without the state of the earlier one.
     Began,
-    /// It did not run. The new one is for when it is scheduled the next time; one that had failed is scheduled now.
+    /// The component did not run. The new instance starts when it is scheduled next; a component that had failed is
+    /// scheduled now.
     Awaited,
 }
 
-/// Why no instance took over. The earlier one goes on.
+/// Reasons of a takeover that was refused. The earlier instance goes on.
 #[derive(Debug)]
 pub(super) enum Refusal {
     /// It may be possible later.
     NotNow(String),
-    /// The new one does not come to be, or cannot go on where the earlier one was.
+    /// The new instance cannot be constructed, initialized or restored.
     Failed(Failure),
 }
 
-/// An instance that another one has taken over from, until the change is committed.
+/// The earlier instance after a takeover, kept until the change is committed.
 pub(super) struct Predecessor {
     instance: Box<dyn DynComponent>,
     ties: Ties,
 }
 
-/// What ties an instance to the fleet.
+/// Topics and subscriptions of an instance.
 struct Ties {
     spec: Arc<ComponentSpec>,
     publishers: Vec<TopicId>,
@@ -45,8 +46,8 @@ struct Ties {
 }
 
 impl Body {
-    /// Lets a new instance go on where the present one is: it is constructed, the present one [saves](saoms_api::Component::save) what the
-    /// new one needs, which initializes and restores that. After an error the present one stays.
+    /// Replaces the present instance: the new one is constructed, the present one [saves](saoms_api::Component::save)
+    /// its state, and the new one initializes and restores it. After an error the present one stays.
     pub(super) fn take_over(
         &mut self,
         shared: &Arc<Shared>,
@@ -85,7 +86,8 @@ impl Body {
         result?
     }
 
-    /// The change is committed: the new instance reads on where the earlier one was; what that one had beside is given up.
+    /// Commits the takeover: the new instance gets the read positions of the earlier one; its other subscriptions are
+    /// released.
     pub(super) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) {
         let Predecessor { instance, ties } = predecessor;
         let Ties { publishers, mut subscriptions, .. } = ties;
@@ -100,17 +102,18 @@ impl Body {
                 bus.unsubscribe(idle);
             }
         }
-        // Those that nobody asked for again are released, with what they have lost, when the body is given back.
+        // Subscriptions that the new instance did not use are released, with their lost messages, when the body is
+        // given back.
         self.part.kept.append(&mut subscriptions);
         for topic in publishers {
             bus.unpublish(topic);
         }
         self.part.held = false;
-        // What its destructor does says nothing about its successor.
+        // A panic of its destructor does not concern its successor.
         let _ = contained(|| drop(instance));
     }
 
-    /// The change is not made: nothing of the new instance stays.
+    /// Undoes the takeover: the new instance is dropped.
     pub(super) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) {
         self.discard();
         self.instance = Some(predecessor.instance);
@@ -131,7 +134,7 @@ impl Body {
 }
 
 impl Ties {
-    /// Takes those of the present instance; a new one finds this specification.
+    /// Takes the ties of the present instance, and sets the specification of the new one.
     fn take(part: &mut Part, spec: Arc<ComponentSpec>) -> Ties {
         Ties {
             spec: std::mem::replace(&mut part.spec, spec),

@@ -3,11 +3,11 @@ use saoms_api::host::SharedMessage;
 use crate::hash::fold;
 use crate::journal::Head;
 
-/// The digest of everything that happens in a run: who did what when, in integers.
+/// Digest of everything that happens in a run, computed from integers.
 ///
-/// Each effect is folded in as its time, its component and what it is; a message as its topic's name and its bytes in CDR, a record of the
-/// journal as its digest, its loop and its cause. Two runs with the
-/// same digest did the same, on whatever machines they ran.
+/// Each effect is folded in as its time, its component and its kind; a message also as its topic's name and its bytes
+/// in CDR, a record of the journal as its digest, its loop and its cause. Two runs with the same digest did the same,
+/// on any machines.
 #[derive(Debug, Default)]
 pub(super) struct Trace {
     hash: u64,

@@ -1,7 +1,7 @@
 //! A component that does what its properties say.
 //!
-//! A script is a list of commands, separated by `;`. A command may have a condition before it: `3:` is only in execution 3 (from 0), `3+:` is
-//! from then on.
+//! A script is a list of commands, separated by `;`. A command may have a condition before it: `3:` is only in
+//! execution 3 (from 0), `3+:` is from then on.
 
 use std::time::{Duration, Instant};
 
@@ -43,7 +43,7 @@ pub(crate) trait Echo {
     fn echo(&mut self, context: &mut Context<'_>, text: String) -> Result<String, Failure>;
 }
 
-/// What an actor does, and when.
+/// Actions of an actor with their times.
 #[derive(Clone, Properties)]
 pub(crate) struct Script {
     /// In `new`.

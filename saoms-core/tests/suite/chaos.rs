@@ -122,7 +122,7 @@ prop_compose! {
     }
 }
 
-/// What a run leaves behind, but for the places of panics in the source.
+/// The outcome of a run, without the places of panics in the source.
 fn run_once(fleet: &str, faults: &Faults) -> (String, String) {
     let (report, diary) = run(fleet, Settings { faults: faults.clone(), ..simulated(150) });
     (serde_json::to_string_pretty(&report).unwrap(), diary.all_lines())

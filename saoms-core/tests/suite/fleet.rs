@@ -1,5 +1,6 @@
-//! Fleets as text: one component in a line, `NAME CLASS key=value key=[a value with blanks]`. Keys are task properties, references
-//! (`peer=B` leads to B's `echo`, `task=B` to its `TaskInterface`), and the scripts of [`actor`](crate::actor).
+//! Fleets as text: one component in a line, `NAME CLASS key=value key=[a value with blanks]`. Keys are task properties,
+//! references (`peer=B` leads to B's `echo`, `task=B` to its `TaskInterface`), and the scripts of
+//! [`actor`](crate::actor).
 
 use std::fmt::Write;
 use std::sync::{Arc, Mutex};
@@ -157,7 +158,7 @@ impl Diary {
         })
     }
 
-    /// How many events are such.
+    /// Number of events for which `is_such` holds.
     pub(crate) fn count(&self, is_such: impl Fn(&RunEvent) -> bool) -> usize {
         self.events.lock().unwrap().iter().filter(|event| is_such(event)).count()
     }
@@ -194,7 +195,7 @@ pub(crate) fn check(fleet: &str, milliseconds: u64, expected: &str) {
     assert_eq!(told.trim(), unindent(expected), "\n--- told:\n{told}");
 }
 
-/// How a run ended, in one text.
+/// Outcome of a run as text.
 pub(crate) fn outcome(report: &RunReport) -> String {
     let mut text = format!("{:?} after {} s", report.outcome.status, report.time_s);
     for reason in &report.outcome.reasons {
@@ -203,7 +204,7 @@ pub(crate) fn outcome(report: &RunReport) -> String {
     text
 }
 
-/// What a report says about a component.
+/// Part of a report about a component.
 pub(crate) fn of<'a>(report: &'a RunReport, name: &str) -> &'a ComponentReport {
     report.components.iter().find(|component| component.name == name).unwrap()
 }

@@ -29,7 +29,7 @@ fn say(handle: &Handle, topic: &str, content: Value, time: Option<u64>) -> Resul
 const FLEET: &str = "A actor period=10 publishes=TALK each=[1: say mine]
      B actor period=10 subscribes=[TALK TABLE] each=[hear-from; read]";
 
-/// What is told, and the digest of the run, with these words from outside.
+/// Events and trace hash of a run with these messages from outside.
 fn run(words: &[(&str, Option<u64>)]) -> (String, String) {
     let (fleet, diary) = start(FLEET, simulated(30));
     let fleet = fleet.unwrap();

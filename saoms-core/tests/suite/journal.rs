@@ -130,7 +130,8 @@ fn what_was_decided_before_a_failure_is_kept() {
     );
     assert_eq!(report.outcome.status, RunStatus::Failed);
     let texts = report.journal.of("Robot").decisions().texts();
-    // The first instance fails when it has decided; the second one, which knows nothing of that, in its second execution.
+    // The first instance fails when it has decided; the second one, which knows nothing of that, in its second
+    // execution.
     assert_eq!(texts, ["takes it"]);
     // Its message never left.
     assert!(report.journal.of("Gate").effects().is_empty());

@@ -10,7 +10,7 @@ use saoms_lang::assembly::Assembly;
 
 use crate::fleet::{Diary, of, outcome, real, run, start};
 
-/// How often the fleet had to go on without a slow component.
+/// Number of times that the fleet had to go on without a slow component.
 fn takeovers(diary: &Diary, name: &str) -> usize {
     diary.count(|event| {
         event.component.as_deref() == Some(name) && matches!(event.what, Occurrence::Slow { .. })
@@ -33,7 +33,8 @@ fn executions_follow_the_clock() {
     assert_eq!(report.outcome.status, RunStatus::Elapsed);
     assert_eq!(report.time_s, 0.2);
     for (name, due) in [("A", 20), ("B", 7), ("C", 400)] {
-        // Each due execution has run or is counted as missed; the last one may have been so late that later ones are counted, too.
+        // Each due execution has run or is counted as missed; the last one may have been so late that later ones are
+        // counted, too.
         let component = of(&report, name);
         assert!(
             component.executions <= due && component.executions + component.missed >= due,

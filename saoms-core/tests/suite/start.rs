@@ -2,7 +2,7 @@ use saoms_core::schedule::{Fleet, StartError};
 
 use crate::fleet::{assembly, check, of, outcome, run, simulated, start, unindent};
 
-/// What a fleet tells that does not start.
+/// Events of a fleet that does not start.
 fn refused(fleet: &str) -> String {
     let (fleet, diary) = start(fleet, simulated(1000));
     let error = fleet.unwrap_err();

@@ -36,8 +36,8 @@ impl Events {
         Ok(Events { lines, languages: languages.collect(), number: 0 })
     }
 
-    /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same lines give the same
-    /// run; in real time they are read as they come, and the run goes on at least to their end.
+    /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same
+    /// lines give the same run; in real time they are read as they come, and the run goes on at least to their end.
     pub(super) fn play(mut self, handle: Handle, is_virtual: bool) {
         if is_virtual {
             return self.read_all(&handle);
@@ -65,7 +65,7 @@ impl Events {
         }
     }
 
-    /// Reads the next line; what is beyond the most bytes of a line is left out, but for one that tells. `false` is the end.
+    /// Reads the next line, at most one byte more than the limit, which shows that it is too long. `false` is the end.
     fn next(&mut self, line: &mut Vec<u8>) -> io::Result<bool> {
         line.clear();
         self.number += 1;
@@ -78,7 +78,7 @@ impl Events {
         Ok(count > 0)
     }
 
-    /// Lets what a line says happen, or tells what is wrong with it.
+    /// Injects the events of a line, or reports its fault.
     fn take(&mut self, line: &[u8], handle: &Handle) {
         let now = handle.progress().time;
         let result = if line.len() > LONGEST {

@@ -43,7 +43,8 @@ pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
 
-    /// How diagnostics are shown: for people on standard error, or as one JSON object on standard output (on standard error once a fleet runs)
+    /// How diagnostics are shown: for people on standard error, or as one JSON object on standard output (on standard
+    /// error once a fleet runs)
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub(crate) format: Format,
 
@@ -55,7 +56,7 @@ pub(crate) struct RunArguments {
     #[arg(long = "virtual", conflicts_with = "realtime")]
     pub(crate) virtual_time: bool,
 
-    /// Where chance starts: in virtual time the same seed gives the same run
+    /// Seed of all chance: in virtual time the same seed gives the same run
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
     pub(crate) seed: u64,
 
@@ -67,12 +68,13 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) paths: Option<PathBuf>,
 
-    /// Write every record of the journal to this file, as lines of JSON; the report holds the newest ones of each component
+    /// Write every record of the journal to this file, as lines of JSON; the report holds the newest ones of each
+    /// component
     #[arg(long, value_name = "FILE")]
     pub(crate) journal: Option<PathBuf>,
 
-    /// Let events happen, one scenario line each, from this file or, for `-`, from standard input as they come: `at 3s luggage (3,1) to
-    /// (3,10)`, or without `at 3s` for now. A wrong line is told, and the run goes on
+    /// Let events happen, one scenario line each, from this file or, for `-`, from standard input as they come: `at 3s
+    /// luggage (3,1) to (3,10)`, or without `at 3s` for now. A wrong line is told, and the run goes on
     #[arg(long, value_name = "FILE")]
     pub(crate) events: Option<PathBuf>,
 
@@ -92,15 +94,15 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     pub(crate) realtime: bool,
 
-    /// How much later the kernel may wake the timer to save power; 1ns is the most punctual
+    /// Maximum delay of the timer that the kernel may add to save power; 1ns is the most punctual
     #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) timer_slack: Duration,
 
-    /// How long an execution may hold up the others before a spare thread takes over
+    /// Time that an execution may hold up the others before a spare thread takes over
     #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) budget: Duration,
 
-    /// How long a component may take to end before it is abandoned
+    /// Time that a component may take to end before it is abandoned
     #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) grace: Duration,
 }
@@ -185,7 +187,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
 }
 
-/// The fleet to run; without one, what is wrong has been shown. Texts and diagnostics do not outlive this: a run may last for days.
+/// The fleet to run; `None` after its errors have been shown. Texts and diagnostics are dropped here: a run may last
+/// for days.
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly> {
     let compilation = compiled(files, |project, classes| project.compile(classes)).ok()?;
     let shown = Shown::from(&compilation);

@@ -9,7 +9,7 @@ use super::RunArguments;
 use crate::output::{counted, eprint, try_print};
 
 /// True if the files can be written, asked before a run that may last for days. What they hold stays until there is
-/// something new. Where one cannot, that has been told.
+/// something new. A file that cannot be written has been reported.
 pub(super) fn are_writable(arguments: &RunArguments) -> bool {
     let files = [
         ("report", "--report", &arguments.report),
@@ -60,11 +60,11 @@ fn try_open(path: &Path) -> io::Result<()> {
         Err(problem) if problem.kind() == io::ErrorKind::NotFound => {}
         result => return result.map(drop),
     }
-    // A link to what is not there yet.
+    // A link to a file that does not exist yet.
     if let Ok(target) = path.read_link() {
         return try_open(&path.parent().unwrap_or(Path::new("")).join(target));
     }
-    // Removed is only what was made here: where somebody else was faster, this is an error.
+    // Only a file created here is removed: if another process was faster, this is an error.
     File::create_new(path)?;
     std::fs::remove_file(path)
 }
@@ -82,7 +82,7 @@ impl Output {
         Output { what, path: path.to_owned(), has_failed: AtomicBool::new(false) }
     }
 
-    /// Writes the text, to standard output where the path is `-`. A failure is told.
+    /// Writes the text, to standard output where the path is `-`. A failure is reported.
     pub(super) fn write(&self, text: io::Result<String>) {
         let put = |text: String| match self.path == Path::new("-") {
             true => try_print(&text),

@@ -1,4 +1,4 @@
-//! `saoms run --reload`: components whose library is built anew are replaced while the fleet runs.
+//! `saoms run --reload`: components whose library is rebuilt are replaced while the fleet runs.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -123,7 +123,7 @@ impl Watcher {
         let names: Vec<String> = changed.iter().map(|path| format!("`{}`", path.display())).collect();
         let names = names.join(", ");
         let kept = |why: &str| format!("{names} changed: {why}; the fleet goes on with the earlier build");
-        // What is wrong with a library was told already.
+        // Faults of a library have been reported already.
         let Ok(compilation) = compiled(&self.arguments, |project, classes| project.compile(classes)) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
@@ -146,7 +146,7 @@ impl Watcher {
         self.replace(affected.cloned().collect(), false);
     }
 
-    /// `again`: that they cannot be replaced now was told before.
+    /// `again` is true if it was reported before that they cannot be replaced now.
     fn replace(&mut self, components: Vec<ComponentSpec>, again: bool) {
         self.asked = Instant::now();
         for component in components {
@@ -176,7 +176,7 @@ impl Watcher {
 }
 
 impl Known {
-    /// The path, when its file is another one than the one that is loaded, and nobody writes it any more.
+    /// The path, if its file differs from the loaded one and is complete.
     fn look(&mut self, path: &Path) -> Option<PathBuf> {
         let now = stamp(path);
         let settled = std::mem::replace(&mut self.seen, now) == now;

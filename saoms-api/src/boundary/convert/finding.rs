@@ -6,7 +6,7 @@ use crate::host::contain::contained;
 use crate::rule::Severity;
 use crate::{Failure, Finding, Place};
 
-/// Findings of the other side; one that cannot be read is kept as what is wrong with it.
+/// Findings of the other side of the boundary; for one that cannot be read, the error.
 pub type Findings = Vec<Result<Finding, Failure>>;
 
 /// Gives findings to the other side.

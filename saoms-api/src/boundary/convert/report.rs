@@ -79,7 +79,8 @@ pub(in crate::boundary) fn with_report_view(
     }
 }
 
-/// Shows the views of several values to code. The views of one lie on the stack while the next is made, so that all stay readable.
+/// Shows the views of several values to code. The views of one lie on the stack while the next is made, so that all
+/// stay readable.
 fn collect(
     values: &[(&str, &ReportValue)],
     views: &mut Vec<ReportView>,

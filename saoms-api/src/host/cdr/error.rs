@@ -19,12 +19,12 @@ impl DecodeError {
         DecodeError(Box::new(Fault { what: what.into(), offset }))
     }
 
-    /// What was found and what was expected.
+    /// Found and expected content.
     pub fn what(&self) -> &str {
         &self.0.what
     }
 
-    /// Where: the number of the byte, from 0, the header included.
+    /// Index of the byte, from 0, the header included.
     pub fn offset(&self) -> usize {
         self.0.offset
     }

@@ -1,6 +1,7 @@
 //! The byte form of messages and service calls: CDR, as ROS 2 uses it.
 //!
-//! It is plain CDR, version 1 (XCDR1), little endian, from the DDS Interoperability Wire Protocol (OMG formal/2022-04-01, section 10):
+//! It is plain CDR, version 1 (XCDR1), little endian, from the DDS Interoperability Wire Protocol (OMG
+//! formal/2022-04-01, section 10):
 //!
 //! | value | bytes |
 //! | --- | --- |
@@ -12,7 +13,8 @@
 //! | enumeration | the integer of its constant |
 //! | nothing: a message without fields, `()`, no arguments | one zero byte, as ROS 2 has it |
 //!
-//! Bytes from outside are not trusted: [`decode`] checks every length before it allocates, and refuses bytes that are left over.
+//! Bytes from outside are not trusted: [`decode`] checks every length before it allocates, and refuses bytes that are
+//! left over.
 //!
 //! ```
 //! use saoms_api::host::cdr;
@@ -55,7 +57,7 @@ pub fn encode<F: Field>(value: &F) -> Vec<u8> {
     writer.into_bytes()
 }
 
-/// [`encode`] into a buffer that is used again and again: what it held is replaced, its memory is kept.
+/// [`encode`] into a reused buffer: its content is replaced, its memory is kept.
 ///
 /// # Panics
 /// As [`encode`].

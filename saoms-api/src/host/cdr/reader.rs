@@ -34,7 +34,7 @@ impl<'a> Reader<'a> {
         self.at
     }
 
-    /// How many bytes are left.
+    /// Number of bytes left.
     pub const fn remaining(&self) -> usize {
         self.bytes.len() - self.at
     }
@@ -76,7 +76,7 @@ impl<'a> Reader<'a> {
     /// Reads the length of a sequence whose elements have at least this size.
     ///
     /// # Errors
-    /// The bytes that are left cannot hold that many elements, so that nobody allocates for them.
+    /// The bytes that are left cannot hold that many elements. Checked before memory is allocated for them.
     pub fn length(&mut self, least_size: usize) -> Result<usize, DecodeError> {
         let length = u32::from_le_bytes(self.scalar()?) as usize;
         if length.saturating_mul(least_size) > self.remaining() {
@@ -92,7 +92,7 @@ impl<'a> Reader<'a> {
     /// Reads a string. A length of zero, which some writers use for the empty string, is accepted.
     ///
     /// # Errors
-    /// The string is longer than what is left, does not end with NUL, or is not UTF-8.
+    /// The string is longer than the bytes that are left, does not end with NUL, or is not UTF-8.
     pub fn string(&mut self) -> Result<&'a str, DecodeError> {
         let length = self.length(1)?;
         let start = self.at;

@@ -12,19 +12,19 @@ impl Writer {
         Writer::reusing(Vec::with_capacity(64))
     }
 
-    /// The same in the memory of this buffer; what it holds is lost.
+    /// The same in the memory of this buffer, whose content is replaced.
     pub fn reusing(mut bytes: Vec<u8>) -> Writer {
         bytes.clear();
         bytes.extend_from_slice(&HEADER);
         Writer { bytes }
     }
 
-    /// What was written, header included.
+    /// The written bytes, header included.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// What was written, header included.
+    /// The written bytes, header included.
     pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
@@ -56,7 +56,8 @@ impl Writer {
     /// The length needs more than 32 bits, which the encoding does not have.
     #[inline]
     pub fn length(&mut self, length: usize) {
-        // The panic that is documented above: a length beyond this is a text or sequence of 4 GiB in memory, which no message is meant to be.
+        // The panic that is documented above: a length beyond this is a text or sequence of 4 GiB in memory, which no
+        // message is meant to be.
         #[expect(clippy::expect_used, reason = "a value of 4 GiB is a fault of the program that made it")]
         let length =
             u32::try_from(length).expect("CDR has no strings and sequences of 2^32 elements or more");
@@ -75,7 +76,8 @@ impl Writer {
 
     #[inline]
     fn align(&mut self, size: usize) {
-        // `size` is a power of two, so the mask gives the bytes missing to its next multiple, counted from after the header.
+        // `size` is a power of two, so the mask gives the bytes missing to its next multiple, counted from after the
+        // header.
         let padding = HEADER.len().wrapping_sub(self.bytes.len()) & (size - 1);
         if padding > 0 {
             self.bytes.extend_from_slice(&[0; 8][..padding]);

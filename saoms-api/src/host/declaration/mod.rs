@@ -1,7 +1,8 @@
-//! What a class says about itself: one JSON text, made while it is compiled.
+//! The declaration of a class: one JSON text, made while it is compiled.
 //!
-//! The registry, the checker, editors and documentation know a component by this text alone, whether it is linked in or lies in a library
-//! that nobody has loaded yet. `#[derive(Class)]` writes it; this is its shape, in the words of the derives.
+//! The registry, the checker, editors and documentation know a component by this text alone, whether it is linked in or
+//! lies in a library that is not loaded yet. `#[derive(Class)]` writes it; this is its shape, in the words of the
+//! derives.
 //!
 //! # A class
 //! ```json
@@ -22,14 +23,18 @@
 //! }
 //! ```
 //! - `contract` is the version of this shape.
-//! - `kind` is `periodic` or `passive`. A periodic class has the properties of a task beside its own, which are not listed.
-//! - `also` are further names of the class; the properties in `preset` have these texts, as if the composite had set them.
-//! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`. `"optional": true` in one that is published
-//!   says that nobody has to read it.
-//! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in their order: either
-//!   `{"default": [...]}`, or one list for each value of a property. A class without loops has neither.
-//! - `extends` is the whole declaration of the class that this one extends; absent where there is none. The class has the topics, services
-//!   and references of that one, too, and its knowledge and loops; it has neither `knowledge` nor `loops` itself. `properties` are all of its own.
+//! - `kind` is `periodic` or `passive`. A periodic class has the properties of a task beside its own, which are not
+//!   listed.
+//! - `also` are further names of the class; the properties in `preset` have these texts, as if the composite had set
+//!   them.
+//! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`. `"optional": true` in
+//!   one that is published says that it needs no reader.
+//! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in
+//!   their order: either `{"default": [...]}`, or one list for each value of a property. A class without loops has
+//!   neither.
+//! - `extends` is the whole declaration of the class that this one extends; absent where there is none. The class has
+//!   the topics, services and references of that one, too, and its knowledge and loops; it has neither `knowledge` nor
+//!   `loops` itself. `properties` are all of its own.
 //! - `doc`, here and below, is absent where the author wrote none.
 //!
 //! # A loop
@@ -48,7 +53,8 @@
 //!   "references": []
 //! }
 //! ```
-//! - What follows the last dot of the name is the name of the loop within a component, unless the composite gives another.
+//! - What follows the last dot of the name is the name of the loop within a component, unless the composite gives
+//!   another.
 //! - `knowledge` is absent for a loop that works on any knowledge that has the entries which it senses and effects.
 //! - `entries` are those that it adds to the knowledge; it may change them without saying so under `effects`.
 //! - Its topics and references are those of the component that has the loop.
@@ -79,11 +85,12 @@
 //! | `unique` | a word: no two components have the same value for properties with this word |
 //! | `properties` | those of a `complex` one |
 //!
-//! What does not apply is absent. [`Rule`] says exactly which texts a scalar property accepts, for the checker and the component alike.
+//! Fields that do not apply are absent. [`Rule`] says exactly which texts a scalar property accepts, for the checker
+//! and the component alike.
 //!
 //! # A schema
-//! The schema of a message is `{"name", "fields": [{"name", "type"}]}`, with `"key"`, the name of a field, where a state topic keeps one
-//! message for each value of that field. A type is one of
+//! The schema of a message is `{"name", "fields": [{"name", "type"}]}`, with `"key"`, the name of a field, where a
+//! state topic keeps one message for each value of that field. A type is one of
 //!
 //! | type | meaning |
 //! | --- | --- |
@@ -96,13 +103,13 @@
 //! Schemas carry no docs, so that equal text means equal encoding: see [`crate::host::cdr`].
 //!
 //! # An interface
-//! `{"name", "operations": [{"name", "arguments": [{"name", "type"}], "reply": type}]}`; the reply is `null` where there is none. The number of
-//! an operation is its place. Arguments are encoded like the fields of a message.
+//! `{"name", "operations": [{"name", "arguments": [{"name", "type"}], "reply": type}]}`; the reply is `null` where
+//! there is none. The number of an operation is its place. Arguments are encoded like the fields of a message.
 
 mod rule;
 mod text;
 
-/// What the declaration of a topic says of whether it is [optional](crate::Topic::optional).
+/// The part of a topic's declaration that marks it as [optional](crate::Topic::optional).
 pub const fn optional_topic(is_optional: bool) -> Text {
     match is_optional {
         true => Text::Plain(",\"optional\":true"),

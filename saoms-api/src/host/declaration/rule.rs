@@ -15,7 +15,7 @@ pub enum PropertyKind {
     Float,
     /// Any text.
     String,
-    /// What [`parse_duration`] reads.
+    /// A duration, as [`parse_duration`] reads it.
     Duration,
     /// One of the allowed texts.
     Enumeration,
@@ -48,7 +48,8 @@ impl PropertyKind {
         }
     }
 
-    /// Whether a value of it is one text that [`Rule::check`] reads as a [`Scalar`] of its own, rather than choices or properties.
+    /// True if a value is one text that [`Rule::check`] reads as a [`Scalar`] of its own, rather than choices or
+    /// properties.
     pub const fn is_scalar(self) -> bool {
         !matches!(self, PropertyKind::Enumeration | PropertyKind::Complex)
     }
@@ -74,7 +75,8 @@ pub enum Scalar {
     Duration(Duration),
 }
 
-/// What one scalar property accepts, as its declaration says. The checker and the component read values through it, so they agree.
+/// Rule of the values of a scalar property, from its declaration. The checker and the component read values through it,
+/// so they agree.
 ///
 /// ```
 /// use saoms_api::host::declaration::{PropertyKind, Rule, Scalar};
@@ -97,7 +99,7 @@ pub struct Rule<'a> {
     pub unit: Option<&'a str>,
     /// The texts that are allowed; empty where all are.
     pub allowed: &'a [&'a str],
-    /// Whether the text must not be empty or blank.
+    /// True if the text must not be empty or blank.
     pub non_empty: bool,
 }
 
@@ -110,7 +112,7 @@ impl<'a> Rule<'a> {
     /// Reads a value and checks it. Blanks around it do not count, except in a string.
     ///
     /// # Errors
-    /// What was found and what was expected, in one line.
+    /// The message in one line, with found and expected value.
     pub fn check(&self, text: &str) -> Result<Scalar, String> {
         match self.kind {
             PropertyKind::String => self.text(text).map(|()| Scalar::Text(text.to_owned())),
@@ -149,13 +151,13 @@ impl<'a> Rule<'a> {
         }
     }
 
-    /// Whether it takes any text that is not blank.
+    /// True if it takes any text that is not blank.
     #[inline]
     pub fn takes_any_text(&self) -> bool {
         matches!(self.kind, PropertyKind::String) && self.allowed.is_empty()
     }
 
-    /// Whether it certainly allows a text, as a look at its beginning tells. For any other [`check`](Rule::check) has to say it.
+    /// True if the beginning of a text shows that it is allowed. Other texts need [`check`](Rule::check).
     #[inline]
     pub(crate) fn allows_plain_text(&self, text: &str) -> bool {
         self.takes_any_text() && text.bytes().next().is_some_and(|first| first.is_ascii_graphic())
@@ -173,8 +175,8 @@ impl<'a> Rule<'a> {
         }
     }
 
-    /// Reads a value that has an order, and compares it with the bounds: but for those that `is_far` knows to be beyond it without reading
-    /// them, of which it is told whether they are the least value.
+    /// Reads a value that has an order, and compares it with the bounds: but for those that `is_far` knows to be beyond
+    /// it without reading them, of which it is told whether they are the least value.
     fn within<T: PartialOrd>(
         &self,
         text: &str,
@@ -201,14 +203,14 @@ impl<'a> Rule<'a> {
         format!("`{}` is {what}: expected {}", text.trim(), Expected(self))
     }
 
-    /// What is expected, as in `a whole number from 1 to 99 [%]`.
+    /// Description of the expected value, as in `a whole number from 1 to 99 [%]`.
     pub fn expected(&self) -> String {
         Expected(self).to_string()
     }
 }
 
-/// The whole numbers that a rule allows, as far as they are nothing but a few digits, as most are. The bounds of a rule are texts, which need not be
-/// read again for each value.
+/// The whole numbers that a rule allows, as far as they are nothing but a few digits, as most are. The bounds of a rule
+/// are texts, which need not be read again for each value.
 ///
 /// ```
 /// use saoms_api::host::declaration::{PlainBounds, PropertyKind, Rule};
@@ -329,13 +331,13 @@ const fn few_digits(text: &[u8]) -> Option<u32> {
     Some(number)
 }
 
-/// Whether digits make a number beyond all of a few digits.
+/// True if the number has more than a few digits.
 const fn is_large(digits: &[u8]) -> bool {
     digits.len() > FEW && matches!(digits, [b'1'..=b'9', ..])
 }
 
-/// Whether a whole number is certainly above this least, or below this greatest value: most of these are the ends of a type, far away, and
-/// reading them takes longer than reading the number.
+/// True if a whole number is certainly above this minimum, or below this maximum: most bounds are those of a type, far
+/// away, and reading them takes longer than reading the number.
 fn is_far(number: &i128, bound: &str, is_least: bool) -> bool {
     /// Numbers of more digits are at least so large.
     const NEAR: std::ops::Range<i128> = -999_999_999..1_000_000_000;
@@ -343,7 +345,7 @@ fn is_far(number: &i128, bound: &str, is_least: bool) -> bool {
     digits.is_some_and(|digits| is_large(digits.as_bytes())) && NEAR.contains(number)
 }
 
-/// What keeps a text from being a value of the type.
+/// The reason why a text is no value of the type.
 fn why_not(kind: PropertyKind, text: &str) -> &'static str {
     let text = text.trim();
     match kind {

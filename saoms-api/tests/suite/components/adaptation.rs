@@ -31,24 +31,24 @@ struct Variables {
     stopped: bool,
 }
 
-/// What a cart knows.
+/// Knowledge of a cart.
 #[derive(Debug, Default, Knowledge)]
 #[knowledge(name = "example.Cart")]
 struct Cart {
-    /// Where it is.
+    /// Position.
     #[entry]
     block: Block,
     #[entry(flatten)]
     variables: Variables,
-    /// How full.
+    /// Battery level.
     #[entry(unit = "%", name = "charge")]
     battery: f64,
-    /// Where it goes.
+    /// Target.
     #[entry(effector)]
     next: Option<Block>,
     #[entry]
     light: Light,
-    /// Whom it knows.
+    /// Numbers of known carts.
     #[entry]
     peers: Vec<u16>,
     secret: u64,
@@ -58,7 +58,7 @@ struct Cart {
 
 #[derive(Default, Entries)]
 struct Saving {
-    /// How often it saved.
+    /// Number of times that it saved.
     #[entry]
     saved: u32,
 }
@@ -357,18 +357,18 @@ const BLOCK: &str = r#"{"name":"Block","fields":[{"name":"x","type":"int32"},{"n
 #[test]
 fn knowledge_and_loops_declare_themselves() {
     let knowledge = [
-        r#"{"name":"example.Cart","doc":"What a cart knows.","entries":["#,
+        r#"{"name":"example.Cart","doc":"Knowledge of a cart.","entries":["#,
         r#"{"name":"block","type":"#,
         BLOCK,
-        r#","value":"pair","doc":"Where it is."},"#,
+        r#","value":"pair","doc":"Position."},"#,
         r#"{"name":"busy","type":"bool","value":"bool","doc":"It has a job."},"#,
         r#"{"name":"stopped","type":"bool","value":"bool","effector":true},"#,
-        r#"{"name":"charge","type":"float64","value":"number","doc":"How full.","unit":"%"},"#,
+        r#"{"name":"charge","type":"float64","value":"number","doc":"Battery level.","unit":"%"},"#,
         r#"{"name":"next","type":{"optional":"#,
         BLOCK,
-        r#"},"value":"pair","doc":"Where it goes.","effector":true},"#,
+        r#"},"value":"pair","doc":"Target.","effector":true},"#,
         r#"{"name":"light","type":{"enumeration":"uint8","values":{"OFF":0,"LOW_BEAM":1}},"value":"word"},"#,
-        r#"{"name":"peers","type":{"sequence":"uint16"},"doc":"Whom it knows."}]}"#,
+        r#"{"name":"peers","type":{"sequence":"uint16"},"doc":"Numbers of known carts."}]}"#,
     ]
     .concat();
     assert_eq!(Cart::DECLARATION, knowledge);
@@ -377,7 +377,7 @@ fn knowledge_and_loops_declare_themselves() {
         concat!(
             r#"{"contract":1,"loop":"example.Saver","doc":"Stops a cart.","properties":["#,
             r#"{"name":"threshold","type":"float","default":"50.0"}],"senses":["charge"],"effects":["stopped"],"#,
-            r#""entries":[{"name":"saved","type":"uint32","value":"integer","doc":"How often it saved."}],"#,
+            r#""entries":[{"name":"saved","type":"uint32","value":"integer","doc":"Number of times that it saved."}],"#,
             r#""publishes":[],"subscribes":[],"references":[]}"#
         )
     );

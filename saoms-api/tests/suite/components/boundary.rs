@@ -1,4 +1,4 @@
-//! What a component or a loop does behind the boundary to plugins is what it does without one.
+//! Components and loops behave the same behind the boundary to plugins as without it.
 
 use saoms_api::boundary::{class_table, loop_class_table, rule_table};
 use saoms_api::host::{
@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use super::host::FakeHost;
 
-/// What is measured.
+/// A measured value.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(key = "robot")]
 struct Sample {
@@ -46,7 +46,7 @@ struct Part {
 #[derive(Debug, Properties)]
 #[expect(dead_code, reason = "the log shows them")]
 struct BusyProperties {
-    /// Where it panics.
+    /// The function in which it panics.
     #[property(default = "nowhere")]
     panics: String,
     parts: Vec<Part>,
@@ -234,27 +234,27 @@ fn panics_and_refusals_are_failures() {
     assert!(matches!(error, Err(CallError::Mismatch { .. })), "{error:?}");
 }
 
-/// What a lamp knows.
+/// Knowledge of a lamp.
 #[derive(Default, Knowledge)]
 #[knowledge(name = "test.Lamp")]
 struct LampKnowledge {
-    /// How bright it is.
+    /// Brightness.
     #[entry]
     brightness: f64,
-    /// Whether it is on.
+    /// True if it is on.
     #[entry(effector)]
     is_on: bool,
-    /// What it was told.
+    /// The last received text.
     #[entry]
     told: Vec<String>,
     #[extras]
     extras: Extras,
 }
 
-/// What a dimmer remembers.
+/// Memory of a dimmer.
 #[derive(Default, Entries)]
 struct Dimming {
-    /// How often it dimmed.
+    /// Number of times that it dimmed.
     #[entry]
     dimmed: u32,
     /// The colours it saw.

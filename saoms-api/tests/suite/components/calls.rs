@@ -13,7 +13,7 @@ pub(crate) struct Block {
 #[expect(clippy::too_many_arguments, reason = "six is the most that an operation takes")]
 #[interface(name = "test.Gps")]
 pub(crate) trait Gps {
-    /// Where it is.
+    /// Position.
     fn position(&mut self, context: &mut Context<'_>) -> Result<Block, Failure>;
 
     /// Goes on. The arguments have the names that generated code could use itself.

@@ -11,7 +11,7 @@ use saoms_api::host::{
 };
 use saoms_api::{CallError, Cause, Chance, Context, Failure, Level, Record, ReportValue, Time, Value, Work};
 
-/// How calls reach the provider.
+/// Way in which calls reach the provider.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Boundary {
     /// Within one build of the program.

@@ -6,7 +6,7 @@ use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_
 use saoms_api::host::{DynComponent, Invocation, PropertyValue, SmolStr};
 use saoms_api::{CallError, Context, Failure, Saved};
 
-/// A class of the other side.
+/// A class of a plugin.
 #[derive(Clone, Copy, Debug)]
 pub struct ImportedClass {
     construct: Construct,
@@ -14,7 +14,7 @@ pub struct ImportedClass {
 }
 
 impl ImportedClass {
-    /// A class by its table.
+    /// A class from its table.
     ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](saoms_abi), for as long as the program runs.
@@ -34,7 +34,7 @@ impl ImportedClass {
     }
 }
 
-/// Makes a component or a loop of the other side.
+/// Constructs a component or a loop of a plugin.
 ///
 /// # Safety
 /// The function keeps the rules of the boundary.
@@ -57,7 +57,7 @@ pub(super) unsafe fn construct(
     }
 }
 
-/// A component of the other side.
+/// A component of a plugin.
 #[derive(Debug)]
 struct ImportedComponent {
     table: ComponentTable,

@@ -5,7 +5,7 @@ use saoms_api::host::{DynLoop, PropertyValue, SmolStr};
 
 use super::component::construct;
 
-/// A loop class of the other side.
+/// A loop class of a plugin.
 #[derive(Clone, Copy, Debug)]
 pub struct ImportedLoopClass {
     construct: Construct,
@@ -13,7 +13,7 @@ pub struct ImportedLoopClass {
 }
 
 impl ImportedLoopClass {
-    /// A loop class by its table.
+    /// A loop class from its table.
     ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](saoms_abi), for as long as the program runs.

@@ -3,7 +3,7 @@ use saoms_api::boundary::{PropertyViews, call_with_findings};
 use saoms_api::rule::FleetView;
 use saoms_api::{Failure, Finding};
 
-/// A rule of the other side.
+/// A rule of a plugin.
 #[derive(Clone, Copy, Debug)]
 pub struct ImportedRule {
     table: RuleTable,
@@ -15,7 +15,7 @@ unsafe impl Send for ImportedRule {}
 unsafe impl Sync for ImportedRule {}
 
 impl ImportedRule {
-    /// A rule by its table.
+    /// A rule from its table.
     ///
     /// # Safety
     /// The function of the table keeps the rules of [the boundary](saoms_abi), for as long as the program runs.
@@ -23,7 +23,7 @@ impl ImportedRule {
         ImportedRule { table }
     }
 
-    /// Asks it about a fleet.
+    /// Checks a fleet with the rule.
     ///
     /// # Errors
     /// The rule fails or panics, or one of its findings cannot be read.

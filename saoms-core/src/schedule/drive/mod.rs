@@ -1,4 +1,5 @@
-//! The threads that drive the engine: one does the timer's work, in real time a spare one watches it, and workers run what took too long.
+//! The threads that drive the engine: one does the timer's work, in real time a spare one watches it, and workers run
+//! components that took too long.
 
 mod real;
 mod supervise;
@@ -47,7 +48,8 @@ fn spawn_thread(
 ) -> io::Result<()> {
     let shared = Arc::clone(shared);
     let contained = move || {
-        // Component code is contained elsewhere: this is a fault of the engine itself, which must not leave the program waiting.
+        // Component code is contained elsewhere: this is a fault of the engine itself. The program must not wait for
+        // ever.
         if panic::catch_unwind(AssertUnwindSafe(|| run(&shared))).is_err() {
             shared.lock().break_down();
             announce_end(&shared);
@@ -66,7 +68,7 @@ fn prepare_thread(shared: &Shared, priority: i32) {
     }
 }
 
-/// Begins the end of the run if somebody asked for it.
+/// Begins the end of the run if it was requested.
 #[inline]
 fn heed_stop(shared: &Shared, engine: &mut Engine, now: u64) {
     if shared.stop.load(Ordering::Relaxed) {
@@ -74,7 +76,7 @@ fn heed_stop(shared: &Shared, engine: &mut Engine, now: u64) {
     }
 }
 
-/// Lets every thread know that the run has ended.
+/// Wakes all threads at the end of the run.
 pub(super) fn announce_end(shared: &Shared) {
     shared.ended.store(true, Ordering::Release);
     shared.end.wake();

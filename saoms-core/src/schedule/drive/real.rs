@@ -11,11 +11,12 @@ use super::super::slot::NEVER;
 use super::super::sys;
 use super::{announce_end, heed_stop, prepare_thread, workers};
 
-/// How long the timer may be busy without a pause before the fleet counts as more than this machine can run.
+/// Maximum time that the timer may be busy without a pause; beyond it the fleet overloads the machine.
 const BUSY: u64 = 500_000_000;
 
-/// Does the timer's work in real time, as long as the role's number is this: sleeps until something is due, and runs it right here. The moment at
-/// which one execution ends is the moment at which the next one starts, so that a batch reads the clock once for each.
+/// Does the timer's work in real time, as long as the role's number is this: sleeps until something is due, and runs it
+/// on this thread. The moment at which one execution ends is the moment at which the next one starts, so that a batch
+/// reads the clock once for each.
 pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     prepare_thread(shared, TIMER_PRIORITY);
     let mut engine = shared.lock();
@@ -72,14 +73,14 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
 }
 
 fn sleep(shared: &Shared, mut engine: std::sync::MutexGuard<'_, Engine>, until: u64) {
-    // Whoever has something new for the timer does it under the lock, and then changes the ticket.
+    // Other threads change the engine under the lock, and then change the ticket.
     let ticket = shared.timer.ticket();
     if shared.stop.load(Ordering::SeqCst) && engine.phase == RunPhase::Running {
-        // That came after the last look, and before the ticket.
+        // The stop request came after the last check, and before the ticket.
         return shared.release(engine);
     }
     if engine.phase == RunPhase::Stopping {
-        // From now on somebody has to see to it that all end in time; the limit of the run has told nobody.
+        // The waiting thread has to supervise the end from now on; the limit of the run did not wake it.
         shared.end.wake();
     }
     engine.roles.asleep_until = until;
@@ -89,8 +90,9 @@ fn sleep(shared: &Shared, mut engine: std::sync::MutexGuard<'_, Engine>, until: 
     shared.timer.wait(ticket, (until != NEVER).then_some(until));
 }
 
-/// Wakes the spare thread if it would sleep through a blocked execution that begins now: the timer was woken before its time. The fence pairs
-/// with the one of the spare thread, so that either it sees this execution, or this thread sees until when it sleeps.
+/// Wakes the spare thread if it would sleep through a blocked execution that begins now: the timer was woken before its
+/// time. The fence pairs with the one of the spare thread, so that either it sees this execution, or this thread sees
+/// until when it sleeps.
 fn be_watched(shared: &Shared, now: u64) {
     fence(Ordering::SeqCst);
     if shared.pulse.unwatched(shared.clock.on_machine(now), nanos(shared.settings.budget)) {
@@ -98,7 +100,7 @@ fn be_watched(shared: &Shared, now: u64) {
     }
 }
 
-/// Whether the fleet leaves the machine any time for others.
+/// Detector of an overload: a fleet that leaves the machine no time for others.
 struct Load {
     awake_since: u64,
     overloaded: bool,
@@ -106,14 +108,15 @@ struct Load {
 }
 
 impl Load {
-    /// A real-time thread that never sleeps would starve the machine, until the kernel throttles it: it goes on as a normal one.
+    /// A real-time thread that never sleeps would starve the machine, until the kernel throttles it. It continues as a
+    /// normal thread.
     fn is_busy(&mut self, shared: &Shared, now: u64) {
         if self.overloaded || now.saturating_sub(self.awake_since) < BUSY {
             return;
         }
         self.overloaded = true;
         if shared.settings.realtime {
-            // It may always give up its priority.
+            // Lowering the own priority is always allowed.
             let _ = sys::set_normal(sys::thread_id());
         }
         if !std::mem::replace(&mut self.warned, true) {

@@ -10,8 +10,8 @@ use super::super::shared::Shared;
 use super::super::sys;
 use super::{announce_end, heed_stop, spawn_timer};
 
-/// Waits until the run has got somewhere, or has ended. Sees to it that it does: gives up components that do not end in time, and in virtual time
-/// those that do not return at all.
+/// Waits until `reached` holds or the run has ended. Meanwhile abandons components that do not end in time, and in
+/// virtual time those that do not return at all.
 pub(in super::super) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engine) -> bool) {
     let mut stuck = Stuck { piece: 0, since: sys::monotonic() };
     loop {
@@ -48,7 +48,7 @@ pub(in super::super) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engin
         if let Some(role) = replaced
             && let Err(error) = spawn_timer(shared, role)
         {
-            // Without a thread nobody can shut down any more.
+            // Without a thread no component can shut down.
             shared.note(
                 Level::Error,
                 format!("components could not shut down: the system gives no thread: {error}"),
@@ -60,19 +60,20 @@ pub(in super::super) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engin
     }
 }
 
-/// What is known about the code that runs in virtual time.
+/// State of the watchdog for code that runs in virtual time.
 struct Stuck {
     piece: u64,
     since: u64,
 }
 
 impl Stuck {
-    /// When to look again, and who runs since too long. Looks rarely enough to cost nothing, and often enough to be a quarter too late at most.
+    /// Time of the next check, and the component that has run too long. A check is late by a quarter of the budget at
+    /// most.
     fn look(&mut self, shared: &Shared, engine: &Engine) -> (u64, Option<u32>) {
         let now = sys::monotonic();
         let allowed = nanos(shared.settings.virtual_watchdog);
         let piece = shared.pulse.begun();
-        // Who waits for a program that does not listen is not stuck by itself.
+        // A component that waits for a blocked observer is not stuck by itself.
         if piece != self.piece || engine.roles.running.is_none() || shared.events.is_jammed() {
             *self = Stuck { piece, since: now };
         }

@@ -10,10 +10,11 @@ use super::super::slot::NEVER;
 use super::super::sys;
 use super::{announce_end, heed_stop};
 
-/// A run that nothing ends says so after an hour of its own time, in nanoseconds.
+/// Time of the run, in nanoseconds, after which a run without an end is reported: one hour.
 const ENDLESS: u64 = 3_600_000_000_000;
 
-/// Drives the engine in virtual time, as long as the role's number is this: what is due runs in order, then time jumps to what is due next.
+/// Drives the engine in virtual time, as long as the role's number is this: components that are due run in order, then
+/// time jumps to the next due time.
 pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     let mut engine = shared.lock();
     engine.roles.thread = sys::thread_id();
@@ -45,7 +46,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 }
                 engine.finish(index, body, job, result, now, now);
             }
-            // Nothing runs apart in virtual time.
+            // No component runs on a worker thread in virtual time.
             Next::HandOver => {}
             Next::Wait(until) if engine.phase == RunPhase::Running && until.min(engine.pause) < NEVER => {
                 now = until.min(engine.pause);
@@ -58,7 +59,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 }
             }
             Next::Wait(_) => {
-                // Nobody will ever be due: no time passes that somebody could wait for.
+                // No component will ever be due: time cannot advance.
                 if engine.phase == RunPhase::Running {
                     engine.begin_stop(EndCause::Idle, now);
                 } else {
@@ -85,7 +86,7 @@ fn wait_for_journal<'a>(
     shared.lock()
 }
 
-/// Waits until somebody has something new.
+/// Waits until another thread changes the engine.
 fn sleep<'a>(
     shared: &'a Shared,
     mut engine: std::sync::MutexGuard<'a, Engine>,
@@ -100,7 +101,7 @@ fn sleep<'a>(
     engine
 }
 
-/// The warning about a run that nothing ends.
+/// The warning about a run without an end.
 fn endless_warning() -> String {
     let voters: String =
         RunSummary::linked().iter().map(|summary| format!(", or {}", summary.voters)).collect();

@@ -13,13 +13,14 @@ use super::super::sys;
 use super::{prepare_thread, real, spawn_thread};
 use crate::observe::Occurrence;
 
-/// Starts the spare thread that watches whoever does the timer's work.
+/// Starts the spare thread that watches the thread with the timer's work.
 pub(super) fn spawn(shared: &Arc<Shared>) -> io::Result<()> {
     spawn_thread(shared, "saoms-spare", watch)
 }
 
-/// Sleeps until the code that runs has used up its budget, or the one that is due next could have. When it has, this thread takes over the timer's
-/// work. The timer only writes down what it does; it makes no system call for its watcher.
+/// Sleeps until the code that runs has used up its budget, or the one that is due next could have. When it has, this
+/// thread takes over the timer's work. The timer only writes down what it does; it makes no system call for its
+/// watcher.
 fn watch(shared: &Arc<Shared>) {
     prepare_thread(shared, SPARE_PRIORITY);
     let budget = nanos(shared.settings.budget);

@@ -7,12 +7,13 @@ use super::super::shared::{Shared, relock};
 use super::super::sys;
 use super::spawn_thread;
 
-/// How many worker threads may wait for work.
+/// Maximum number of idle worker threads.
 const IDLE_WORKERS: usize = 4;
-/// How many worker threads there may be.
+/// Maximum number of worker threads.
 const WORKERS: usize = 256;
 
-/// Runs components that took too long before, until there are enough idle workers. The caller is counted among the workers.
+/// Runs components that took too long before, until there are enough idle workers. The caller is counted among the
+/// workers.
 pub(super) fn work(shared: &Arc<Shared>) {
     if shared.settings.realtime {
         // A thread inherits the priority of the one that starts it. Giving it up is always allowed.
@@ -43,7 +44,7 @@ pub(super) fn work(shared: &Arc<Shared>) {
         let ended = shared.clock.now();
         engine = shared.lock();
         engine.finish(index, body, job, result, started, ended);
-        // Tells the news, and wakes the timer where its time has become shorter.
+        // Delivers the news, and wakes the timer if it has to wake earlier.
         shared.release(engine);
         engine = shared.lock();
     }
@@ -51,7 +52,7 @@ pub(super) fn work(shared: &Arc<Shared>) {
     shared.release(engine);
 }
 
-/// Makes sure that a worker takes what was put into the line.
+/// Makes sure that a worker takes the queued components.
 pub(super) fn hand_over<'a>(
     shared: &'a Arc<Shared>,
     mut engine: MutexGuard<'a, Engine>,
@@ -68,7 +69,7 @@ pub(super) fn hand_over<'a>(
     if let Err(error) = spawned {
         engine.roles.workers -= 1;
         if engine.roles.workers == 0 {
-            // Better late with everybody than never.
+            // Without worker threads the components run on the timer again: late is better than never.
             while let Some(index) = engine.roles.work.pop_front() {
                 let slot = &mut engine.slots[index as usize];
                 slot.queued = false;

@@ -17,7 +17,7 @@ struct Request {
     piece: u32,
 }
 
-/// Who takes it.
+/// Taker of the piece.
 #[derive(Clone, Debug, PartialEq, Message)]
 struct Taken {
     piece: u32,
@@ -26,7 +26,7 @@ struct Taken {
 const REQUESTS: Topic<Request> = Topic::event("REQUESTS");
 const TAKEN: Topic<Taken> = Topic::event("TAKEN");
 
-/// When pieces appear.
+/// Times at which pieces appear.
 #[derive(Clone, Properties)]
 struct GateProperties {
     /// In which executions.
@@ -103,7 +103,7 @@ impl Component for Relay {
     }
 }
 
-/// What a robot knows.
+/// Knowledge of a robot.
 #[derive(Default, Knowledge)]
 #[knowledge(name = "test.Mind")]
 struct Mind {
@@ -202,10 +202,10 @@ impl Loop for BatteryLoop {
     }
 }
 
-/// What a robot is given.
+/// Properties of a robot.
 #[derive(Clone, Properties)]
 struct RobotProperties {
-    /// How many executions the battery lasts.
+    /// Number of executions that the battery lasts.
     #[property(default = 1000)]
     charge: i64,
     /// In which execution it fails.
