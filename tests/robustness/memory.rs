@@ -7,7 +7,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use saoms_components as _;
-use saoms_lang::check::{Census, Options, check};
+use saoms_lang::check::{Occurrences, Options, check};
 use saoms_lang::diagnostic::{Diagnostics, human, json};
 use saoms_lang::load::{MAX_SIZE, load_file, read_from};
 use saoms_lang::model::Contribution;
@@ -179,7 +179,7 @@ fn pictures_by_the_size_of_their_fleet() {
                 let composite = load_file(file, &sources, &mut diagnostics).unwrap();
                 let fleet = Contribution::of(vec![composite]);
                 let options = Options::default();
-                let census = Census::of(&fleet, registry, &options, &sources, &mut diagnostics);
+                let census = Occurrences::of(&fleet, registry, &options, &sources, &mut diagnostics);
                 Diagram::of(&fleet, registry, &census)
             });
             write!(io::sink(), "{}", draw(&diagram)).unwrap();

@@ -119,9 +119,7 @@ codes! {
     UNKNOWN_TYPE = "S2050" Error "unknown-type": "A property has a type that XML Schema does not have.";
     DEPLOYABLE_NOT_FOUND = "S2051" Error "deployable-not-found": "A contribution calls a composite deployable that it does not have.";
     VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not hold them as SCA asks for.";
-    BINDING_MISMATCH = "S2053" Warning "binding-mismatch": "A reference and the service that it is wired to have no kind of binding in common.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways that exclude each other.";
-    MUST_SUPPLY_DIFFERS = "S2055" Warning "must-supply-differs": "A component says of a property that it need not be supplied, and it has to be.";
     EXCHANGE = "S2059" Warning "exchange": "A contribution exports a namespace of which it has nothing, or imports one that those around it do not export.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{ClassPath, Classes, Compilation, Input, Problem, Project, folder, libraries};
 use crate::assembly::Assembly;
-use crate::check::{self, Census, Options, Setting, SeveritySetting, Variable};
+use crate::check::{self, Occurrences, Options, Setting, SeveritySetting, Variable};
 use crate::contribution::{Finder, read_values};
 use crate::diagnostic::Diagnostics;
 use crate::load::{self, STANDARD_INPUT, load_file, read_from};
@@ -147,9 +147,9 @@ impl Loaded {
     }
 
     /// As [`Project::census`].
-    pub fn census(self) -> Compilation<Census> {
+    pub fn census(self) -> Compilation<Occurrences> {
         self.checked(|contribution, registry, options, sources, diagnostics| {
-            Some(Census::of(contribution, registry, options, sources, diagnostics))
+            Some(Occurrences::of(contribution, registry, options, sources, diagnostics))
         })
     }
 

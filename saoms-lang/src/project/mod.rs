@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::assembly::Assembly;
-use crate::check::Census;
+use crate::check::Occurrences;
 use crate::contribution::Finder;
 use crate::load::MAX_SIZE;
 use crate::source::OpenTexts;
@@ -211,7 +211,7 @@ impl Project {
     }
 
     /// The numbers and topics of the components as far as they can be known, also where there are errors.
-    pub fn census(&self, classes: &impl ClassPath) -> Compilation<Census> {
+    pub fn census(&self, classes: &impl ClassPath) -> Compilation<Occurrences> {
         self.load(classes).census()
     }
 

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use saoms_api::TaskInterface;
-use saoms_api::host::declaration::{PlainBounds, PropertyKind, Rule, Scalar};
+use saoms_api::host::declaration::{PropertyKind, Rule, Scalar};
 use saoms_api::host::{Interface, TopicKind};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -135,16 +135,6 @@ impl PropertyDeclaration {
     /// Whether it is a number or a duration.
     pub(crate) fn is_number(&self) -> bool {
         matches!(self.kind, PropertyKind::Integer | PropertyKind::Float | PropertyKind::Duration)
-    }
-
-    /// What it allows that needs no look at the texts of its bounds.
-    pub(crate) fn plain_bounds(&self) -> Option<PlainBounds> {
-        self.with_rule(PlainBounds::of)
-    }
-
-    /// Whether it takes any text that is not blank.
-    pub(crate) fn takes_any_text(&self) -> bool {
-        self.with_rule(|rule| rule.takes_any_text())
     }
 
     /// What is expected, as in `a whole number from 1 to 99 [%]`.

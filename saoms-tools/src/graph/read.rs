@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::diagram::{Component, Diagram, Port, Setting, State};
 use super::{topics, wiring};
-use saoms_lang::check::{Census, TopicUse};
+use saoms_lang::check::{Occurrences, TopicUse};
 use saoms_lang::expression::pattern;
 use saoms_lang::model::{
     self, Composite, Contribution, ImplementationKind, Interface, Link, Origin, Reference, Service, Wire,
@@ -21,7 +21,7 @@ impl Diagram {
     /// include, and with what is inside the components that composites implement. Classes that are not registered are drawn with what the file says of them;
     /// components that are named and not there are drawn as missing.
     /// Of replicated components there is one box, with how many `census` has; what is not in it is left out.
-    pub fn of(contribution: &Contribution, registry: &Registry, census: &Census) -> Self {
+    pub fn of(contribution: &Contribution, registry: &Registry, census: &Occurrences) -> Self {
         if contribution.asked_for().is_empty() {
             return Self::default();
         }
@@ -43,7 +43,7 @@ impl Diagram {
 pub(super) struct View<'c> {
     /// Each with what it says of autowire, or else the one that includes it.
     composites: Vec<(&'c Composite, bool)>,
-    census: &'c Census,
+    census: &'c Occurrences,
     /// The components around them.
     around: Vec<Origin>,
 }
@@ -51,7 +51,7 @@ pub(super) struct View<'c> {
 impl<'c> View<'c> {
     fn of(
         contribution: &'c Contribution,
-        census: &'c Census,
+        census: &'c Occurrences,
         around: Vec<Origin>,
         places: Vec<usize>,
     ) -> Self {
@@ -114,7 +114,7 @@ impl<'c> View<'c> {
 struct Reader<'c> {
     contribution: &'c Contribution,
     registry: &'c Registry,
-    census: &'c Census,
+    census: &'c Occurrences,
     /// The composites that are being read.
     open: Vec<usize>,
     /// The components that they implement.

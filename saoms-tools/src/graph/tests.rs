@@ -1,7 +1,7 @@
 use expect_test::{Expect, expect};
 
 use super::{Diagram, State, dot, mermaid, svg};
-use saoms_lang::check::Census;
+use saoms_lang::check::Occurrences;
 use saoms_lang::diagnostic::Diagnostics;
 use saoms_lang::load::load_file;
 use saoms_lang::model::Contribution;
@@ -15,7 +15,7 @@ fn diagram(content: &str) -> Diagram {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let file = sources.add("c.composite", text);
     let composite = load_file(file, &sources, &mut diagnostics).unwrap();
-    Diagram::of(&Contribution::of(vec![composite]), &Registry::new(), &Census::default())
+    Diagram::of(&Contribution::of(vec![composite]), &Registry::new(), &Occurrences::default())
 }
 
 /// The diagram of the first of some composites that name each other.
@@ -28,7 +28,7 @@ fn together(texts: impl IntoIterator<Item = String>) -> Diagram {
     let mut asked_for: Vec<_> = texts.into_iter().map(load).collect();
     let others = asked_for.split_off(1);
     let contribution = Contribution::with(asked_for, others);
-    Diagram::of(&contribution, &Registry::new(), &Census::default())
+    Diagram::of(&contribution, &Registry::new(), &Occurrences::default())
 }
 
 /// The edges of the flowchart, each a line.
@@ -182,7 +182,7 @@ fn a_composite_that_is_named_beside_one_that_has_it_inside_is_drawn_twice() {
         let file = sources.add("c.composite", text);
         load_file(file, &sources, &mut diagnostics).unwrap()
     });
-    let diagram = Diagram::of(&Contribution::of(both.into()), &Registry::new(), &Census::default());
+    let diagram = Diagram::of(&Contribution::of(both.into()), &Registry::new(), &Occurrences::default());
     let inside = diagram.components[0].inside.as_deref().unwrap();
     assert_eq!((inside.components[0].name.as_str(), diagram.components[1].name.as_str()), ("A", "A"));
 }

@@ -1,7 +1,7 @@
 //! Pictures of real files: each is well-formed, shows every component in the composite, and none over another.
 
 use roxmltree::{Document, Node};
-use saoms_lang::check::Census;
+use saoms_lang::check::Occurrences;
 use saoms_lang::diagnostic::Diagnostics;
 use saoms_lang::load::load_file;
 use saoms_lang::model::Contribution;
@@ -26,7 +26,7 @@ fn every_file_has_a_picture() {
         let file = sources.add(&*name, text);
         let Some(composite) = load_file(file, &sources, &mut diagnostics) else { continue };
         let count = composite.components.len();
-        let diagram = Diagram::of(&Contribution::of(vec![composite]), &registry, &Census::default());
+        let diagram = Diagram::of(&Contribution::of(vec![composite]), &registry, &Occurrences::default());
         assert!(
             mermaid(&diagram).to_string().starts_with("flowchart")
                 && dot(&diagram).to_string().starts_with("digraph")

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use saoms_api::Time;
 use saoms_core::journal::read as read_journal;
 use saoms_lang::assembly::TaskProperties;
-use saoms_lang::check::{Census, Options};
+use saoms_lang::check::{Occurrences, Options};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes, human, json, sarif};
 use saoms_lang::expression::{
     Fault, Problem, Value, boolean, has_expression, integer, names, parse, pattern, render,
@@ -116,7 +116,7 @@ pub(crate) fn journal(bytes: &[u8]) {
 
 /// Draws a fleet in every format.
 pub(crate) fn draw(fleet: &Contribution, registry: &Registry, sources: &Sources) {
-    let census = Census::of(fleet, registry, &Options::default(), sources, &mut Diagnostics::new());
+    let census = Occurrences::of(fleet, registry, &Options::default(), sources, &mut Diagnostics::new());
     let diagram = Diagram::of(fleet, registry, &census);
     let pictures = [svg(&diagram).to_string(), dot(&diagram).to_string(), mermaid(&diagram).to_string()];
     assert!(syntax::parse(FileId(0), &Arc::new(pictures[0].clone())).faults.is_empty(), "{}", pictures[0]);

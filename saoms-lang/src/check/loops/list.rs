@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use saoms_api::host::PropertyValue;
 
 use super::{Planned, order};
-use crate::check::checked::Checked;
-use crate::check::classes::ClassIndex;
 use crate::check::fleet::Member;
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Loop, Part};
@@ -19,7 +19,7 @@ use crate::syntax::escaped;
 pub(super) fn plan<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: Checked<'_>,
+    checked: &PropertyValues,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {
@@ -99,11 +99,11 @@ pub(super) fn plan<'a>(
 }
 
 /// The value that says which loops of its class a component has.
-pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: Checked<'c>) -> Option<&'c str> {
-    let place = class.slots.choice?;
-    let slot = &class.slots.all[place];
-    let given = checked.at(place).map(|given| given.value);
-    match given.or_else(|| class.slots.preset(&slot.name)) {
+pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c PropertyValues) -> Option<&'c str> {
+    let place = class.table.choice?;
+    let slot = &class.table.all[place];
+    let given = checked.at(place).map(|given| &given.value);
+    match given.or_else(|| class.table.preset(&slot.name)) {
         Some(PropertyValue::Text(text)) => Some(text.trim()),
         _ => slot.own?.default.as_deref(),
     }
@@ -113,7 +113,7 @@ pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: Checked<'c>) -> Opt
 fn by_default<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
-    checked: Checked<'_>,
+    checked: &PropertyValues,
     registry: &'a Registry,
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {

@@ -9,27 +9,27 @@ use std::sync::Arc;
 
 use smol_str::SmolStr;
 
-use super::checked::{Checks, Elsewhere, Kept};
-use super::classes::ClassIndex;
-use super::findings::Subject;
-use super::fleet::{Fleet, Kind, Member};
-use super::parameters::Parameters;
-use super::properties::{self, Giver};
-use super::report::Report;
-use super::slots::Slots;
-use super::values::Values;
 use crate::assembly::LoopSpec;
+use crate::check::component::ComponentCheck;
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::{Fleet, Kind, Member};
+use crate::check::properties::conversion::Conversion;
+use crate::check::properties::given_values::ValueOrigin;
+use crate::check::properties::property_table::PropertyTable;
+use crate::check::properties::{self, Giver};
+use crate::check::report::Report;
+use crate::check::report::findings::Subject;
+use crate::check::values::parameters::Parameters;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Loop, Property};
 use crate::registry::{LoopClass, Registry};
 
 /// The loops of a component, resolved.
-pub(super) struct Resolved<'a> {
+pub(crate) struct Resolved<'a> {
     /// In their order; components that say nothing about them share those of their class.
-    pub(super) specs: Arc<[LoopSpec]>,
-    /// Those that the composite says something about: a pointer of one word, as few components have any.
-    #[expect(clippy::box_collection, reason = "of a large fleet, a word of each component matters")]
-    changed: Option<Box<Vec<Changed<'a>>>>,
+    pub(crate) specs: Arc<[LoopSpec]>,
+    /// Those that the composite says something about.
+    changed: Vec<Changed<'a>>,
 }
 
 /// A loop that the composite says something about.
@@ -37,16 +37,16 @@ struct Changed<'a> {
     place: usize,
     element: &'a Loop,
     /// Its values that are not one text in the composite, for their places.
-    elsewhere: Vec<Elsewhere>,
+    origins: Vec<ValueOrigin>,
 }
 
 impl Resolved<'_> {
     /// Those that the composite says something about, for the judgement of their constructors: the others are as their class has them.
-    pub(super) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
-        self.changed.iter().flat_map(|changed| changed.iter()).map(|one| {
+    pub(crate) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
+        self.changed.iter().map(|one| {
             let (spec, Loop { name, properties, .. }) = (&self.specs[one.place], one.element);
-            let (values, elsewhere, properties) = (&spec.values, &one.elsewhere, properties);
-            (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, elsewhere })
+            let (values, origins, properties) = (&spec.values, &one.origins, properties);
+            (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, origins })
         })
     }
 }
@@ -65,55 +65,41 @@ type Choice = (usize, Option<SmolStr>);
 /// The loops as they are where the composite says nothing about them.
 #[derive(Clone)]
 struct Usual {
-    of: Choice,
     /// The place of the class together with these loops.
     with: usize,
     specs: Arc<[LoopSpec]>,
 }
 
-/// Finds the loops of all components; `None` where something about them is wrong. The class of a component with loops becomes one that uses
-/// the topics and references of these as well.
-pub(super) fn resolve<'a>(
+/// Finds the loops of all components. The class of a component with loops becomes one that uses the topics and references of these as well.
+pub(crate) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
     classes: &mut Vec<ClassIndex<'a>>,
-    checks: &Checks,
+    checks: &mut [ComponentCheck<'a>],
     registry: &'a Registry,
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<Option<Resolved<'a>>> {
-    let mut values = Values::default();
+) {
+    let mut values = Conversion::default();
     // The class of each place together with these loops.
     let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
-    // The same with the loops that components of a class have by this choice where the composite says nothing about them.
-    let mut usual: HashMap<Choice, Usual> = HashMap::default();
-    // Those of the component before, which this one mostly has as well.
-    let mut before: Option<Usual> = None;
-    let mut all = Vec::with_capacity(fleet.members.len());
-    for place in 0..fleet.members.len() {
+    // The loops of components that say nothing about them.
+    let mut usual: HashMap<Choice, Usual> = HashMap::new();
+    for (place, check) in checks.iter_mut().enumerate() {
         let member = &fleet.members[place];
         report.about(member);
-        let (Kind::Class(index), Some(checked)) = (member.kind, checks.get(place)) else {
+        let Kind::Class(index) = member.kind else {
             without_class(member, parameters, report);
-            all.push(None);
             continue;
         };
         let class = &classes[index];
-        // A component that says nothing about its loops has them as those have that were there before it.
-        let has_none = member.component.loops().is_empty();
-        let plain = has_none.then(|| (index, list::choice(class, checked)));
-        if let Some((index, choice)) = plain {
-            let is_same = |one: &&Usual| one.of.0 == index && one.of.1.as_deref() == choice;
-            if before.as_ref().filter(is_same).is_none() {
-                before = usual.get(&(index, choice.map(SmolStr::new))).cloned();
-            }
-            if let Some(Usual { with, specs, .. }) = &before {
-                fleet.members[place].kind = Kind::Class(*with);
-                all.push(Some(Resolved { specs: Arc::clone(specs), changed: None }));
-                continue;
-            }
+        let says_nothing = member.component.loops().is_empty();
+        let choice = says_nothing.then(|| (index, list::choice(class, &check.given).map(SmolStr::new)));
+        if let Some(Usual { with, specs }) = choice.as_ref().and_then(|choice| usual.get(choice)) {
+            fleet.members[place].kind = Kind::Class(*with);
+            check.loops = Some(Resolved { specs: Arc::clone(specs), changed: Vec::new() });
+            continue;
         }
-        let plain = plain.map(|(index, choice)| (index, choice.map(SmolStr::new)));
-        let (loops, is_planned) = list::plan(member, class, checked, registry, report);
+        let (loops, is_planned) = list::plan(member, class, &check.given, registry, report);
         let is_team = is_planned && team::check(member, class, &loops, report);
         let used: Vec<&Arc<LoopClass>> = loops.iter().filter_map(|one| one.class).collect();
         let mut with = index;
@@ -127,14 +113,12 @@ pub(super) fn resolve<'a>(
             fleet.members[place].kind = Kind::Class(with);
         }
         let resolved = resolved(&loops, &fleet.members[place], parameters, &mut values, report);
-        let resolved = resolved.filter(|_| is_team);
-        if let (Some(of), Some(resolved)) = (plain, &resolved) {
-            usual.insert(of.clone(), Usual { of, with, specs: Arc::clone(&resolved.specs) });
+        check.loops = resolved.filter(|_| is_team);
+        if let (Some(choice), Some(resolved)) = (choice, &check.loops) {
+            usual.insert(choice, Usual { with, specs: Arc::clone(&resolved.specs) });
         }
-        all.push(resolved);
     }
     report.about_all();
-    all
 }
 
 /// Loops with their values; `None` where any of them is wrong.
@@ -142,7 +126,7 @@ fn resolved<'a>(
     planned: &[Planned<'a>],
     member: &Member<'a>,
     parameters: &mut Parameters<'a>,
-    values: &mut Values<'a>,
+    values: &mut Conversion,
     report: &mut Report<'_>,
 ) -> Option<Resolved<'a>> {
     let mut specs = Vec::with_capacity(planned.len());
@@ -155,20 +139,18 @@ fn resolved<'a>(
         };
         let mut spec = LoopSpec { name: one.name.to_owned(), class: Arc::clone(class), values: Vec::new() };
         if let Some(element) = one.element {
-            let slots = Slots::of_loop(class);
+            let table = PropertyTable::of_loop(class);
             let giver = Giver::looping(element, member);
-            let mut own = Checks::default();
-            properties::check(&giver, &slots, parameters, values, &mut own, report);
-            if own.get(0).is_none_or(|checked| !checked.is_sound) {
+            let given = properties::check(&giver, &table, parameters, values, report);
+            if !given.is_sound {
                 continue;
             }
-            let Kept { values, elsewhere, .. } = own.take(0).unwrap_or_default();
+            let (values, origins) = given.of_class(&table);
             spec.values = values;
-            changed.push(Changed { place: specs.len(), element, elsewhere });
+            changed.push(Changed { place: specs.len(), element, origins });
         }
         specs.push(spec);
     }
-    let changed = (!changed.is_empty()).then(|| Box::new(changed));
     (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed })
 }
 
@@ -184,7 +166,7 @@ fn sources<'a>(
     }
 }
 
-/// What can be said of the loops of a component that has no class.
+/// Checks the loops of a component that has no class, as far as that is possible.
 fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
     let loops = member.component.loops();
     sources(loops.iter().flat_map(|one| &one.properties), member, parameters, report);

@@ -1,8 +1,8 @@
-//! Whether the loops of a component can work together, said at the very places.
+//! Rules on the loops of a component together, reported at the exact places.
 
 use super::Planned;
-use crate::check::classes::ClassIndex;
 use crate::check::fleet::Member;
+use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::{LoopDeclaration, Team, TeamFault};

@@ -27,10 +27,6 @@ fn multiplicities_are_not_widened_whatever_the_classes_are() {
 <reference name='e' multiplicity='0..n' promote='B/p'/>
 <reference name='f' multiplicity='1..1' promote='A/many'/>";
     expect![[r#"
-        5:35-39 error S2036: `a` promotes reference `one` of component `A`, which takes `1..1`: `0..1` does not narrow it
-          help: it can be `1..1`
-        6:35-39 error S2036: `b` promotes reference `many` of component `A`, which takes `1..n`: `0..n` does not narrow it
-          help: it can be `1..1` and `1..n`
         7:35-39 error S2036: `c` promotes reference `r` of component `B`, which takes `1..1`: `0..1` does not narrow it
           help: it can be `1..1`
     "#]].assert_eq(&given(wrong));
@@ -70,51 +66,6 @@ fn what_is_wrong_with_several_that_are_promoted_together_is_told_once() {
           help: do not promote them, or leave `nonOverridable` out
     "#]]
     .assert_eq(&promoted(&[fixed, fixed], "1..1"));
-}
-
-#[test]
-fn what_is_promoted_of_several_is_named() {
-    let wrong = "<component name='A'><implementation.java class='x.A'/><reference name='one' target='A'/></component>
-<component name='B'><implementation.java class='x.B'/>
-<service name='s'><interface.java interface='x.S'/></service><service name='u'><interface.java interface='x.U'/></service>
-<reference name='r' target='A/s B'/></component>
-<service name='a' promote='A'/>
-<reference name='b' promote='A'/>
-<service name='c' promote='B'/>
-<reference name='d' promote='B'/>";
-    expect![[r#"
-        2:85-86 warning S2014: component `A` has several services
-          help: name one of `s` and `u`: `A/...`
-        6:28-29 error S2021: component `A` has several services: say which is promoted
-          help: write `A/` and one of `s` and `u`
-        7:30-31 error S2021: component `A` has several references: say which is promoted
-          help: write `A/` and one of `many` and `one`
-        8:28-29 error S2021: component `B` has several services: say which is promoted
-          help: write `B/` and one of `s` and `u`
-    "#]]
-    .assert_eq(&given(wrong));
-}
-
-#[test]
-fn composites_have_several_services_to_choose_from() {
-    let fleet = part(
-        "fleet",
-        "",
-        "<component name='H'><implementation.composite name='t:hall'/></component>
-<component name='A'><implementation.java class='x.A'/><reference name='r' target='H'/><reference name='q' target='H/s'/></component>",
-    );
-    let hall = part(
-        "hall",
-        "",
-        "<service name='s' promote='B/s'/><service name='u' promote='B/u'/><component name='B'><implementation.java class='x.B'/></component>",
-    );
-    let (_, diagnostics, sources) = nested(&[&fleet, &hall], &[], true);
-    let all: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
-    expect![[r#"
-        3:83-84 warning S2014: component `H` has several services
-          help: name one of `s` and `u`: `H/...`
-    "#]]
-    .assert_eq(&all);
 }
 
 #[test]
@@ -161,26 +112,6 @@ fn interfaces_that_differ_inside_are_told_inside_alone() {
           hall:4:30-35 the first
           help: promote each by a reference of its own: no service has both interfaces
     "#]].assert_eq(&all);
-}
-
-#[test]
-fn implementations_wire_all_that_is_promoted_together_or_nothing() {
-    let wrong = "<component name='B'><implementation.java class='x.B'/><reference name='r' wiredByImpl='true'/><reference name='q' target='B'/></component>
-<reference name='a' promote='B/r B/q'/>
-<reference name='b' promote='B/r' wiredByImpl='false'/>
-<reference name='c' promote='B/q' wiredByImpl='true'/>
-<reference name='d' promote='B/r' wiredByImpl='true'/>";
-    expect![[r#"
-        3:34-37 error S2038: reference `a` of the composite promotes a reference that its implementation wires, and one that it does not
-          3:30-33 the first
-          help: give all of them one `wiredByImpl`, or promote them apart
-        4:48-53 error S2038: reference `b` of the composite says `wiredByImpl="false"`, and promotes reference `r` that says otherwise
-          4:30-33 promoted here
-          help: give all of them one `wiredByImpl`, or promote them apart
-        5:48-52 error S2038: reference `c` of the composite says `wiredByImpl="true"`, and promotes reference `q` that says otherwise
-          5:30-33 promoted here
-          help: give all of them one `wiredByImpl`, or promote them apart
-    "#]].assert_eq(&given(wrong));
 }
 
 #[test]

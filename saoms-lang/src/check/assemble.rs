@@ -1,0 +1,84 @@
+//! The assembly of a fleet without errors.
+
+use std::sync::Arc;
+
+use super::component::ComponentCheck;
+use super::fleet::classes::ClassIndex;
+use super::fleet::{Fleet, Member};
+use super::rules::traffic;
+use super::wiring::Wiring;
+use crate::assembly::{Assembly, ComponentSpec, Target, Wire};
+use crate::model::Component;
+
+/// A fleet without errors. Components of it may have no class where that is taken as given.
+pub(crate) struct CheckedFleet<'f, 'a> {
+    pub(crate) fleet: Fleet<'f>,
+    pub(crate) classes: Vec<ClassIndex<'a>>,
+    pub(crate) checks: Vec<ComponentCheck<'f>>,
+    pub(crate) wiring: Wiring,
+}
+
+impl CheckedFleet<'_, '_> {
+    /// The number of components; `None` if something is taken as given.
+    pub(crate) fn count(&self) -> Option<usize> {
+        let mut runs = self.fleet.members.iter().zip(&self.checks).filter(|(member, _)| member.runs());
+        runs.try_fold(0, |count, (_, check)| check.is_sound().then_some(count + 1))
+    }
+
+    /// The places of the components of the assembly in the files.
+    pub(crate) fn places(&self) -> Vec<traffic::ComponentPlaces> {
+        let runs = self.fleet.members.iter().zip(&self.checks).filter(|(member, _)| member.runs());
+        let place = |(member, check): (&Member<'_>, &ComponentCheck<'_>)| traffic::ComponentPlaces {
+            name: member.component.name.location,
+            renamed: check.renamed.clone(),
+            queue: check.queue,
+        };
+        runs.map(place).collect()
+    }
+
+    /// The assembly; `None` if something is taken as given.
+    pub(crate) fn assemble(self, library: impl Fn(&Component) -> Option<String>) -> Option<Assembly> {
+        let Self { fleet, classes, checks, wiring } = self;
+        // Components that composites implement are in no assembly.
+        let mut count = 0;
+        let indices = fleet.members.iter().map(|member| {
+            count += usize::from(member.runs());
+            count.saturating_sub(1)
+        });
+        let indices: Vec<usize> = indices.collect();
+        let mut components = Vec::with_capacity(count);
+        for (place, check) in checks.into_iter().enumerate() {
+            let member = &fleet.members[place];
+            if !member.runs() {
+                continue;
+            }
+            if !check.is_sound() {
+                return None;
+            }
+            let class = fleet.class_of(place, &classes)?;
+            let references = class.references.iter().zip(wiring.of(place));
+            let references = references.map(|(declared, providers)| Wire {
+                reference: declared.name.clone(),
+                interface: declared.interface.name.clone(),
+                targets: providers
+                    .iter()
+                    .filter_map(|provider| {
+                        let class = fleet.class_of(provider.member, &classes)?;
+                        let service = class.services[provider.service].name.clone();
+                        Some(Target { component: indices[provider.member], service })
+                    })
+                    .collect(),
+            });
+            components.push(ComponentSpec {
+                path: member.path().to_owned(),
+                class: Arc::clone(class.class),
+                library: library(member.component),
+                values: check.values,
+                task: check.task,
+                references: references.collect(),
+                loops: check.loops?.specs,
+            });
+        }
+        Some(Assembly { components })
+    }
+}

@@ -1,0 +1,275 @@
+//! Which class each component is of.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{Fleet, Kind};
+use crate::check::properties::property_table::PropertyTable;
+use crate::check::report::{Report, list, replacing};
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
+use crate::expression::has_expression;
+use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
+use crate::registry::{
+    Class, InterfaceDeclaration, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration,
+    TopicDeclaration,
+};
+use crate::source::{Sources, Text};
+use crate::syntax::escaped;
+
+/// The number of names are offered in place of one that a library does not have.
+const OFFERED: usize = 3;
+
+/// A class of the fleet, with its declaration at hand; where components of it have loops, together with these.
+pub(crate) struct ClassIndex<'r> {
+    pub(crate) class: &'r Arc<Class>,
+    pub(crate) table: PropertyTable<'r>,
+    /// Its services, those that the host serves for it included.
+    pub(crate) services: Vec<&'r ServiceDeclaration>,
+    /// Those of its loops included, like its topics.
+    pub(crate) references: Vec<&'r ReferenceDeclaration>,
+    pub(crate) publishes: Vec<&'r TopicDeclaration>,
+    pub(crate) subscribes: Vec<&'r TopicDeclaration>,
+}
+
+/// The services of a class with an interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fitting {
+    None,
+    /// The one of this place.
+    One(usize),
+    Several,
+}
+
+impl<'r> ClassIndex<'r> {
+    fn new(class: &'r Arc<Class>) -> Self {
+        let declaration = class.declaration();
+        let services = declaration.offers().collect();
+        Self {
+            class,
+            table: PropertyTable::of_class(class),
+            services,
+            references: declaration.references.iter().collect(),
+            publishes: declaration.publishes.iter().collect(),
+            subscribes: declaration.subscribes.iter().collect(),
+        }
+    }
+
+    /// The same together with what these loops use.
+    pub(crate) fn with(&self, loops: impl Iterator<Item = &'r LoopDeclaration>) -> Self {
+        let mut all = Self::new(self.class);
+        for one in loops {
+            // A topic that is declared twice in the same way is one; where two differ, both stay to be compared.
+            all.publishes.extend(one.publishes.iter().filter(|topic| !self.publishes.contains(topic)));
+            all.subscribes.extend(one.subscribes.iter().filter(|topic| !self.subscribes.contains(topic)));
+            for reference in &one.references {
+                if all.references.iter().all(|known| known.name != reference.name) {
+                    all.references.push(reference);
+                }
+            }
+        }
+        all
+    }
+
+    /// Which of its services have an interface.
+    pub(crate) fn fitting(&self, interface: &InterfaceDeclaration) -> Fitting {
+        let all = self.services.iter().enumerate();
+        let mut all = all.filter(|(_, service)| service.interface == *interface).map(|(place, _)| place);
+        match (all.next(), all.next()) {
+            (None, _) => Fitting::None,
+            (Some(only), None) => Fitting::One(only),
+            (Some(_), Some(_)) => Fitting::Several,
+        }
+    }
+
+    /// True if the topics it declares are any.
+    pub(crate) fn has_topics(&self) -> bool {
+        !self.publishes.is_empty() || !self.subscribes.is_empty()
+    }
+}
+
+/// Finds the class of every component; the classes that occur.
+pub(crate) fn resolve<'r>(
+    fleet: &mut Fleet<'_>,
+    contribution: &Contribution,
+    registry: &'r Registry,
+    assume_classes: bool,
+    report: &mut Report<'_>,
+) -> Vec<ClassIndex<'r>> {
+    let mut classes = Vec::new();
+    let mut known: HashMap<&str, usize> = HashMap::default();
+    // What is near an unknown name, which a whole fleet may have.
+    let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
+    for place in 0..fleet.members.len() {
+        let component = fleet.members[place].component;
+        // What is not there may come with a plugin where its condition is true.
+        let assumes = assume_classes || fleet.members[place].is_absent;
+        report.about(&fleet.members[place]);
+        let Some(class) = runnable(component, assumes, report) else {
+            if assumes && fleet.members[place].kind == Kind::Nothing {
+                fleet.members[place].kind = given(component);
+            }
+            continue;
+        };
+        // An expression that is still there has a fault, which is reported.
+        if fleet.members[place].instance.is_some_and(|one| one.partial.is_some()) && has_expression(class) {
+            continue;
+        }
+        if !is_in_library(component, class, contribution, registry, assumes, report) {
+            if assumes {
+                fleet.members[place].kind = Kind::Given;
+            }
+            continue;
+        }
+        let index = match known.get(class.as_str()).copied() {
+            Some(index) => index,
+            None => match registry.get(class) {
+                Some(found) => {
+                    classes.push(ClassIndex::new(found));
+                    known.insert(class, classes.len() - 1);
+                    classes.len() - 1
+                }
+                None if assumes => {
+                    fleet.members[place].kind = Kind::Given;
+                    continue;
+                }
+                None if report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) => continue,
+                None => {
+                    let near = near.entry(class).or_insert_with(|| registry.nearest(class));
+                    report.push(unknown(class, near, registry));
+                    continue;
+                }
+            },
+        };
+        fleet.members[place].kind = Kind::Class(index);
+    }
+    report.about_all();
+    classes
+}
+
+/// The name of the class of a component that names one.
+fn runnable<'a>(component: &'a Component, assume_classes: bool, report: &mut Report<'_>) -> Option<&'a Text> {
+    const SUPPORTED: &str = "components are implemented by a class: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
+    let Some(implementation) = &component.implementation else {
+        if assume_classes {
+            return None;
+        }
+        // Reported by the loader, for SCA 1.0 as a warning.
+        let why = "SCA 1.0 allows a component without an implementation, but it cannot run";
+        report.escalate(&codes::MISSING_IMPLEMENTATION, component.origin.file(), why);
+        return None;
+    };
+    match &implementation.kind {
+        ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
+        // Unfolded already.
+        ImplementationKind::Composite { .. } => None,
+        ImplementationKind::Other { .. } if assume_classes => None,
+        ImplementationKind::Other { kind, .. } => {
+            let message = format!("{} cannot run here", quoted(&format!("implementation.{kind}")));
+            // What it lacks does not matter then.
+            report.withdraw(&codes::MISSING_ATTRIBUTE, implementation.tag());
+            let one = Diagnostic::new(&codes::IMPLEMENTATION_UNSUPPORTED, implementation.tag(), message);
+            report.push(one.help(SUPPORTED));
+            None
+        }
+    }
+}
+
+/// The kind of a component without a class, where that is taken as given.
+fn given(component: &Component) -> Kind {
+    match component.implementation.as_ref().map(|implementation| &implementation.kind) {
+        // A composite that is faulty, or missing: seen to when the fleet was unfolded.
+        Some(ImplementationKind::Composite { .. }) => Kind::Nothing,
+        _ => Kind::Given,
+    }
+}
+
+/// True if the class is in the library that is to have it, where one is named.
+fn is_in_library(
+    component: &Component,
+    class: &Text,
+    contribution: &Contribution,
+    registry: &Registry,
+    assume_classes: bool,
+    report: &mut Report<'_>,
+) -> bool {
+    let Some(implementation) = &component.implementation else { return true };
+    let ImplementationKind::Rust { library: Some(library), .. } = &implementation.kind else { return true };
+    let wrong = |message: String| Diagnostic::new(&codes::LIBRARY, library.location, message);
+    let found = match contribution.library(implementation.origin) {
+        Some(LibraryLink::To(path)) => {
+            let has = registry.get(class);
+            if has.is_some_and(|has| has.origin() == Some(path)) {
+                return true;
+            }
+            let file = quoted(&path.display().to_string());
+            let mut one = wrong(format!("the library {file} has no class {}", quoted(class)));
+            let own: Vec<&str> = registry.of(path).collect();
+            for meant in nearest_few(class, own.iter().copied(), OFFERED) {
+                one = one.suggest(replacing(class, meant), class.location, escaped(meant));
+            }
+            one = one.help(match own.len() {
+                0 => "it has no class of components".to_owned(),
+                _ => format!("it has {}", list(own.into_iter())),
+            });
+            match has.map(|has| has.origin()) {
+                None => one,
+                Some(None) => one.help("the class is linked into this program: leave `library` out"),
+                Some(Some(other)) => {
+                    one.help(format!("the class is in {}", quoted(&other.display().to_string())))
+                }
+            }
+        }
+        Some(LibraryLink::Faulty(message)) => wrong(message.clone()),
+        Some(LibraryLink::Missing(looked)) => {
+            let one = wrong(format!("there is no library {}", quoted(library)));
+            let looked: Vec<String> = looked.iter().map(|path| path.display().to_string()).collect();
+            one.help(format!("looked for {}", list(looked.iter().map(String::as_str))))
+                .help("name a file from the folder of the composite, or give its folder with `--plugin`")
+        }
+        None => wrong(format!("the library {} was not looked for", quoted(library))),
+    };
+    if !assume_classes {
+        report.push(found);
+    }
+    false
+}
+
+/// The library that a component's composite names for its class, as the first composite would name it.
+pub(crate) fn library(
+    component: &Component,
+    contribution: &Contribution,
+    sources: &Sources,
+) -> Option<String> {
+    let implementation = component.implementation.as_ref()?;
+    let Some(LibraryLink::To(path)) = contribution.library(implementation.origin) else { return None };
+    let first = contribution.asked_for().first()?;
+    let folder = Path::new(sources.get(first.file()).path()).parent().unwrap_or(Path::new(""));
+    let from_there = path.strip_prefix(folder).map(Path::to_owned).ok();
+    let path = from_there.or_else(|| std::path::absolute(path).ok()).unwrap_or_else(|| path.clone());
+    Some(path.display().to_string())
+}
+
+fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
+    const SHOWN: usize = 6;
+    let message = format!("there is no class {}", quoted(class));
+    let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
+    for meant in near {
+        one = one.suggest(replacing(class, meant), class.location, escaped(meant));
+    }
+    if registry.get_loop(class).is_some() {
+        let inside = format!("`<saoms:loop name=\"...\" class=\"{class}\"/>`");
+        return one.help(format!("it is a loop: give it to a component that has loops, by {inside} in it"));
+    }
+    let looked = match registry.len() {
+        0 => "no class is linked into this program".to_owned(),
+        1..=SHOWN => format!(
+            "the classes linked into this program are {}",
+            list(registry.iter().map(|class| class.name()))
+        ),
+        count => format!(
+            "looked among the {count} classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin"
+        ),
+    };
+    one.help(looked)
+}

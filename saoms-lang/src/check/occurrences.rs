@@ -1,0 +1,237 @@
+//! Occurrences of the parts of composites in a fleet, and the topics of its components, for pictures.
+
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
+
+use crate::check::fleet::classes;
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::{Fleet, Kind};
+use crate::check::loops;
+use crate::check::options::Options;
+use crate::check::properties;
+use crate::check::report::Report;
+use crate::check::report::severities::Severities;
+use crate::check::tasks;
+use crate::check::unfolding;
+use crate::check::unfolding::arena::Arena;
+use crate::check::values::parameters::Parameters;
+use crate::diagnostic::Diagnostics;
+use crate::model::{Contribution, Origin};
+use crate::registry::{Registry, TopicDeclaration};
+use crate::source::{FileId, Sources};
+use crate::syntax::ElementId;
+
+/// The number of times each replicated or conditional part of the composites is in a fleet, and which topics its components use.
+#[derive(Clone, Debug, Default)]
+pub struct Occurrences {
+    counts: HashMap<(FileId, ElementId), usize>,
+    /// The fewest and the most in one of the composites around them.
+    ranges: HashMap<Way, (usize, usize)>,
+    /// Components of one class with the same renames share a list.
+    topics: HashMap<Way, Rc<[TopicUse]>>,
+}
+
+/// A component, with those around it that composites implement before it, the outermost first.
+type Way = Vec<(FileId, ElementId)>;
+
+/// A topic that a component publishes or subscribes to, itself or by one of its loops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TopicUse {
+    /// Its name, after renaming.
+    pub name: String,
+    /// Its declaration in the component's class or loop.
+    pub declared: Rc<TopicDeclaration>,
+    /// True if it is published; it is subscribed to otherwise.
+    pub is_published: bool,
+}
+
+impl Occurrences {
+    /// Counts the parts of the fleet that these composites come to with these options. What is wrong with replicas, conditions and settings
+    /// is reported.
+    pub fn of(
+        contribution: &Contribution,
+        registry: &Registry,
+        options: &Options,
+        sources: &Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Self {
+        let mut severities = Severities::of(contribution, options, registry, diagnostics);
+        let report = &mut Report::new(sources, diagnostics);
+        let replicas = Arena::new();
+        let mut fleet = unfolding::unfold(contribution, options, &replicas, report);
+        let parameters = Parameters::of(&fleet, options, report);
+        report.finish();
+        severities.apply(0, report.diagnostics());
+        let ways = ways(&fleet);
+        let topics = topics(&mut fleet, &ways, parameters, registry, sources);
+        let mut counts: HashMap<(FileId, ElementId), usize> = HashMap::new();
+        for composite in contribution.composites() {
+            let special = composite.components.iter();
+            let special = special.filter(|one| one.replicas().is_some() || one.condition().is_some());
+            counts.extend(special.map(|one| ((one.origin.file(), one.origin.element), 0)));
+        }
+        let mut here: HashMap<(usize, (FileId, ElementId)), usize> = HashMap::new();
+        for member in fleet.members.iter().filter(|member| !member.is_absent) {
+            let place = place(member.component.origin);
+            if let Some(count) = counts.get_mut(&place) {
+                *count += 1;
+                *here.entry((member.scope, place)).or_default() += 1;
+            }
+        }
+        // How often each composite is there at the same place of the picture.
+        let mut times: HashMap<&[(FileId, ElementId)], usize> = HashMap::new();
+        for (way, scope) in ways.iter().zip(&fleet.scopes) {
+            let is_there = scope.owner.is_none_or(|owner| !fleet.members[owner].is_absent);
+            *times.entry(way).or_default() += usize::from(is_there);
+        }
+        let mut all: HashMap<Way, (usize, usize, usize)> = HashMap::new();
+        for ((scope, place), count) in here {
+            let (least, most, found) = all.entry(within(&ways[scope], place)).or_insert((count, count, 0));
+            (*least, *most, *found) = ((*least).min(count), (*most).max(count), *found + 1);
+        }
+        let ranges = all.into_iter().map(|(way, (least, most, found))| {
+            let is_everywhere = times.get(&way[..way.len() - 1]).is_none_or(|times| *times <= found);
+            (way, (if is_everywhere { least } else { 0 }, most))
+        });
+        let ranges = ranges.collect();
+        counts.extend(fleet.conditional.iter().map(|(place, is_there)| (*place, usize::from(*is_there))));
+        Self { counts, ranges, topics }
+    }
+
+    /// The fewest and the most of a component in one of the composites that implement `around`, the outermost first; `None` for one that is neither
+    /// replicated nor conditional.
+    pub fn range(&self, around: &[Origin], origin: Origin) -> Option<(usize, usize)> {
+        self.counts.get(&place(origin))?;
+        Some(self.ranges.get(&way(around, origin)).copied().unwrap_or_default())
+    }
+
+    /// True if a part is there at all.
+    pub fn is_there(&self, origin: Origin) -> bool {
+        self.counts.get(&place(origin)) != Some(&0)
+    }
+
+    /// The topics that a component in the composites that implement `around` and its loops use, those of all its replicas.
+    pub fn topics(&self, around: &[Origin], origin: Origin) -> &[TopicUse] {
+        self.topics.get(&way(around, origin)).map_or(&[], |uses| &**uses)
+    }
+}
+
+fn place(origin: Origin) -> (FileId, ElementId) {
+    (origin.file(), origin.element)
+}
+
+fn way(around: &[Origin], origin: Origin) -> Way {
+    around.iter().copied().chain([origin]).map(place).collect()
+}
+
+fn within(way: &[(FileId, ElementId)], place: (FileId, ElementId)) -> Way {
+    way.iter().copied().chain([place]).collect()
+}
+
+/// The components around each scope.
+fn ways(fleet: &Fleet<'_>) -> Vec<Way> {
+    let mut all: Vec<Way> = Vec::with_capacity(fleet.scopes.len());
+    for scope in &fleet.scopes {
+        // A scope comes behind that of the component that it implements.
+        let way = scope.owner.map(|owner| {
+            let owner = &fleet.members[owner];
+            within(&all[owner.scope], place(owner.component.origin))
+        });
+        all.push(way.unwrap_or_default());
+    }
+    all
+}
+
+/// The topics of all components whose classes are known, found in the way in which the checker finds them. What is wrong with them is
+/// left to it.
+fn topics<'a>(
+    fleet: &mut Fleet<'a>,
+    ways: &[Way],
+    mut parameters: Parameters<'a>,
+    registry: &'a Registry,
+    sources: &Sources,
+) -> HashMap<Way, Rc<[TopicUse]>> {
+    let mut unheard = Diagnostics::new();
+    let report = &mut Report::new(sources, &mut unheard);
+    report.assumes = true;
+    let mut classes = classes::resolve(fleet, fleet.contribution, registry, true, report);
+    let mut checks = properties::check_all(fleet, &classes, &mut parameters, report);
+    loops::resolve(fleet, &mut classes, &mut checks, registry, &mut parameters, report);
+    let mut lists = Lists::default();
+    let mut all: HashMap<Way, Used> = HashMap::new();
+    for (at, member) in fleet.members.iter().enumerate().filter(|(_, member)| !member.is_absent) {
+        let Kind::Class(index) = member.kind else { continue };
+        let class = &classes[index];
+        let is_periodic = class.class.declaration().is_periodic();
+        let renames = match is_periodic {
+            true => tasks::check(member.component, class, &checks[at].given, report).renames,
+            false => Vec::new(),
+        };
+        let list = lists.of((index, class), renames);
+        let used = all.entry(within(&ways[member.scope], place(member.component.origin))).or_default();
+        if used.seen.insert(list.as_ptr()) {
+            used.lists.push(list);
+        }
+    }
+    all.into_iter().map(|(way, used)| (way, used.joined())).collect()
+}
+
+/// The declared and the new names of topics.
+type Renames = Vec<(String, String)>;
+
+/// Lists of topics, each made once.
+#[derive(Default)]
+struct Lists {
+    /// By the place of the class and what is renamed.
+    known: HashMap<(usize, Renames), Rc<[TopicUse]>>,
+    declared: HashMap<*const TopicDeclaration, Rc<TopicDeclaration>>,
+}
+
+impl Lists {
+    /// The topics of a component of this class.
+    fn of(&mut self, (index, class): (usize, &ClassIndex<'_>), renames: Renames) -> Rc<[TopicUse]> {
+        let Self { known, declared } = self;
+        let list = known.entry((index, renames));
+        if let Entry::Occupied(list) = list {
+            return Rc::clone(list.get());
+        }
+        let renames = &list.key().1;
+        let published = class.publishes.iter().map(|topic| (*topic, true));
+        let topics = published.chain(class.subscribes.iter().map(|topic| (*topic, false)));
+        let uses = topics.map(|(topic, is_published)| {
+            let renamed = renames.iter().find(|(old, _)| *old == topic.name);
+            let name = renamed.map_or(&topic.name, |(_, new)| new).clone();
+            let declared = declared.entry(std::ptr::from_ref(topic));
+            TopicUse {
+                name,
+                declared: Rc::clone(declared.or_insert_with(|| Rc::new(topic.clone()))),
+                is_published,
+            }
+        });
+        let uses = once(uses).collect();
+        Rc::clone(list.or_insert(uses))
+    }
+}
+
+/// The different lists of a component: its replicas may have several.
+#[derive(Default)]
+struct Used {
+    lists: Vec<Rc<[TopicUse]>>,
+    seen: HashSet<*const TopicUse>,
+}
+
+impl Used {
+    fn joined(mut self) -> Rc<[TopicUse]> {
+        match self.lists.len() {
+            1 => self.lists.swap_remove(0),
+            _ => once(self.lists.iter().flat_map(|list| list.iter().cloned())).collect(),
+        }
+    }
+}
+
+/// Each topic once for its writer, once for its reader.
+fn once(uses: impl Iterator<Item = TopicUse>) -> impl Iterator<Item = TopicUse> {
+    let mut seen: HashSet<(String, bool)> = HashSet::new();
+    uses.filter(move |one| seen.insert((one.name.clone(), one.is_published)))
+}

@@ -1,0 +1,134 @@
+//! The properties that components of a class, or loops, can be given.
+
+use std::collections::HashMap;
+
+use saoms_api::host::PropertyValue;
+use smol_str::SmolStr;
+
+use crate::assembly::TaskProperties;
+use crate::registry::{Class, LoopClass, PropertyDeclaration};
+
+/// The task property that people know a task by.
+const ID: &str = "ID";
+
+/// The properties of a class or a loop.
+pub(crate) struct PropertyTable<'r> {
+    /// `class` or `loop`.
+    pub(crate) what: &'static str,
+    /// The name of the class or the loop.
+    pub(crate) name: &'r str,
+    /// Its properties, those of tasks behind its own.
+    pub(crate) all: Vec<TableEntry<'r>>,
+    /// The places of those that no two components may share.
+    pub(crate) unique: Vec<usize>,
+    /// The place of that whose value chooses among the lists of loops of the class.
+    pub(crate) choice: Option<usize>,
+    /// The places of those that have to be given.
+    pub(crate) required: Vec<usize>,
+    by_name: HashMap<&'r str, usize>,
+    /// Conversion that count where the composite gives none.
+    pub(crate) presets: &'r [(SmolStr, PropertyValue)],
+    /// True if it is never executed, so that it has no task properties.
+    pub(crate) is_passive: bool,
+}
+
+/// A property that components of a class can be given.
+///
+/// A class can declare a property that tasks have as well, as robots do with `ID`; then one value serves both and the
+/// stricter rule counts.
+pub(crate) struct TableEntry<'r> {
+    pub(crate) name: SmolStr,
+    pub(crate) own: Option<&'r PropertyDeclaration>,
+    pub(crate) task: Option<&'r PropertyDeclaration>,
+    /// True if people know a task by it.
+    pub(crate) is_task_id: bool,
+}
+
+impl<'r> TableEntry<'r> {
+    fn of(own: Option<&'r PropertyDeclaration>, task: Option<&'r PropertyDeclaration>) -> Self {
+        let name = own.or(task).map_or("", |main| &main.name);
+        let is_task_id = task.is_some_and(|task| task.name == ID);
+        Self { name: name.into(), own, task, is_task_id }
+    }
+
+    pub(crate) fn declarations(&self) -> impl Iterator<Item = &'r PropertyDeclaration> {
+        self.own.into_iter().chain(self.task)
+    }
+
+    fn is_required(&self) -> bool {
+        self.declarations().any(|declaration| declaration.required)
+    }
+
+    /// The declaration that people are told of.
+    pub(crate) fn main(&self) -> Option<&'r PropertyDeclaration> {
+        self.own.or(self.task)
+    }
+}
+
+impl<'r> PropertyTable<'r> {
+    pub(crate) fn of_class(class: &'r Class) -> Self {
+        let declaration = class.declaration();
+        let mut table = Self {
+            what: "class",
+            name: class.name(),
+            presets: class.presets(),
+            is_passive: !declaration.is_periodic(),
+            ..Self::own(&declaration.properties)
+        };
+        let task = if table.is_passive { &[] } else { TaskProperties::declarations() };
+        for task in task {
+            match table.by_name.get(task.name.as_str()) {
+                Some(&place) => table.all[place] = TableEntry::of(table.all[place].own, Some(task)),
+                None => {
+                    table.by_name.insert(&task.name, table.all.len());
+                    table.all.push(TableEntry::of(None, Some(task)));
+                }
+            }
+        }
+        table.choice = declaration.loops.property.as_deref().and_then(|name| table.place(name));
+        table.unique =
+            table.places(|slot| slot.is_task_id || slot.main().is_some_and(|main| main.unique.is_some()));
+        table.required = table.places(TableEntry::is_required);
+        table
+    }
+
+    pub(crate) fn of_loop(class: &'r LoopClass) -> Self {
+        let table = Self { what: "loop", name: class.name(), ..Self::own(&class.declaration().properties) };
+        Self { required: table.places(TableEntry::is_required), ..table }
+    }
+
+    fn own(properties: &'r [PropertyDeclaration]) -> Self {
+        let places = properties.iter().enumerate();
+        Self {
+            what: "",
+            name: "",
+            all: properties.iter().map(|own| TableEntry::of(Some(own), None)).collect(),
+            by_name: places.map(|(place, own)| (own.name.as_str(), place)).collect(),
+            unique: Vec::new(),
+            choice: None,
+            required: Vec::new(),
+            presets: &[],
+            is_passive: false,
+        }
+    }
+
+    fn places(&self, of: impl Fn(&TableEntry<'r>) -> bool) -> Vec<usize> {
+        let table = self.all.iter().enumerate().filter(|(_, slot)| of(slot));
+        table.map(|(place, _)| place).collect()
+    }
+
+    /// The place of the property of this name.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
+    /// The value that counts where the composite gives none.
+    pub(crate) fn preset(&self, name: &str) -> Option<&'r PropertyValue> {
+        self.presets.iter().find(|(preset, _)| preset == name).map(|(_, value)| value)
+    }
+
+    /// The names of all properties, in order.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'r str> + Clone {
+        self.all.iter().filter_map(TableEntry::main).map(|declaration| declaration.name.as_str())
+    }
+}

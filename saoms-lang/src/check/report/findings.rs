@@ -1,0 +1,134 @@
+//! Findings of constructors and plugin rules, as diagnostics at the exact places.
+
+use saoms_api::host::PropertyValue;
+use saoms_api::{Finding, Place};
+use smol_str::SmolStr;
+
+use super::{Report, replacing};
+use crate::check::fleet::Member;
+use crate::check::properties::given_values::ValueOrigin;
+use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
+use crate::model::{Component, Property};
+use crate::source::Location;
+use crate::syntax::escaped;
+
+/// A component, or a loop of one, for findings about it.
+#[derive(Clone, Copy)]
+pub(crate) struct Subject<'a> {
+    /// `component` or `loop`.
+    pub(crate) what: &'static str,
+    pub(crate) name: &'a str,
+    /// The place of its name.
+    pub(crate) at: Location,
+    pub(crate) values: &'a [(SmolStr, PropertyValue)],
+    /// Its properties in the composite.
+    pub(crate) properties: &'a [Property],
+    /// The origins of values that are not one text there.
+    pub(crate) origins: &'a [ValueOrigin],
+}
+
+/// The places of a property in the composite.
+struct Given {
+    places: Vec<Location>,
+    /// The `source` that leads there.
+    source: Option<Location>,
+}
+
+impl<'a> Subject<'a> {
+    /// A component with its values.
+    pub(crate) fn of(
+        member: &Member<'a>,
+        values: &'a [(SmolStr, PropertyValue)],
+        origins: &'a [ValueOrigin],
+    ) -> Self {
+        let Component { name, properties, .. } = member.component;
+        Self { what: "component", name: name.as_str(), at: name.location, values, properties, origins }
+    }
+
+    /// True if the composite gives a property of this name.
+    pub(crate) fn gives(&self, name: &str) -> bool {
+        self.written(name).is_some()
+    }
+
+    fn written(&self, name: &str) -> Option<Given> {
+        if let Some(ValueOrigin { places, source, .. }) = self.origins.iter().find(|one| one.name == name) {
+            return Some(Given { places: places.clone(), source: *source });
+        }
+        let text = self.properties.iter().find(|one| one.name == *name)?.only_text()?;
+        Some(Given { places: vec![text.location], source: None })
+    }
+}
+
+/// The diagnostic for a finding about these components; `own` is the one that a place without a component is in. `None` where there were
+/// so many that it is only counted.
+pub(crate) fn diagnostic<'s>(
+    code: &'static Code,
+    severity: Severity,
+    finding: &Finding,
+    own: Subject<'s>,
+    all: &dyn Fn(usize) -> Option<Subject<'s>>,
+    report: &mut Report<'_>,
+) -> Option<Diagnostic> {
+    let subject = |place: &Place| place.component_index().and_then(all).unwrap_or(own);
+    let about = subject(finding.place());
+    if report.skip(code, severity, about.at) {
+        return None;
+    }
+    let place = located(finding.place(), about, report);
+    // What a rule says is about the fleet; what a constructor says, about one component.
+    let message = match finding.place().component_index() {
+        Some(_) => finding.message().to_owned(),
+        None => format!("{} {}: {finding}", about.what, quoted(about.name)),
+    };
+    let mut one = Diagnostic::new(code, place.at, message).severity(severity);
+    for (other, text) in finding.labels() {
+        let at = located(other, subject(other), report).at;
+        one = one.label(at, text);
+    }
+    if let Some(source) = place.source {
+        let property = finding.place().property_name().unwrap_or_default();
+        one = one.label(source, format!("used here as {}", quoted(property)));
+    }
+    if let (Some(meant), Some(text)) = (finding.replacement(), place.text) {
+        let written = if place.is_xml { escaped(meant) } else { meant.to_owned() };
+        one = one.suggest(replacing(text, meant), place.at, written);
+    }
+    one.help.extend(finding.helps().iter().cloned());
+    Some(one)
+}
+
+/// The location of a place in the files.
+struct Located<'a> {
+    at: Location,
+    source: Option<Location>,
+    /// The text there, if it is a part of a value.
+    text: Option<&'a str>,
+    /// True if a text has to be escaped to stand there.
+    is_xml: bool,
+}
+
+/// The place in the files: the component's name for a property that the composite does not give.
+fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Located<'a> {
+    let nowhere = Located { at: subject.at, source: None, text: None, is_xml: false };
+    let given = place.property_name().and_then(|name| {
+        let values = &subject.values.iter().find(|(given, _)| given == name)?.1;
+        Some((values, subject.written(name)?))
+    });
+    let Some((values, written)) = given else { return nowhere };
+    let Some(&first) = written.places.first() else { return nowhere };
+    let whole = Located { at: first, source: written.source, ..nowhere };
+    let Some((index, part)) = place.value_part() else { return whole };
+    let value = match values {
+        PropertyValue::Many(values) => values.get(index),
+        one => (index == 0).then_some(one),
+    };
+    let (Some(PropertyValue::Text(value)), Some(&at)) = (value, written.places.get(index)) else {
+        return whole;
+    };
+    Located {
+        text: value.get(part.clone()),
+        at: report.parts_of(value, at).part(part),
+        source: written.source,
+        is_xml: report.is_xml(at.file),
+    }
+}

@@ -1,0 +1,378 @@
+//! The report: collects diagnostics, removes duplicates, and joins those of replicas.
+
+pub(crate) mod findings;
+pub(crate) mod severities;
+
+use std::collections::{HashMap, HashSet};
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+use std::ops::Range;
+
+use crate::check::fleet::Member;
+use crate::diagnostic::{
+    Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest_equal, quoted,
+};
+use crate::expression::has_expression;
+use crate::source::{FileId, Location, Sources, Span, Text};
+use crate::syntax::{Writing, escaped};
+
+/// The number of diagnostics are taken back.
+const WITHDRAWALS: usize = 1000;
+
+/// Collects diagnostics, and knows the texts they are about.
+pub(crate) struct Report<'a> {
+    sources: &'a Sources,
+    diagnostics: &'a mut Diagnostics,
+    /// The number of right names are still looked at for wrong ones.
+    candidates: Candidates,
+    /// The number of may still be taken back.
+    withdrawals: usize,
+    /// True if what is not known is taken as given.
+    pub(crate) assumes: bool,
+    /// True if what comes of a value that components share is told beside that: where sharing is let pass, it counts.
+    pub(crate) tells_echoes: bool,
+    /// True if somebody lets attributes pass that are not known.
+    pub(crate) lowers_attributes: bool,
+    escalated: HashSet<(&'static str, FileId)>,
+    /// The prefixes of types that are bound to nothing, by their files.
+    unbound: HashSet<(FileId, String)>,
+    /// Diagnostics by code, place and message: a composite that implements several components has its faults once.
+    said: HashSet<Said>,
+    /// The replica that is looked at.
+    copy: Option<Copied>,
+    /// Diagnostics about replicas: of the first one, and of how many more.
+    copies: Vec<Told>,
+    known_copies: HashMap<(&'static str, Location), usize>,
+    /// The lines of tables that are about replicas that are there.
+    lines: HashSet<Location>,
+    /// Diagnostics about lines without a replica: the same composite may have the replica where it is there another time.
+    lines_of_none: Vec<Diagnostic>,
+}
+
+/// A component that is a replica, or inside one.
+#[derive(Clone, PartialEq)]
+struct Copied {
+    path: Box<str>,
+    index: Option<i64>,
+}
+
+/// A diagnostic about replicas at one place.
+struct Told {
+    one: Diagnostic,
+    first: Copied,
+    last: Copied,
+    /// Of how many more than the first.
+    more: usize,
+}
+
+/// The code of a diagnostic, its place, and what stands for its message.
+type Said = (&'static str, Location, u64);
+
+/// The number of diagnostics about replicas are kept together; further ones are told as they come.
+const MOST_COPIES: usize = 2000;
+
+/// The number of diagnostics are remembered.
+const REMEMBERED: usize = 20_000;
+
+impl<'a> Report<'a> {
+    pub(crate) fn new(sources: &'a Sources, diagnostics: &'a mut Diagnostics) -> Self {
+        Self {
+            sources,
+            diagnostics,
+            candidates: Candidates::default(),
+            withdrawals: WITHDRAWALS,
+            assumes: false,
+            tells_echoes: false,
+            lowers_attributes: false,
+            escalated: HashSet::new(),
+            unbound: HashSet::new(),
+            said: HashSet::new(),
+            copy: None,
+            copies: Vec::new(),
+            known_copies: HashMap::new(),
+            lines: HashSet::new(),
+            lines_of_none: Vec::new(),
+        }
+    }
+
+    /// True if something of this code was told at this place.
+    pub(crate) fn has_told(&self, code: &'static Code, at: Location) -> bool {
+        self.known_copies.contains_key(&(code.id, at))
+            || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
+    }
+
+    /// True if something of this code was told of this text anywhere in a file.
+    pub(crate) fn has_told_of(&self, code: &'static Code, file: FileId, text: &str) -> bool {
+        let is_it = |one: &Diagnostic| {
+            one.code == code && one.location.file == file && self.sources.snippet(one.location) == text
+        };
+        self.diagnostics.iter().any(is_it)
+    }
+
+    /// True if something of this code was told of several replicas at this place.
+    pub(crate) fn has_told_of_replicas(&self, code: &'static Code, at: Location) -> bool {
+        self.known_copies.contains_key(&(code.id, at))
+    }
+
+    /// Takes back what was told of this code at this place, since something else says it better.
+    pub(crate) fn withdraw(&mut self, code: &'static Code, at: Location) {
+        // Each goes through all that were said: a file full of them has some told twice.
+        if let Some(left) = self.withdrawals.checked_sub(1) {
+            self.withdrawals = left;
+            self.diagnostics.withdraw(code, at);
+        }
+    }
+
+    /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
+    #[inline]
+    pub(crate) fn about(&mut self, member: &Member<'_>) {
+        if member.is_copy || self.copy.is_some() {
+            self.about_copy(member);
+        }
+    }
+
+    #[cold]
+    fn about_copy(&mut self, member: &Member<'_>) {
+        let index = member.instance.map(|instance| instance.index);
+        self.copy = member.is_copy.then(|| Copied { path: member.path().into(), index });
+    }
+
+    /// Lets what follows be about the replica of this name and index.
+    pub(crate) fn about_replica(&mut self, name: &str, index: i64) {
+        self.copy = Some(Copied { path: name.into(), index: Some(index) });
+    }
+
+    /// True if what follows is about a replica that has an index of its own.
+    pub(crate) fn has_index(&self) -> bool {
+        self.copy.as_ref().is_some_and(|copy| copy.index.is_some())
+    }
+
+    /// Lets what follows be about the fleet.
+    pub(crate) fn about_all(&mut self) {
+        self.copy = None;
+    }
+
+    /// Lets what is said inside be about the fleet, and not about the replica at hand.
+    pub(crate) fn of_all<T>(&mut self, say: impl FnOnce(&mut Self) -> T) -> T {
+        let copy = self.copy.take();
+        let said = say(self);
+        self.copy = copy;
+        said
+    }
+
+    /// Notes that there is a replica that the line of a table is about which has its name or index here.
+    pub(crate) fn line(&mut self, key: Location) {
+        self.lines.insert(key);
+    }
+
+    /// Adds what is told of a line of a table that is about no replica of this composite, unless it is about one elsewhere.
+    pub(crate) fn line_of_none(&mut self, diagnostic: Diagnostic) {
+        self.lines_of_none.push(diagnostic);
+    }
+
+    /// Tells what was said of replicas and lines of tables.
+    pub(crate) fn finish(&mut self) {
+        for one in std::mem::take(&mut self.lines_of_none) {
+            // Said once of each line.
+            if self.lines.insert(one.location) {
+                self.diagnostics.push(one);
+            }
+        }
+        for Told { mut one, first: Copied { path, index }, more, .. } in std::mem::take(&mut self.copies) {
+            // What a component around them is told at this place is the same mistake.
+            if self.said.contains(&said(&one)) {
+                continue;
+            }
+            let path = quoted(&path);
+            let mut about = if one.message.contains(&path) { Vec::new() } else { vec![format!("in {path}")] };
+            about.extend(index.map(|index| format!("index {index}")));
+            if more > 0 {
+                about.push(format!("and in {more} more"));
+            }
+            if !about.is_empty() {
+                one.message = format!("{} ({})", one.message, about.join(", "));
+            }
+            self.diagnostics.push(one);
+        }
+        self.known_copies.clear();
+    }
+
+    /// Keeps a diagnostic about a replica for [`Report::finish`].
+    fn push_copy(&mut self, mut one: Diagnostic, copy: Copied) {
+        let key = (one.code.id, one.location);
+        if let Some(known) = self.known_copies.get(&key) {
+            let Told { first, last, more, .. } = &mut self.copies[*known];
+            // What is found again from components inside of a replica is of that one.
+            let depth = |copy: &Copied| copy.path.matches('/').count();
+            if *last != copy && depth(first) == depth(&copy) {
+                *last = copy;
+                *more += 1;
+            }
+            return;
+        }
+        if self.copies.len() >= MOST_COPIES {
+            return self.diagnostics.push(one);
+        }
+        let own = one.location;
+        one.labels.retain(|label| label.location != own);
+        // An edit there would be one of all replicas.
+        let is_of_all = |suggestion: &Suggestion| {
+            suggestion.edits.iter().any(|edit| has_expression(self.sources.snippet(edit.location)))
+        };
+        let (of_all, suggestions): (Vec<_>, Vec<_>) = one.suggestions.into_iter().partition(is_of_all);
+        one.suggestions = suggestions;
+        one.help.extend(of_all.into_iter().map(|suggestion| suggestion.description));
+        self.known_copies.insert(key, self.copies.len());
+        self.copies.push(Told { one, first: copy.clone(), last: copy, more: 0 });
+    }
+
+    /// Adds a diagnostic, unless the same was said of the same place.
+    pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
+        if let Some(copy) = &self.copy {
+            return self.push_copy(diagnostic, copy.clone());
+        }
+        if self.said.len() >= REMEMBERED || self.said.insert(said(&diagnostic)) {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// True if a prefix is the first one of its name in its file that is told to be bound to nothing.
+    pub(crate) fn is_first_unbound(&mut self, file: FileId, prefix: &str) -> bool {
+        self.unbound.insert((file, prefix.to_owned()))
+    }
+
+    /// Makes errors of all warnings of one code in one file.
+    pub(crate) fn escalate(&mut self, code: &'static Code, file: FileId, why: &str) {
+        if self.escalated.insert((code.id, file)) {
+            self.diagnostics.escalate(code, file, why);
+        }
+    }
+
+    /// All that was said.
+    pub(crate) fn diagnostics(&mut self) -> &mut Diagnostics {
+        self.diagnostics
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.errors() > 0
+    }
+
+    /// The number of errors there are, as far as they are told.
+    pub(crate) fn errors(&self) -> usize {
+        let of_copies = self.copies.iter().filter(|told| told.one.severity == Severity::Error);
+        let of_lines = self.lines_of_none.iter().filter(|one| one.severity == Severity::Error);
+        let of_lines = of_lines.filter(|one| !self.lines.contains(&one.location));
+        self.diagnostics.errors() + of_copies.count() + of_lines.count()
+    }
+
+    /// The place of a part of `text`, in bytes of the text as it is meant.
+    pub(crate) fn part(&self, text: &Text, part: Range<usize>) -> Location {
+        self.parts(text).part(part)
+    }
+
+    /// The same for many parts of one text.
+    pub(crate) fn parts(&self, text: &Text) -> Parts {
+        self.parts_of(text, text.location)
+    }
+
+    /// The places of the parts of a text that is written at a place.
+    pub(crate) fn parts_of(&self, text: &str, written: Location) -> Parts {
+        Parts { writing: Writing::of(self.sources.snippet(written), text), length: text.len(), written }
+    }
+
+    /// True if what stands in the file is XML, and not the bare text of a value.
+    pub(crate) fn is_xml(&self, file: FileId) -> bool {
+        self.sources.get(file).text().trim_start_matches('\u{feff}').trim_start().starts_with('<')
+    }
+
+    /// True if what is written at a place has expressions in it.
+    pub(crate) fn has_expression_at(&self, at: Location) -> bool {
+        has_expression(self.sources.snippet(at))
+    }
+
+    /// True if there are so many diagnostics of this code at this place's file that one more is counted and not shown.
+    /// What is said of replicas is told together, and always wanted.
+    pub(crate) fn skip(&mut self, code: &'static Code, severity: Severity, at: Location) -> bool {
+        self.copy.is_none() && self.diagnostics.skip(code, severity, at)
+    }
+
+    /// A diagnostic about a name that stands for nothing: with the likeliest right ones as suggestions, or else with all
+    /// right ones, introduced by `known_as`.
+    pub(crate) fn unknown<'n>(
+        &mut self,
+        code: &'static Code,
+        at: Location,
+        message: String,
+        name: &str,
+        (known_as, candidates): (&str, impl IntoIterator<Item = &'n str> + Clone),
+    ) -> Diagnostic {
+        let one = Diagnostic::new(code, at, message);
+        // No name that is known is of the wrong form: the right one mends both.
+        if name.contains(char::is_whitespace) {
+            self.withdraw(&codes::ATTRIBUTE_VALUE, at);
+        }
+        // It is counted alone.
+        if self.copy.is_none() && self.diagnostics.is_full(code, at.file) {
+            return one;
+        }
+        let count = candidates.clone().into_iter().take(self.candidates.telling()).count();
+        if !self.candidates.admit(count) {
+            return one;
+        }
+        let mut near = nearest_equal(name, candidates.clone());
+        // All replicas are meant rather than one of them.
+        if near.iter().any(|near| near.contains('*')) {
+            near.retain(|near| near.contains('*'));
+        }
+        match near[..] {
+            [] if candidates.clone().into_iter().next().is_none() => one,
+            [] => one.help(format!("{known_as} {}", list(candidates))),
+            _ => near.iter().fold(one, |one, meant| one.suggest(replacing(name, meant), at, escaped(meant))),
+        }
+    }
+}
+
+fn said(one: &Diagnostic) -> Said {
+    let message = BuildHasherDefault::<DefaultHasher>::default().hash_one(&one.message);
+    (one.code.id, one.location, message)
+}
+
+/// The places of the parts of a text.
+pub(crate) struct Parts {
+    /// `None` where what is written is not the text.
+    writing: Option<Writing>,
+    length: usize,
+    written: Location,
+}
+
+impl Parts {
+    /// The place of a part, in bytes of the text as it is meant.
+    pub(crate) fn part(&self, part: Range<usize>) -> Location {
+        let Location { file, span } = self.written;
+        let end = part.end.min(self.length);
+        match self.writing.as_ref().and_then(|writing| writing.part(part.start.min(end)..end)) {
+            Some(part) => {
+                Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file)
+            }
+            None => self.written,
+        }
+    }
+}
+
+/// The description of a suggestion that replaces a name.
+pub(crate) fn replacing(name: &str, meant: &str) -> String {
+    format!("replace {} with {}", quoted(name), quoted(meant))
+}
+
+/// Names for a line of help: `a`, `b` and `c`, at most thirty of them.
+pub(crate) fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+    const MOST: usize = 30;
+    let mut names = names.into_iter();
+    let shown: Vec<String> = names.by_ref().take(MOST).map(quoted).collect();
+    let more = names.count();
+    match (&shown[..], more) {
+        ([], _) => "none".to_owned(),
+        ([one], 0) => one.clone(),
+        ([most @ .., last], 0) => format!("{} and {last}", most.join(", ")),
+        _ => format!("{} and {more} more", shown.join(", ")),
+    }
+}

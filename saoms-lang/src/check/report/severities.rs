@@ -1,0 +1,281 @@
+//! Severities that composites and the command line set.
+
+use std::collections::HashMap;
+
+use crate::check::options::Options;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Level, SetBy, Severity, codes, nearest, quoted};
+use crate::model::Contribution;
+use crate::registry::Registry;
+use crate::source::{FileId, Located, Location, Sources, Span, Text};
+
+/// A severity that is set on the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeveritySetting {
+    /// The code.
+    pub code: Text,
+    /// Its level.
+    pub level: Located<Level>,
+    /// Why.
+    pub reason: Option<Text>,
+}
+
+impl SeveritySetting {
+    /// Reads `CODE=LEVEL` or `CODE=LEVEL:REASON`, the value of the option `option` (as `--severity`). It becomes a source text of that name, so
+    /// that diagnostics can point into it. `None`, and a diagnostic, when it is none.
+    pub fn parse(
+        option: &str,
+        text: &str,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Self> {
+        let file = sources.add(option, text);
+        let split = text.find('=').unwrap_or(text.len());
+        let (code, level) = (text[..split].trim(), &text[(split + 1).min(text.len())..]);
+        let with_reason = level.split_once(':').filter(|(_, reason)| !reason.trim().is_empty());
+        let (level, reason) = with_reason.unwrap_or((level, ""));
+        let (level, reason) = (level.trim(), reason.trim());
+        let place = |part: &str| {
+            let start = part.as_ptr() as usize - text.as_ptr() as usize;
+            Span::new(start as u32, (start + part.len()) as u32).in_file(file)
+        };
+        if let Some(level) = Level::from_name(level).map(|found| Located::new(found, place(level))) {
+            let reason = (!reason.is_empty()).then(|| Located::new(reason.into(), place(reason)));
+            return Some(Self { code: Located::new(code.into(), place(code)), level, reason });
+        }
+        let names = Level::ALL.map(Level::name);
+        let one = if level.is_empty() {
+            let whole = Span::new(0, text.len() as u32).in_file(file);
+            Diagnostic::new(&codes::SEVERITY, whole, format!("{} sets no severity", quoted(text)))
+        } else {
+            let message = format!("there is no severity {}", quoted(level));
+            let one = Diagnostic::new(&codes::SEVERITY, place(level), message);
+            match nearest(level, names) {
+                Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), place(level), meant),
+                None => one,
+            }
+        };
+        let help = format!(
+            "write `{option} CODE=LEVEL` or `{option} 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`"
+        );
+        diagnostics.push(one.help(help));
+        None
+    }
+}
+
+/// All that is said about severities, what counts first before the others.
+pub(crate) struct Severities {
+    rules: Vec<Rule>,
+    /// Those about each code.
+    by_code: HashMap<String, Vec<usize>>,
+    /// The codes of rules over fleets whose errors keep a fleet from starting.
+    preventing: Vec<&'static str>,
+}
+
+struct Rule {
+    code: String,
+    set: SetBy,
+    scope: Scope,
+    is_used: bool,
+    /// True if it is wrong, which is reported: what is no error and it may be about is not told beside that.
+    is_wrong: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Scope {
+    /// This element.
+    Element(Location),
+    /// The composite in this file.
+    File(FileId),
+    /// The whole fleet.
+    Fleet,
+    /// The same, from the command line.
+    Option,
+}
+
+impl Scope {
+    /// The size of a scope: a smaller one counts before a larger one.
+    fn size(self) -> (u8, u32) {
+        match self {
+            Self::Element(at) => (0, at.span.len()),
+            Self::File(_) => (1, 0),
+            Self::Fleet => (2, 0),
+            Self::Option => (3, 0),
+        }
+    }
+
+    fn holds(self, at: Location) -> bool {
+        match self {
+            Self::Element(element) => element.file == at.file && element.span.contains(at.span),
+            Self::File(file) => file == at.file,
+            Self::Fleet | Self::Option => true,
+        }
+    }
+}
+
+impl Severities {
+    /// The severities that composites and options set. Unknown codes are reported.
+    pub(crate) fn of<'o>(
+        contribution: &'o Contribution,
+        options: &'o Options,
+        registry: &Registry,
+        diagnostics: &mut Diagnostics,
+    ) -> Self {
+        let known: Vec<&Code> =
+            codes::ALL.iter().copied().chain(registry.rules().iter().map(|rule| rule.code())).collect();
+        let mut rules: Vec<Rule> = Vec::new();
+        // The rules of each place about each code.
+        let mut said: HashMap<(&str, Scope), Vec<usize>> = HashMap::new();
+        let mut add = |code: &'o Text, level: Level, reason: Option<&Text>, scope: Scope, is_wrong: bool| {
+            let is_known = known.iter().any(|known| known.id == code.as_str());
+            if !is_known {
+                diagnostics.push(unknown(code, &known));
+            }
+            if is_wrong || !is_known {
+                if let Some(meant) = meant(code, &known) {
+                    let set =
+                        SetBy { level: Level::Allow, at: code.location, is_option: false, reason: None };
+                    let code = meant.to_owned();
+                    rules.push(Rule { code, set, scope, is_used: true, is_wrong: true });
+                }
+                return;
+            }
+            let reason = reason.map(|reason| reason.as_str().to_owned());
+            let is_option = matches!(scope, Scope::Option);
+            let set = SetBy { level, at: code.location, is_option, reason };
+            let known = said.entry((code, scope)).or_default();
+            let said_before = known.iter().map(|place| &rules[*place]).find(|known: &&Rule| {
+                // Files that are one fleet together may say the same.
+                known.set.at.file == code.location.file || is_option || known.set.level != level
+            });
+            if let Some(known) = said_before {
+                diagnostics.push(twice(code, level, &known.set));
+                return;
+            }
+            known.push(rules.len());
+            rules.push(Rule { code: code.as_str().to_owned(), set, scope, is_used: false, is_wrong: false });
+        };
+        let asked_for = contribution.asked_for().len();
+        for (place, composite) in contribution.composites().iter().enumerate() {
+            for rule in &composite.severities {
+                let scope = match rule.within {
+                    Some(element) => Scope::Element(element),
+                    None if place < asked_for => Scope::Fleet,
+                    None => Scope::File(composite.file()),
+                };
+                add(&rule.code, rule.level.value, Some(&rule.reason), scope, rule.is_wrong);
+            }
+        }
+        for setting in &options.severities {
+            add(&setting.code, setting.level.value, setting.reason.as_ref(), Scope::Option, false);
+        }
+        rules.sort_by_key(|rule| rule.scope.size());
+        let preventing = registry.rules().iter().filter(|rule| rule.prevents_start());
+        let preventing = preventing.map(|rule| rule.code().id).collect();
+        let mut by_code: HashMap<String, Vec<usize>> = HashMap::new();
+        for (place, rule) in rules.iter().enumerate() {
+            by_code.entry(rule.code.clone()).or_default().push(place);
+        }
+        Self { rules, by_code, preventing }
+    }
+
+    /// True if anything is said about a code.
+    pub(crate) fn mentions(&self, code: &Code) -> bool {
+        self.by_code.get(code.id).is_some_and(|rules| rules.iter().any(|place| !self.rules[*place].is_wrong))
+    }
+
+    /// Sets the severities of the diagnostics from this place on.
+    pub(crate) fn apply(&mut self, from: usize, diagnostics: &mut Diagnostics) {
+        if self.rules.is_empty() {
+            return;
+        }
+        diagnostics.adjust(from, |one| {
+            let Some(rules) = self.by_code.get(one.code.id) else { return };
+            let holds = |place: &usize, at: Location| self.rules[*place].scope.holds(at);
+            let own = rules.iter().copied().find(|place| holds(place, one.location));
+            let is_element = |place: &usize| matches!(self.rules[*place].scope, Scope::Element(_));
+            // What is wrong between two elements is found in the second of them, and is about the first as well.
+            let of_other = || {
+                let mut elements = rules.iter().copied().filter(is_element);
+                elements.find(|place| one.labels.iter().any(|label| holds(place, label.location)))
+            };
+            let Some(place) = own.filter(is_element).or_else(of_other).or(own) else { return };
+            let rule = &mut self.rules[place];
+            if rule.is_wrong && one.severity == Severity::Error {
+                return;
+            }
+            rule.is_used = true;
+            let is_lowered = rule.set.level != Level::Set(Severity::Error);
+            let is_fixed = !codes::is_judgement(one.code) || self.preventing.contains(&one.code.id);
+            if one.severity == Severity::Error && is_lowered && is_fixed {
+                let label = format!("not set to `{}`", rule.set.level.name());
+                one.labels.push(crate::diagnostic::Label { location: rule.set.at, text: label });
+                one.help.push("its severity cannot be lowered: nothing can run with it".to_owned());
+                return;
+            }
+            if let Level::Set(severity) = rule.set.level {
+                one.severity = severity;
+                if let Some(reason) = &rule.set.reason {
+                    let text = format!("set to `{}`: {reason}", severity.name());
+                    one.labels.push(crate::diagnostic::Label { location: rule.set.at, text });
+                }
+            }
+            one.set = Some(rule.set.clone());
+        });
+    }
+
+    /// Reports what composites say that changed nothing, without the codes that were not looked for.
+    pub(crate) fn finish(&self, wiring: bool, diagnostics: &mut Diagnostics) {
+        let in_files = self.rules.iter().filter(|rule| !matches!(rule.scope, Scope::Option));
+        let unused = in_files.filter(|rule| !rule.is_used && rule.set.level != Level::Set(Severity::Error));
+        for rule in unused.filter(|rule| wiring || !codes::is_of_wiring(&rule.code)) {
+            let message =
+                format!("there is no {} here that could be set to `{}`", rule.code, rule.set.level.name());
+            let one = Diagnostic::new(&codes::SEVERITY_UNUSED, rule.set.at, message);
+            diagnostics.push(one.help("remove it, or it hides what somebody adds later"));
+        }
+    }
+
+    /// Reports options that change nothing, because composites set what there is to something else: what has a reason there stays.
+    pub(crate) fn overruled(&self, diagnostics: &mut Diagnostics) {
+        let options = self.rules.iter().filter(|rule| matches!(rule.scope, Scope::Option) && !rule.is_used);
+        for option in options {
+            let is_other =
+                |rule: &&Rule| rule.code == option.code && rule.is_used && rule.set.level != option.set.level;
+            let Some(by) = self.rules.iter().find(is_other) else { continue };
+            let (code, asked, level) = (&option.code, option.set.level.name(), by.set.level.name());
+            let message =
+                format!("{code} is not set to `{asked}`: a composite sets it to `{level}`, and counts first");
+            let one = Diagnostic::new(&codes::SEVERITY_UNUSED, option.set.at, message);
+            // One for all fleets is stricter than what one of them gives a reason for.
+            let is_stricter = option.set.level.hides() < by.set.level.hides();
+            let one = if is_stricter { one.severity(Severity::Note) } else { one };
+            diagnostics
+                .push(one.label(by.set.at, "set here").help("change it there, or leave the option out"));
+        }
+    }
+}
+
+fn twice(code: &Text, level: Level, first: &SetBy) -> Diagnostic {
+    let (one, other) = (level.name(), first.level.name());
+    let message = match one == other {
+        true => format!("the severity of {code} is set twice"),
+        false => format!("the severity of {code} is set to `{other}` and to `{one}`"),
+    };
+    Diagnostic::new(&codes::SEVERITY, code.location, message)
+        .label(first.at, "first here")
+        .help("keep one of them")
+}
+
+fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {
+    let one = Diagnostic::new(&codes::SEVERITY, code.location, format!("there is no code {}", quoted(code)));
+    match meant(code, known) {
+        Some(meant) => one.suggest(super::replacing(code, meant), code.location, meant),
+        None => one.help("each diagnostic shows its code, and `docs/diagnostics.md` lists them"),
+    }
+}
+
+/// The code that is meant by one, or by what a code is called.
+fn meant(code: &Text, known: &[&'static Code]) -> Option<&'static str> {
+    let by_name = known.iter().find(|known| known.name == code.as_str()).map(|known| known.id);
+    by_name.or_else(|| nearest(code, known.iter().map(|known| known.id)))
+}

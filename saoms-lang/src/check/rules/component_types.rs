@@ -1,0 +1,128 @@
+//! Names in component types: held against each other, against the classes that they describe, and against the components that use them.
+
+use std::collections::HashMap;
+
+use crate::check::fleet::Fleet;
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::properties::foreign;
+use crate::check::report::Report;
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::model::{ComponentType, Part, Version};
+use crate::source::{Location, Text};
+
+impl<'a> Fleet<'a> {
+    /// The component type beside the implementation of a component.
+    pub(crate) fn component_type(&self, member: usize) -> Option<&'a ComponentType> {
+        if !self.contribution.describes_any() {
+            return None;
+        }
+        let implementation = self.members[member].component.implementation.as_ref()?;
+        self.contribution.component_type(implementation.origin)
+    }
+}
+
+pub(crate) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
+    for described in fleet.contribution.component_types() {
+        repeated(
+            described.services.iter().map(|one| &one.name),
+            "service",
+            "ASM40003",
+            described.version,
+            report,
+        );
+        repeated(
+            described.references.iter().map(|one| &one.name),
+            "reference",
+            "ASM40004",
+            described.version,
+            report,
+        );
+        repeated(
+            described.properties.iter().map(|one| &one.name),
+            "property",
+            "ASM40005",
+            described.version,
+            report,
+        );
+    }
+    if !fleet.contribution.describes_any() {
+        return;
+    }
+    for (place, member) in fleet.members.iter().enumerate() {
+        report.about(member);
+        if let Some(described) = fleet.component_type(place) {
+            match fleet.class_of(place, classes) {
+                Some(class) => of_class(described, class, report),
+                None => {
+                    let known = fleet.known(place);
+                    known.into_iter().for_each(|known| foreign::contracts(member.component, known, report));
+                }
+            }
+        } else if let Some(implementation) = &member.component.implementation
+            && fleet.contribution.lacks_component_type(implementation.origin)
+        {
+            let message =
+                format!("nothing describes what component {} offers", quoted(&member.component.name));
+            let one = Diagnostic::new(&codes::COMPONENT_TYPE_MISSING, implementation.tag(), message);
+            let kind = implementation.origin.element(&member.composite.document).local_name();
+            report.push(one.help(format!(
+                "{} does not say it by itself: write a file of its name that ends with `.componentType`",
+                quoted(kind)
+            )));
+        }
+    }
+    report.about_all();
+}
+
+fn repeated<'t>(
+    names: impl Iterator<Item = &'t Text>,
+    what: &str,
+    rule: &'static str,
+    version: Version,
+    report: &mut Report<'_>,
+) {
+    let mut seen: HashMap<&str, Location> = HashMap::new();
+    for name in names.filter(|name| !name.is_empty()) {
+        if let Some(first) = seen.get(name.as_str()) {
+            let message = format!("the component type has two {what}s {}", quoted(name))
+                .replace("propertys", "properties");
+            // SCA 1.0 leaves it open which of them counts.
+            let severity = if version.is_1_1() { Severity::Error } else { Severity::Warning };
+            let one = Diagnostic::new(&codes::COMPONENT_TYPE_REPEATED, name.location, message);
+            let one = one.severity(severity);
+            report.push(one.rule(rule).label(*first, "the first").help("give each its own name"));
+        } else {
+            seen.insert(name, name.location);
+        }
+    }
+}
+
+/// Reports what a component type says of a class that is not so.
+fn of_class(described: &ComponentType, class: &ClassIndex<'_>, report: &mut Report<'_>) {
+    let of = quoted(class.class.name());
+    let mut unknown = |code: &'static Code, what: &str, name: &Text, known: &[&str]| {
+        if !name.is_empty() && !known.contains(&name.as_str()) {
+            let message = format!("class {of} has no {what} {}", quoted(name));
+            let known_as = match what {
+                "property" => "its properties are".to_owned(),
+                _ => format!("its {what}s are"),
+            };
+            let known = (known_as.as_str(), known.iter().copied());
+            let one = report.unknown(code, name.location, message, name, known);
+            report.push(one);
+        }
+    };
+    let services: Vec<&str> = class.services.iter().map(|one| one.name.as_str()).collect();
+    let references: Vec<&str> = class.references.iter().map(|one| one.name.as_str()).collect();
+    let properties: Vec<&str> = class.table.names().collect();
+    described
+        .services
+        .iter()
+        .for_each(|one| unknown(&codes::UNKNOWN_SERVICE, "service", &one.name, &services));
+    for one in &described.references {
+        unknown(&codes::UNKNOWN_REFERENCE, "reference", &one.name, &references);
+    }
+    for one in &described.properties {
+        unknown(&codes::UNKNOWN_PROPERTY, "property", &one.name, &properties);
+    }
+}

@@ -1,0 +1,176 @@
+//! Constructors: each judges whether the values of its component fit together.
+
+use crate::check::component::{ComponentCheck, State};
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::{Fleet, Kind};
+use crate::check::loops;
+use crate::check::report::Report;
+use crate::check::report::findings::{Subject, diagnostic};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::registry::{LoopClass, PropertyDeclaration};
+use saoms_api::host::declaration::PropertyKind;
+use saoms_api::host::{PropertyValue, contain::contained};
+use saoms_api::{Failure, Finding};
+use smol_str::SmolStr;
+
+/// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
+pub(crate) fn component(
+    subject: Subject<'_>,
+    class: &ClassIndex<'_>,
+    without_plugin_code: bool,
+    report: &mut Report<'_>,
+) {
+    if without_plugin_code && class.class.origin().is_some() {
+        return;
+    }
+    judge(|| class.class.construct(subject.values).map(drop), subject, class.class.name(), report);
+}
+
+/// The same for a loop.
+pub(crate) fn looping(
+    subject: Subject<'_>,
+    class: &LoopClass,
+    without_plugin_code: bool,
+    report: &mut Report<'_>,
+) {
+    if without_plugin_code && class.origin().is_some() {
+        return;
+    }
+    judge(|| class.construct(subject.values).map(drop), subject, class.name(), report);
+}
+
+/// The same for a component of which some values are not known, for faults that are reported: `unsure` are the places of these
+/// properties. Told is what the constructor finds about the others whichever values those have, from one end of what is allowed to the
+/// other, so that a wrong value has no consequences.
+pub(crate) fn partly(
+    subject: Subject<'_>,
+    class: &ClassIndex<'_>,
+    unsure: &[usize],
+    without_plugin_code: bool,
+    report: &mut Report<'_>,
+) {
+    let unsure: Vec<&PropertyDeclaration> =
+        unsure.iter().filter_map(|place| class.table.all[*place].own).collect();
+    if unsure.is_empty() {
+        return component(subject, class, without_plugin_code, report);
+    }
+    if without_plugin_code && class.class.origin().is_some() {
+        return;
+    }
+    let ends: Option<Vec<[String; 2]>> = unsure.iter().map(|one| ends(one)).collect();
+    let Some(ends) = ends else { return };
+    let is_unsure = |name: &str| unsure.iter().any(|one| one.name == name);
+    let with = |end: usize| {
+        let known = subject.values.iter().filter(|(name, _)| !is_unsure(name)).cloned();
+        let assumed = unsure.iter().zip(&ends);
+        let assumed = assumed.map(|(one, ends)| (one.name.as_str().into(), PropertyValue::from(&*ends[end])));
+        known.chain(assumed).collect()
+    };
+    let mut tries: Vec<Vec<(SmolStr, PropertyValue)>> = vec![with(0), with(1)];
+    if unsure.iter().all(|one| !one.required) {
+        tries.push(subject.values.to_vec());
+    }
+    let mut found: Option<Vec<Finding>> = None;
+    for values in tries.iter().rev() {
+        let Err(failure) = contained(|| class.class.construct(values).map(drop)).and_then(|result| result)
+        else {
+            return;
+        };
+        match &mut found {
+            None => found = Some(failure.findings().to_vec()),
+            Some(found) => found.retain(|one| failure.findings().contains(one)),
+        }
+    }
+    let is_given = |finding: &Finding| {
+        let name = finding.place().property_name();
+        name.is_some_and(|name| !is_unsure(name) && subject.gives(name))
+    };
+    let found: Vec<Finding> = found.unwrap_or_default().into_iter().filter(is_given).collect();
+    tell(&found, subject, class.class.name(), report);
+}
+
+/// The values at both ends of what a property allows; `None` where it has none.
+fn ends(declaration: &PropertyDeclaration) -> Option<[String; 2]> {
+    /// Numbers beyond this are as good as this: constructors may make room for them.
+    const LARGE: f64 = 1_000_000.0;
+    if declaration.many {
+        return None;
+    }
+    if let [first, .., last] = &declaration.allowed[..] {
+        return Some([first.clone(), last.clone()]);
+    }
+    if declaration.kind == PropertyKind::Boolean {
+        return Some(["false".to_owned(), "true".to_owned()]);
+    }
+    let least = declaration.min.clone()?;
+    let most = declaration.max.clone()?;
+    let most = match most.parse::<f64>() {
+        Ok(number) if number > LARGE => LARGE.to_string(),
+        _ => most,
+    };
+    let fits = |text: &String| declaration.check(text).is_ok();
+    (declaration.is_number() && fits(&least) && fits(&most)).then_some([least, most])
+}
+
+/// Reports the findings of a constructor at the values that they are about, any other judgement at the name.
+fn judge(
+    construct: impl FnOnce() -> Result<(), Failure>,
+    subject: Subject<'_>,
+    class: &str,
+    report: &mut Report<'_>,
+) {
+    let Err(failure) = contained(construct).and_then(|result| result) else { return };
+    if failure.findings().is_empty() {
+        let message = format!("{} {}: {failure}", subject.what, quoted(subject.name));
+        report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help(class)));
+        return;
+    }
+    tell(failure.findings(), subject, class, report);
+}
+
+fn tell(findings: &[Finding], subject: Subject<'_>, class: &str, report: &mut Report<'_>) {
+    for finding in findings {
+        let one = diagnostic(&codes::CONSTRUCTION, Severity::Error, finding, subject, &|_| None, report);
+        let Some(one) = one else { continue };
+        // What comes of a value that replicas share is not told beside that.
+        if !report.tells_echoes && report.has_told_of_replicas(&codes::NOT_UNIQUE, one.location) {
+            continue;
+        }
+        let is_plain = one.help.is_empty() && one.suggestions.is_empty();
+        report.push(if is_plain { one.help(help(class)) } else { one });
+    }
+}
+
+fn help(class: &str) -> String {
+    format!("{} says what its properties mean", quoted(&format!("saoms components {class}")))
+}
+
+/// Lets the constructors of all components judge their values.
+pub(crate) fn check_all(
+    fleet: &Fleet<'_>,
+    classes: &[ClassIndex<'_>],
+    checks: &[ComponentCheck<'_>],
+    without: bool,
+    report: &mut Report<'_>,
+) {
+    saoms_api::host::contain::install_hook();
+    let sound = fleet.members.iter().zip(checks).filter(|(_, check)| check.is_sound());
+    for (member, check) in sound {
+        report.about(member);
+        if let Kind::Class(class) = member.kind {
+            component(check.subject(member), &classes[class], without, report);
+        }
+        for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {
+            looping(subject, class, without, report);
+        }
+    }
+    let faulty = fleet.members.iter().zip(checks).filter(|(_, check)| check.state == State::Faulty);
+    for (member, check) in faulty.filter(|(member, _)| !member.has_open_values()) {
+        report.about(member);
+        if let Kind::Class(class) = member.kind {
+            let unknown = &check.given.unknown;
+            partly(check.subject(member), &classes[class], unknown, without, report);
+        }
+    }
+    report.about_all();
+}

@@ -1,0 +1,145 @@
+//! Rules of plugins and component crates over the whole fleet.
+
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
+
+use saoms_api::rule::{ClassView, ComponentView, FleetView};
+
+use crate::assembly::LoopSpec;
+use crate::check::component::ComponentCheck;
+use crate::check::fleet::Fleet;
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::report::Report;
+use crate::check::report::findings::{Subject, diagnostic};
+use crate::check::wiring::Wiring;
+use crate::diagnostic::{Diagnostic, Severity, codes};
+use crate::registry::{Class, Rule};
+
+/// The declaration of a class and of those that it extends.
+fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
+    std::iter::once(class.class.declaration_json()).chain(class.class.extended_json()).collect()
+}
+
+/// Asks the rules about the components that are resolved; where some are not, only the rules that can judge a part of a fleet. With the wiring it
+/// is said whether faults leave some of it open.
+pub(crate) fn check<'s>(
+    fleet: &'s Fleet<'_>,
+    classes: &'s [ClassIndex<'_>],
+    checks: &'s [ComponentCheck<'_>],
+    (wiring, has_open_wires): (&Wiring, bool),
+    rules: impl Iterator<Item = &'s Rule>,
+    report: &mut Report<'_>,
+) {
+    let mut parts: Vec<usize> = Vec::with_capacity(fleet.members.len());
+    let mut indices: Vec<Option<usize>> = Vec::with_capacity(fleet.members.len());
+    // One of each class is enough, and one for all of which nobody knows the class.
+    let mut missing: Vec<Option<Vec<&'s str>>> = Vec::new();
+    let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
+    let mut miss = |missing: &mut Vec<_>, class: Option<&'s ClassIndex<'_>>| {
+        let key = class.map(std::ptr::from_ref);
+        if known.insert(key) {
+            missing.push(class.map(declarations));
+        }
+    };
+    if fleet.scopes.iter().any(|scope| scope.is_faulty) {
+        miss(&mut missing, None);
+    }
+    for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
+        let class = fleet.class_of(place, classes);
+        // Of two components of one name nobody can say which is meant.
+        if member.runs() && !member.is_repeated && check.is_sound() && class.is_some() {
+            indices.push(Some(parts.len()));
+            parts.push(place);
+            continue;
+        }
+        indices.push(None);
+        if member.runs() {
+            miss(&mut missing, class);
+        }
+    }
+    let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place, classes)?));
+    let subject = |index: usize| {
+        let place = *parts.get(index)?;
+        let member = &fleet.members[place];
+        Some(Subject { name: member.path(), ..checks[place].subject(member) })
+    };
+    let Some(first) = subject(0) else { return };
+    let is_whole = missing.is_empty();
+    let all = || parts.iter().filter_map(part);
+    if has_open_wires {
+        let open = all().filter(|(place, ..)| wiring.of(*place).iter().any(Vec::is_empty));
+        open.for_each(|(.., class)| miss(&mut missing, Some(class)));
+    }
+    let mut views_of_classes = ClassViews::default();
+    let mut wires: Vec<(&str, usize)> = Vec::new();
+    let mut ends = Vec::with_capacity(parts.len());
+    for (place, _, class) in all() {
+        for (reference, providers) in class.references.iter().zip(wiring.of(place)) {
+            let known = providers.iter().filter_map(|provider| indices[provider.member]);
+            wires.extend(known.map(|index| (reference.name.as_str(), index)));
+        }
+        ends.push(wires.len());
+    }
+    let mut start = 0;
+    let mut views: Vec<ComponentView<'_>> = Vec::with_capacity(parts.len());
+    views.extend(all().zip(ends).map(|((place, check, class), end)| ComponentView {
+        path: fleet.members[place].path(),
+        class: views_of_classes.of(class, check),
+        values: &check.values,
+        period: check.task.as_ref().map(|task| task.period),
+        has_broker: check.task.as_ref().is_some_and(|task| task.url.is_some()),
+        wires: &wires[std::mem::replace(&mut start, end)..end],
+    }));
+    let view = FleetView::new(&views).without(&missing);
+    for rule in rules.filter(|rule| rule.judges_parts() || is_whole) {
+        let findings = match rule.check(&view) {
+            Ok(findings) => findings,
+            Err(failure) => {
+                let message = format!("the rule {} failed: {failure}", rule.code().name);
+                let one = Diagnostic::new(rule.code(), first.at, message).severity(Severity::Warning);
+                report.push(one.help("this is a fault of the rule, not of the fleet"));
+                continue;
+            }
+        };
+        for finding in &findings {
+            let severity = finding.own_severity().unwrap_or(rule.code().severity);
+            let own = finding.place().component_index().and_then(subject).unwrap_or(first);
+            match finding.place().component_index().and_then(|index| parts.get(index)) {
+                Some(place) => report.about(&fleet.members[*place]),
+                None => report.about_all(),
+            }
+            let Some(one) = diagnostic(rule.code(), severity, finding, own, &subject, report) else {
+                continue;
+            };
+            // What comes of a value that two components share is not told beside that, unless somebody lets that pass.
+            let is_echo = report.has_told(&codes::NOT_UNIQUE, one.location);
+            if !is_echo || report.tells_echoes {
+                report.push(one);
+            }
+        }
+    }
+}
+
+/// The views of classes with their loops, each made once.
+#[derive(Default)]
+struct ClassViews<'s>(HashMap<(*const Class, *const LoopSpec), Rc<ClassView<'s>>>);
+
+impl<'s> ClassViews<'s> {
+    /// The view of the class of a component.
+    fn of(&mut self, class: &ClassIndex<'s>, check: &'s ComponentCheck<'_>) -> Rc<ClassView<'s>> {
+        let class: &'s Class = class.class;
+        let loops: &'s [LoopSpec] = check.loops.as_ref().map_or(&[], |loops| &loops.specs);
+        let make = || {
+            let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
+            let published = class.declaration().publishes.iter().chain(of_loops);
+            Rc::new(ClassView {
+                name: &class.declaration().name,
+                declaration: class.declaration_json(),
+                extends: class.extended_json().collect(),
+                publishes: published.map(|topic| topic.name.as_str()).collect(),
+                loops: loops.iter().map(|one| one.class.name()).collect(),
+            })
+        };
+        Rc::clone(self.0.entry((class, loops.as_ptr())).or_insert_with(make))
+    }
+}

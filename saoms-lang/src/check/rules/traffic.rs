@@ -1,0 +1,267 @@
+//! The wiring report of topics: ends without a counterpart, names that are nearly the same, queues that overflow.
+
+use std::collections::{HashMap, HashSet};
+use std::time::Duration;
+
+use saoms_api::host::{TopicKind, format_duration};
+
+use crate::assembly::{Assembly, End, Loss, Topic, Traffic};
+use crate::check::fleet::similar_names::{Name, Similar};
+use crate::check::report::Report;
+use crate::diagnostic::{Code, Diagnostic, codes, quoted};
+use crate::source::Location;
+use crate::syntax::escaped;
+
+/// The places of a component, and of the names of its topics.
+pub(crate) struct ComponentPlaces {
+    pub(crate) name: Location,
+    pub(crate) renamed: Vec<(String, Location)>,
+    /// The place of its `queue`.
+    pub(crate) queue: Option<Location>,
+}
+
+/// Looks at all topics of a fleet; `places` are those of its components.
+pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mut Report<'_>) {
+    let traffic = Traffic::of(assembly);
+    let all = All { assembly, places };
+    let similar = Similar::of(&traffic, |topic| topic.ends().all(|end| all.is_renamed(end, topic)));
+    let is_lone = |topic: &&Topic| topic.writers.is_empty() || topic.readers.is_empty();
+    let mut lone: HashMap<&str, &Topic> =
+        traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
+    let mut told: HashSet<&str> = HashSet::new();
+    for topic in &traffic.topics {
+        if lone.contains_key(topic.name.as_str())
+            && let Some(meant) = meant(topic, &similar)
+        {
+            for name in [topic.name.as_str(), meant.name.as_str()] {
+                lone.remove(name);
+                told.insert(name);
+            }
+            all.near(topic, meant, report);
+        }
+    }
+    for topic in &traffic.topics {
+        if !told.contains(topic.name.as_str())
+            && let Some(meant) = left(topic, &similar).or_else(|| all.missed(topic, &similar))
+        {
+            all.alone(topic, meant, report);
+        }
+        if lone.contains_key(topic.name.as_str()) {
+            if topic.writers.is_empty() || !topic.is_optional {
+                all.lone(topic, report);
+            }
+        } else {
+            all.rates(topic, report);
+        }
+    }
+}
+
+struct All<'a> {
+    assembly: &'a Assembly,
+    places: &'a [ComponentPlaces],
+}
+
+impl All<'_> {
+    /// The place from which a component has the name of a topic.
+    fn at(&self, end: &End, topic: &Topic) -> Location {
+        let place = &self.places[end.component];
+        let renamed = place.renamed.iter().find(|(name, _)| *name == topic.name);
+        renamed.map_or(place.name, |(_, at)| *at)
+    }
+
+    /// `component X`, or `component X and 3 others`.
+    fn who(&self, ends: &[End]) -> String {
+        let first = ends.first().map_or("", |end| self.assembly.components[end.component].path.as_str());
+        match ends.len() {
+            0 | 1 => format!("component {}", quoted(first)),
+            2 => format!("component {} and another one", quoted(first)),
+            count => format!("component {} and {} others", quoted(first), count - 1),
+        }
+    }
+
+    /// The same with what they do: `component X reads`, or `component X and 3 others read`.
+    fn who_does(&self, ends: &[End], does: &str) -> String {
+        let does = match (ends.len(), does) {
+            (0 | 1, does) => does,
+            (_, "reads") => "read",
+            _ => "publish",
+        };
+        format!("{} {does}", self.who(ends))
+    }
+
+    /// The topic that those who use this one meant by a `topicRename`: of the same messages, with nearly its name, which is the one that it has
+    /// without renaming. Names that only add something to another one, or differ in their numbers, keep parts of a fleet apart.
+    fn missed<'t>(&self, topic: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+        if topic.writers.is_empty()
+            || topic.readers.is_empty()
+            || !topic.ends().all(|end| self.is_renamed(end, topic))
+        {
+            return None;
+        }
+        let name = Name::of(&topic.name);
+        similar.nearest(topic, |other| !other.is_renamed && !other.is_apart(&name))
+    }
+
+    fn is_renamed(&self, end: &End, topic: &Topic) -> bool {
+        self.places[end.component].renamed.iter().any(|(name, _)| *name == topic.name)
+    }
+
+    fn alone(&self, topic: &Topic, meant: &Topic, report: &mut Report<'_>) {
+        let (Some(end), Some(other)) = (topic.writers.first(), meant.ends().next()) else { return };
+        let mut users: Vec<End> = topic.ends().copied().collect();
+        users.sort_by_key(|end| end.component);
+        users.dedup_by_key(|end| end.component);
+        let hear = match users.len() {
+            1 => "hears nobody but itself",
+            _ => "hear nobody but each other",
+        };
+        let message = format!(
+            "{} {hear} on topic {}: others use {}",
+            self.who(&users),
+            quoted(&topic.name),
+            quoted(&meant.name)
+        );
+        let one = Diagnostic::new(&codes::TOPIC_NEAR, self.at(end, topic), message)
+            .label(self.at(other, meant), format!("uses {}", quoted(&meant.name)));
+        report.push(
+            one.help(
+                "`topicRename` gives topics other names: remove a pair from it, or correct its new name",
+            ),
+        );
+    }
+
+    fn near(&self, lone: &Topic, meant: &Topic, report: &mut Report<'_>) {
+        let (does, ends, others, do_not) = match lone.writers.is_empty() {
+            true => ("reads", &lone.readers, &meant.writers, "publishes"),
+            false => ("publishes", &lone.writers, &meant.readers, "reads"),
+        };
+        let (Some(end), Some(other)) = (ends.first(), others.first()) else { return };
+        let message = format!(
+            "{} topic {}, which nobody {do_not}: there is {}",
+            self.who_does(ends, does),
+            quoted(&lone.name),
+            quoted(&meant.name)
+        );
+        let (at, there) = (self.at(end, lone), self.at(other, meant));
+        let mut one = Diagnostic::new(&codes::TOPIC_NEAR, at, message);
+        one = one.label(there, format!("{do_not} {}", quoted(&meant.name)));
+        let is_renamed = at != self.places[end.component].name;
+        report.push(match is_renamed {
+            true => one.suggest(
+                crate::check::report::replacing(&lone.name, &meant.name),
+                at,
+                escaped(&meant.name),
+            ),
+            false => one.help("`topicRename` gives topics other names"),
+        });
+    }
+
+    /// Says that one end of a topic is nobody.
+    fn lone(&self, topic: &Topic, report: &mut Report<'_>) {
+        let (code, does, ends, missing): (&'static Code, _, _, _) = match topic.writers.is_empty() {
+            true => (&codes::TOPIC_UNWRITTEN, "reads", &topic.readers, "publishes"),
+            false => (&codes::TOPIC_UNREAD, "publishes", &topic.writers, "reads"),
+        };
+        let Some(end) = ends.first() else { return };
+        let message =
+            format!("{} topic {}, which nobody {missing}", self.who_does(ends, does), quoted(&topic.name));
+        let one = Diagnostic::new(code, self.at(end, topic), message);
+        let kind = topic.kind.name();
+        report.push(one.help(format!("it is {} {kind} topic of {}", article(kind), quoted(&topic.message))));
+    }
+
+    /// Compares how often a topic is written and read.
+    fn rates(&self, topic: &Topic, report: &mut Report<'_>) {
+        let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
+        let pace = topic.pace();
+        let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
+        // Those of one period, and of these those that lose messages with one queue: one is told of each, since a fleet of robots says the same.
+        let mut alike: HashMap<Duration, Vec<End>> = HashMap::new();
+        let mut queues: HashMap<(Duration, usize), Vec<End>> = HashMap::new();
+        let losing = |reader: &End| {
+            let task = self.assembly.components[reader.component].task.as_ref()?;
+            (topic.kind == TopicKind::Event && task.loss == Loss::Fail).then_some(task.queue)
+        };
+        for reader in &topic.readers {
+            let Some(period) = reader.period else { continue };
+            alike.entry(period).or_default().push(*reader);
+            if let Some(queue) = losing(reader) {
+                queues.entry((period, queue)).or_default().push(*reader);
+            }
+        }
+        for reader in &topic.readers {
+            let Some(period) = reader.period else { continue };
+            let queue = losing(reader);
+            let at = self.places[reader.component].queue.unwrap_or(self.at(reader, topic));
+            if let Some(queue) = queue.filter(|queue| pace.exceeds(period, *queue as u64))
+                && let Some(readers) = queues.remove(&(period, queue))
+                && !report.diagnostics().skip(&codes::QUEUE, codes::QUEUE.severity, at)
+            {
+                let burst = pace.burst(period);
+                let message = format!(
+                    "up to {burst} messages of topic {} can come between two executions of {}, and {} find room",
+                    quoted(&topic.name),
+                    self.who(&readers),
+                    queue
+                );
+                let in_all = match parts == topic.writers.len() as u64 {
+                    true => String::new(),
+                    false => format!(", {parts} components and loops in all"),
+                };
+                let writers = self.who_does(&topic.writers, "publishes");
+                let one = Diagnostic::new(&codes::QUEUE, at, message);
+                report.push(
+                    one.help(format!(
+                        "{writers} it{in_all}: so many come where each sends one in each execution, and fewer as a rule"
+                    ))
+                    .help(format!(
+                        "where a run says that messages were lost, give the readers a `queue` of {burst}, or a shorter `period`"
+                    )),
+                );
+            }
+            if let Some(fastest) = fastest.filter(|fastest| period < *fastest)
+                && let Some(readers) = alike.remove(&period)
+            {
+                let message = format!(
+                    "{} topic {} every {}, and nobody publishes it more often than every {}",
+                    self.who_does(&readers, "reads"),
+                    quoted(&topic.name),
+                    format_duration(period),
+                    format_duration(fastest)
+                );
+                let one = Diagnostic::new(&codes::READER_FASTER, self.at(reader, topic), message);
+                report.push(one.help("some of its executions find nothing new"));
+            }
+        }
+    }
+}
+
+/// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one lacks.
+fn meant<'t>(lone: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+    similar.nearest(lone, |other| match lone.writers.is_empty() {
+        true => !other.topic.writers.is_empty(),
+        false => !other.topic.readers.is_empty(),
+    })
+}
+
+/// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with nearly its name,
+/// and used by several others.
+fn left<'t>(topic: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+    let only = topic.writers.first()?.component;
+    if topic.readers.is_empty() || topic.ends().any(|end| end.component != only) {
+        return None;
+    }
+    let name = Name::of(&topic.name);
+    similar.nearest(topic, |other| {
+        if other.has_other_numbers(&name) {
+            return false;
+        }
+        let mut others = other.topic.ends().map(|end| end.component).filter(|other| *other != only);
+        let first = others.next();
+        others.any(|other| Some(other) != first)
+    })
+}
+
+fn article(word: &str) -> &'static str {
+    if word.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" }
+}

@@ -1,0 +1,185 @@
+//! Values that must not occur twice in a fleet.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use saoms_api::host::PropertyValue;
+use saoms_api::host::declaration::{PropertyKind, Scalar, parse_scalar};
+use smol_str::SmolStr;
+
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::{Fleet, Member};
+use crate::check::properties::given_values::PropertyValues;
+use crate::check::properties::property_table::TableEntry;
+use crate::check::report::{Report, replacing};
+use crate::check::unfolding::replica_plan::with_index;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::Property;
+use crate::registry::PropertyDeclaration;
+use crate::source::Location;
+use crate::syntax::escaped;
+
+/// The values of a component that others must not have, where each is, and which property has it.
+fn uses<'u, 'r>(
+    member: &'u Member<'_>,
+    class: &'u ClassIndex<'r>,
+    given: &'u PropertyValues,
+) -> impl Iterator<Item = (Canonical, Location, &'u TableEntry<'r>, &'r PropertyDeclaration)> {
+    let table = class.table.unique.iter().filter(|_| !member.is_partial);
+    table.filter_map(move |&place| {
+        let slot = &class.table.all[place];
+        let declaration = slot.main()?;
+        let (value, place) = match given.at(place) {
+            Some(given) => (&given.value, given.place),
+            None => (class.table.preset(&declaration.name)?, member.component.name.location),
+        };
+        Some((Canonical::of(value, slot)?, place, slot, declaration))
+    })
+}
+
+/// Collects values that components must not share.
+#[derive(Default)]
+pub(crate) struct Unique<'a> {
+    /// The first users of each value: of each word one, and one task.
+    seen: HashMap<Canonical, Vec<User<'a>>>,
+}
+
+/// The component that has a value.
+#[derive(Clone, Copy)]
+struct User<'a> {
+    member: usize,
+    place: Location,
+    /// The word of the property, which says what must have a value of its own.
+    word: Option<&'a str>,
+    /// True if the value is the ID of a task.
+    is_task: bool,
+}
+
+impl<'a> Unique<'a> {
+    /// Adds what a component gives, or what its class presets.
+    pub(crate) fn add(
+        &mut self,
+        (member, fleet): (usize, &Fleet<'_>),
+        class: &ClassIndex<'a>,
+        given: &PropertyValues,
+        report: &mut Report<'_>,
+    ) {
+        for (value, place, slot, declaration) in uses(&fleet.members[member], class, given) {
+            let user = User { member, place, word: declaration.unique.as_deref(), is_task: slot.is_task_id };
+            let users = self.seen.entry(value.clone()).or_default();
+            let of_word = users.iter().find(|one| one.word.is_some() && one.word == user.word).copied();
+            let of_task = users.iter().find(|one| one.is_task && user.is_task).copied();
+            if of_word.is_none() && user.word.is_some() || of_task.is_none() && user.is_task {
+                users.push(user);
+            }
+            if let Some(first) = of_word {
+                shared(&value, first, user, declaration, fleet, report);
+            }
+            if let Some(first) = of_task {
+                task(&value, first, user, fleet, report);
+            }
+        }
+    }
+}
+
+/// Reports a value that a word forbids to share.
+fn shared(
+    value: &Canonical,
+    first: User<'_>,
+    user: User<'_>,
+    declaration: &PropertyDeclaration,
+    fleet: &Fleet<'_>,
+    report: &mut Report<'_>,
+) {
+    let [earlier, later] = [first, user].map(|one| &fleet.members[one.member]);
+    // That there are two components of one name is told.
+    if earlier.path() == later.path() {
+        return;
+    }
+    let message = format!(
+        "components {} and {} have the same {} {}",
+        quoted(earlier.path()),
+        quoted(later.path()),
+        quoted(&declaration.name),
+        quoted(&value.to_string())
+    );
+    let one = Diagnostic::new(&codes::NOT_UNIQUE, user.place, message);
+    let one = one.help(format!("every {} needs its own", user.word.unwrap_or_default()));
+    let own = later.component.properties.iter().filter_map(Property::only_text);
+    let is_own = own.clone().any(|text| text.location == user.place);
+    report.push(match first.place == user.place {
+        // Of replicas, whose expression is not different for each.
+        true if later.instance.is_some() && is_own && report.has_expression_at(user.place) => one.help(
+            "what stands here comes to the same for several replicas: `${index}` is different for each",
+        ),
+        // Of replicas.
+        true if later.instance.is_some() && is_own => {
+            let meant = match value {
+                Canonical::Integer(_) => "${index}".to_owned(),
+                Canonical::Text(text) => with_index(text),
+            };
+            one.suggest(replacing(&value.to_string(), &meant), user.place, escaped(&meant))
+        }
+        // In a composite that is there several times.
+        true => {
+            one.help("both have it from here: let each get its own from outside, by a property or an index")
+        }
+        false => one.label(first.place, "the first"),
+    });
+}
+
+/// Tasks that share an ID run all the same, but people cannot tell them apart.
+fn task(value: &Canonical, first: User<'_>, user: User<'_>, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let is_told = user.word.is_some() && user.word == first.word;
+    let [earlier, later] = [first, user].map(|one| fleet.members[one.member].path());
+    if is_told || earlier == later {
+        return;
+    }
+    let message = format!(
+        "components {} and {} share the ID {}",
+        quoted(earlier),
+        quoted(later),
+        quoted(&value.to_string())
+    );
+    report.push(
+        Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message)
+            .label(first.place, "the first")
+            .help("messages and reports name tasks by their ID"),
+    );
+}
+
+/// The canonical form of a value: `07` and `7` are one number.
+#[derive(Clone, PartialEq, Eq, Hash)]
+enum Canonical {
+    Integer(i64),
+    Text(SmolStr),
+}
+
+impl Canonical {
+    fn of(value: &PropertyValue, slot: &TableEntry<'_>) -> Option<Self> {
+        let (text, declaration) = (value.as_text()?, slot.main()?);
+        if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
+            return Some(Self::Text(text.trim().into()));
+        }
+        Some(match parse_scalar(declaration.kind, text)? {
+            // Of larger ones there are few.
+            Scalar::Integer(number) => match i64::try_from(number) {
+                Ok(number) => Self::Integer(number),
+                Err(_) => Self::Text(number.to_string().into()),
+            },
+            Scalar::Float(number) => Self::Text(number.to_string().into()),
+            Scalar::Duration(duration) => Self::Text(saoms_api::host::format_duration(duration).into()),
+            Scalar::Boolean(value) => Self::Text(value.to_string().into()),
+            Scalar::Text(text) => Self::Text(text.into()),
+        })
+    }
+}
+
+impl fmt::Display for Canonical {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Integer(number) => number.fmt(out),
+            Self::Text(text) => text.fmt(out),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The address of a message broker, `host:port`.
+
+use std::net::{IpAddr, Ipv6Addr};
+use std::ops::Range;
+
+/// The fault of an address.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Fault {
+    /// Where.
+    pub(crate) at: Range<usize>,
+    /// The message.
+    pub(crate) message: String,
+    /// What the bytes at `at` should be, where that is plain.
+    pub(crate) instead: Option<String>,
+}
+
+/// The fault of `text` as an address: a host name, an IPv4 address, or an IPv6 address in brackets, then a colon and a
+/// port from 1 to 65535.
+pub(crate) fn fault(text: &str) -> Option<Fault> {
+    let at = |at: Range<usize>, message: String| Some(Fault { at, message, instead: None });
+    if let Some(scheme) = text.find("://") {
+        let message = format!("`{}` is more than host and port", &text[..scheme + 3]);
+        return Some(Fault { at: 0..scheme + 3, message, instead: Some(String::new()) });
+    }
+    let bracket = text.starts_with('[').then(|| text.find(']')).flatten();
+    let colon = match bracket {
+        Some(end) => text[end..].find(':').map(|at| end + at),
+        None => text.rfind(':'),
+    };
+    let Some(colon) = colon else {
+        return at(0..text.len(), "there is no port".to_owned());
+    };
+    let (host, port) = (&text[..colon], &text[colon + 1..]);
+    if host.is_empty() {
+        return at(0..text.len(), "there is no host".to_owned());
+    }
+    if let Some(address) = host.strip_prefix('[') {
+        if address.strip_suffix(']').is_none_or(|address| address.parse::<Ipv6Addr>().is_err()) {
+            return at(0..colon, format!("`{host}` is no IPv6 address"));
+        }
+    } else if host.contains(':') {
+        let message = format!("`{host}` is no host: an IPv6 address stands in brackets");
+        let instead = host.parse::<Ipv6Addr>().is_ok().then(|| format!("[{host}]"));
+        return Some(Fault { at: 0..colon, message, instead });
+    } else if let Some(found) = host.find(|c: char| !(c.is_ascii_alphanumeric() || "-._".contains(c))) {
+        let character = host[found..].chars().next().unwrap_or(' ');
+        return at(
+            found..found + character.len_utf8(),
+            format!("`{}` cannot be in the name of a host", character.escape_debug()),
+        );
+    }
+    let digits = port.bytes().all(|byte| byte.is_ascii_digit());
+    match port.parse::<u16>() {
+        Ok(1..) if digits => None,
+        _ if port.is_empty() => at(colon..text.len(), "there is no port".to_owned()),
+        _ if digits => at(colon + 1..text.len(), format!("port {port} is outside 1 to 65535")),
+        _ => at(colon + 1..text.len(), format!("`{port}` is no port")),
+    }
+}
+
+/// True if an address without fault is of this machine.
+pub(crate) fn is_loopback(text: &str) -> bool {
+    let host = text.rsplit_once(':').map_or(text, |(host, _)| host);
+    let address = host.trim_start_matches('[').trim_end_matches(']').parse::<IpAddr>();
+    host.eq_ignore_ascii_case("localhost") || address.is_ok_and(|address| address.is_loopback())
+}

@@ -1,0 +1,156 @@
+//! The language of the task property `topicRename`.
+//!
+//! `OLD,new::OLD2,new2`: pairs separated by `::`, each pair the old name, a comma, the new name; blanks around names do
+//! not count. A text without any comma is one pair, `OLD::new`. An empty text renames nothing.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// A name in the text, and the bytes it is at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Name<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) at: Range<usize>,
+}
+
+/// A topic and the name that takes the place of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Pair<'a> {
+    pub(crate) old: Name<'a>,
+    pub(crate) new: Name<'a>,
+}
+
+/// The fault of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Fault {
+    /// Where.
+    pub(crate) at: Range<usize>,
+    /// The message.
+    pub(crate) message: String,
+    /// Another place that explains it, and what is there.
+    pub(crate) other: Option<(Range<usize>, &'static str)>,
+}
+
+/// The pairs of `text`, and all that is wrong with it.
+pub(crate) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
+    let mut pairs = Vec::new();
+    let mut faults = Vec::new();
+    if text.trim().is_empty() {
+        return (pairs, faults);
+    }
+    if text.contains(',') {
+        for piece in split(text, 0..text.len(), "::") {
+            pair(&split(text, piece.clone(), ","), &piece, text, &mut pairs, &mut faults);
+        }
+    } else {
+        pair(&split(text, 0..text.len(), "::"), &(0..text.len()), text, &mut pairs, &mut faults);
+    }
+    contradictions(&pairs, &mut faults);
+    (pairs, faults)
+}
+
+/// Pairs with other separators, as they are meant.
+pub(crate) fn pairs_of(text: &str) -> Option<String> {
+    let is_name =
+        |name: &str| !name.is_empty() && !name.contains([':', ',', '=', '-', ';', '>', '<', '&', '|']);
+    let pair = |pair: &str| {
+        let (old, new) =
+            [",", "->", "=", ":", ";"].iter().find_map(|separator| pair.split_once(separator))?;
+        let (old, new) = (old.trim(), new.trim());
+        (is_name(old) && is_name(new)).then(|| format!("{old},{new}"))
+    };
+    if let Some(meant) = pair(text).filter(|meant| meant != text) {
+        return Some(meant);
+    }
+    let separator = [";", "|", ":"].into_iter().find(|separator| text.contains(separator))?;
+    let all: Option<Vec<String>> = text.split(separator).map(|one| pair(one.trim())).collect();
+    Some(all?.join("::"))
+}
+
+/// The pieces of `text[range]` between separators.
+fn split(text: &str, range: Range<usize>, separator: &str) -> Vec<Range<usize>> {
+    let base = range.start;
+    let mut start = 0;
+    let mut pieces = Vec::new();
+    for (at, found) in text[range.clone()].match_indices(separator) {
+        pieces.push(base + start..base + at);
+        start = at + found.len();
+    }
+    pieces.push(base + start..range.end);
+    pieces
+}
+
+fn pair<'a>(
+    names: &[Range<usize>],
+    whole: &Range<usize>,
+    text: &'a str,
+    pairs: &mut Vec<Pair<'a>>,
+    faults: &mut Vec<Fault>,
+) {
+    let found: Vec<Name<'a>> = names.iter().map(|range| trimmed(text, range)).collect();
+    let count = found.iter().filter(|name| !name.text.is_empty()).count();
+    match &found[..] {
+        [old, new] if count == 2 => pairs.push(Pair { old: old.clone(), new: new.clone() }),
+        _ => {
+            let piece = trimmed(text, whole);
+            let message = match count {
+                0 => "a pair without names".to_owned(),
+                1 => format!("a pair with one name, `{}`", piece.text),
+                _ => format!("{count} names where a pair has two"),
+            };
+            faults.push(Fault { at: piece.at, message, other: None });
+        }
+    }
+}
+
+fn trimmed<'a>(text: &'a str, range: &Range<usize>) -> Name<'a> {
+    let piece = &text[range.clone()];
+    let start = range.start + piece.len() - piece.trim_start().len();
+    let piece = piece.trim();
+    if piece.is_empty() {
+        return Name { text: "", at: range.clone() };
+    }
+    Name { text: piece, at: start..start + piece.len() }
+}
+
+/// Behind so many faults in one text no more contradictions are looked for.
+const MOST_FAULTS: usize = 1000;
+
+/// Names renamed twice, chains, and names that are renamed to themselves.
+fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<Fault>) {
+    let mut first: HashMap<&str, &Pair<'_>> = HashMap::with_capacity(pairs.len());
+    for pair in pairs {
+        if faults.len() >= MOST_FAULTS {
+            return;
+        }
+        if let Some(earlier) = first.get(pair.old.text) {
+            faults.push(Fault {
+                at: pair.old.at.clone(),
+                message: format!("topic `{}` is renamed twice", pair.old.text),
+                other: Some((earlier.old.at.clone(), "first here")),
+            });
+        } else {
+            first.insert(pair.old.text, pair);
+        }
+    }
+    for pair in pairs {
+        if faults.len() >= MOST_FAULTS {
+            return;
+        }
+        let Some(next) = first.get(pair.new.text) else { continue };
+        if pair.old.text == pair.new.text {
+            faults.push(Fault {
+                at: pair.new.at.clone(),
+                message: format!("topic `{}` is renamed to its own name", pair.old.text),
+                other: None,
+            });
+        } else {
+            let (old, new, last) = (pair.old.text, pair.new.text, next.new.text);
+            faults.push(Fault {
+                at: pair.new.at.clone(),
+                message: format!("a chain: `{old}` is renamed to `{new}`, and `{new}` to `{last}`"),
+                other: Some((next.old.at.clone(), "renamed again here")),
+            });
+        }
+    }
+}

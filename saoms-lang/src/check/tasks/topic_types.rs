@@ -1,0 +1,100 @@
+//! Types of topics: two ends of one topic have to agree.
+
+use std::collections::{HashMap, HashSet};
+
+use saoms_api::host::TopicKind;
+
+use super::Task;
+use crate::check::fleet::Member;
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::report::Report;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::registry::TopicDeclaration;
+use crate::source::Location;
+
+/// The topics of a fleet by the names they have after renaming.
+#[derive(Default)]
+pub(crate) struct Topics<'a> {
+    ends: HashMap<String, End<'a>>,
+    /// The classes whose topics were added under their own names: one component speaks for all others of its class.
+    plain: HashSet<usize>,
+}
+
+/// The component that uses a topic first.
+#[derive(Clone, Copy)]
+struct End<'a> {
+    component: &'a str,
+    place: Location,
+    declaration: &'a TopicDeclaration,
+    verb: &'static str,
+}
+
+impl<'a> Topics<'a> {
+    /// Adds the topics of a component.
+    pub(crate) fn add(
+        &mut self,
+        member: &'a Member<'_>,
+        (index, class): (usize, &ClassIndex<'a>),
+        task: Option<&Task<'_>>,
+        report: &mut Report<'_>,
+    ) {
+        let renames = task.map_or(&[][..], |task| &task.renames[..]);
+        if renames.is_empty() && !self.plain.insert(index) {
+            return;
+        }
+        let published = class.publishes.iter().map(|topic| ("publishes", *topic));
+        // What is published as well has been held against the others once.
+        let subscribed = class.subscribes.iter().copied().filter(|topic| !class.publishes.contains(topic));
+        let subscribed = subscribed.map(|topic| ("subscribes to", topic));
+        for (verb, topic) in published.chain(subscribed) {
+            let renamed = renames.iter().position(|(old, _)| *old == topic.name);
+            let name = renamed.map_or(topic.name.as_str(), |place| renames[place].1.as_str());
+            let place = renamed.zip(task).map(|(place, task)| task.renamed_at[place]);
+            let place = place.unwrap_or(member.component.name.location);
+            let end = End { component: member.path(), place, declaration: topic, verb };
+            match self.ends.get(name) {
+                None => _ = self.ends.insert(name.to_owned(), end),
+                Some(first) => compare(name, first, &end, report),
+            }
+        }
+    }
+}
+
+const fn kind(kind: TopicKind) -> &'static str {
+    match kind {
+        TopicKind::State => "a state topic",
+        TopicKind::Event => "an event topic",
+    }
+}
+
+fn compare(name: &str, first: &End<'_>, second: &End<'_>, report: &mut Report<'_>) {
+    let (one, other) = (first.declaration, second.declaration);
+    let difference = if std::ptr::eq(one, other) {
+        return;
+    } else if one.kind != other.kind {
+        (kind(one.kind).to_owned(), kind(other.kind).to_owned())
+    } else if one.message != other.message {
+        (quoted(&one.message), quoted(&other.message))
+    } else if one.schema != other.schema {
+        (format!("{} with other fields", quoted(&one.message)), quoted(&other.message))
+    } else {
+        return;
+    };
+    let message = format!(
+        "component {} {} topic {} as {}, and {} as {}",
+        quoted(second.component),
+        second.verb,
+        quoted(name),
+        difference.1,
+        match first.component == second.component {
+            true => "itself".to_owned(),
+            false => format!("component {}", quoted(first.component)),
+        },
+        difference.0
+    );
+    report.push(
+        Diagnostic::new(&codes::TOPIC_MISMATCH, second.place, message)
+            .label(first.place, format!("{} it as {}", first.verb.trim_end_matches(" to"), difference.0))
+            .help("all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart"),
+    );
+}

@@ -1,0 +1,140 @@
+//! Making components: one as it is written, or its replicas. Where a fault keeps replicas from being made, one stands for them, so that
+//! everything else about them is checked all the same.
+
+use std::rc::Rc;
+
+use super::Unfolding;
+use super::conditions::Presence;
+use super::expression_scope::Names;
+use super::replica::{Instance, Partial, Replica};
+use super::replica_plan::{Plan, condition, first_index};
+use crate::check::report::Report;
+use crate::expression::pattern;
+use crate::model::{Component, Replicas};
+
+impl<'a> Unfolding<'a> {
+    /// Makes what stands next in the composite at hand.
+    pub(crate) fn component(&mut self, component: &'a Component, report: &mut Report<'_>) {
+        let Some(open) = self.open.last() else { return };
+        let (unit, document) = (open.unit, &open.composite.document);
+        let Some(replicas) = component.replicas() else {
+            let condition = component.condition();
+            let holds = condition.map_or(Some(true), |condition| self.holds(condition, unit, report));
+            let presence = holds.map_or(Presence::Unknown, Presence::of);
+            return self.member(component, component, None, presence, report);
+        };
+        let names = self.names(unit);
+        let Some(plan) = Plan::of(component, replicas, document, &names, self.replicas_left, report) else {
+            return self.unplanned(component, replicas, &names, report);
+        };
+        let (is_empty, index) = (plan.count == 0, plan.sample());
+        let group = (self.fleet.units[unit].scope, pattern(&component.name));
+        self.fleet.groups.entry(group).or_default();
+        if self.complex(component, &plan.instance(index), report) {
+            let presence = self.faults_of(component, &plan.instance(index), report);
+            return self.partial(component, index, &names, presence, report);
+        }
+        if is_empty {
+            let instance = plan.instance(index);
+            let (made, faults) = instance.of(component, None);
+            self.faults(&names, faults, report);
+            if let Some(asked) = component.condition() {
+                _ = condition(asked, &names, &mut |name| instance.value(name), report);
+            }
+            let Replica { component: made, instance } =
+                self.replicas.add(Replica { component: made, instance });
+            return self.member(component, made, Some(instance), Presence::Absent, report);
+        }
+        self.replicas_left -= plan.cost;
+        if let Some(open) = self.open.last_mut() {
+            open.plan = Some(plan);
+        }
+    }
+
+    /// Makes one of the replicas of a component; `false` with a fault that the others would have as well.
+    pub(crate) fn replica(&mut self, plan: &Plan<'a>, index: i64, report: &mut Report<'_>) -> bool {
+        let Some(open) = self.open.last() else { return false };
+        let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
+        let instance = plan.instance(index);
+        let (made, faults) = instance.of(plan.component, plan.row(index));
+        let Replica { component, instance } = self.replicas.add(Replica { component: made, instance });
+        report.about_replica(&component.name, index);
+        let asked = plan.component.condition();
+        let holds = asked.map(|text| condition(text, &plan.names, &mut |name| instance.value(name), report));
+        let is_absent = matches!(holds, Some(Some(false)));
+        let is_faulty = !faults.is_empty() || matches!(holds, Some(None));
+        self.faults(&plan.names, faults, report);
+        report.about_all();
+        if is_faulty && plan.is_at_first() {
+            self.partial(plan.component, index, &plan.names, Presence::of(!is_absent), report);
+            return false;
+        }
+        if is_faulty || self.is_beyond(plan.component, report) {
+            self.miss(unit, pattern(&plan.component.name));
+            return false;
+        }
+        let member = self.fleet.members.len();
+        self.member(plan.component, component, Some(instance), Presence::of(!is_absent), report);
+        if !is_absent && !self.fleet.units[unit].is_absent {
+            self.fleet.groups.entry((scope, pattern(&plan.component.name))).or_default().push(member);
+        }
+        true
+    }
+
+    /// Looks at a component of which it is not known how many there are.
+    fn unplanned(
+        &mut self,
+        component: &'a Component,
+        replicas: &Replicas,
+        names: &Rc<Names>,
+        report: &mut Report<'_>,
+    ) {
+        let first = first_index(replicas, names);
+        let index = first.unwrap_or(1);
+        let instance = Instance { index, names: Rc::clone(names), partial: None };
+        let mut presence = Presence::There;
+        if first.is_some() {
+            self.complex(component, &instance, report);
+            presence = self.faults_of(component, &instance, report);
+        }
+        self.partial(component, index, names, presence, report);
+    }
+
+    /// Reports the faults in the texts of a replica that is not made, and in its condition.
+    fn faults_of(&self, component: &Component, instance: &Instance, report: &mut Report<'_>) -> Presence {
+        let (made, faults) = instance.of(component, None);
+        report.about_replica(&made.name, instance.index);
+        self.faults(&instance.names, faults, report);
+        let asked = component.condition();
+        let value = &mut |name: &str| instance.value(name);
+        let holds = asked.map(|text| condition(text, &instance.names, value, report));
+        report.about_all();
+        Presence::of(holds != Some(Some(false)))
+    }
+
+    /// Adds one that stands for replicas that are not made.
+    fn partial(
+        &mut self,
+        component: &'a Component,
+        index: i64,
+        names: &Rc<Names>,
+        presence: Presence,
+        report: &mut Report<'_>,
+    ) {
+        let Some(open) = self.open.last() else { return };
+        let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
+        let has_table = component.replicas().is_some_and(|replicas| replicas.overrides.is_some());
+        let instance = Instance { index, names: Rc::clone(names), partial: Some(Partial { has_table }) };
+        let (made, _) = instance.of(component, None);
+        let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });
+        let group = pattern(&component.name);
+        let is_open = group.contains('*');
+        self.miss(unit, if is_open { group.clone() } else { format!("{group}*") });
+        let member = self.fleet.members.len();
+        self.member(component, made, Some(instance), presence, report);
+        let members = self.fleet.groups.entry((scope, group)).or_default();
+        if presence != Presence::Absent {
+            members.push(member);
+        }
+    }
+}

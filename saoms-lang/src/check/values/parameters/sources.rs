@@ -1,0 +1,242 @@
+//! Following a `source`: to a property, and into its value.
+
+use std::rc::Rc;
+
+use super::{Given, Parameters};
+use crate::check::Setting;
+use crate::check::Variable;
+use crate::check::fleet::Fleet;
+use crate::check::report::{Report, replacing};
+use crate::check::values::path::{FORMS, Fault, expression, steps};
+use crate::check::values::raw::{Piece, Raw, raw};
+use crate::check::values::shared_values::SharedValues;
+use crate::check::values::value_type::{self, Typed};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::source::Text;
+use crate::syntax::escaped;
+
+impl<'a> Parameters<'a> {
+    /// Notes what expressions use, and what they have it from. What is wrong with that is reported.
+    pub(super) fn take_for_expressions(&mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+        // From the inside out: what a name takes as a whole from a composite around is asked for there as well.
+        for (unit, names) in fleet.names.iter().enumerate().rev() {
+            for name in names.iter().flat_map(|names| names.used()) {
+                if let Some((around, source)) = self.source_of(unit, &name)
+                    && let Some((whole, None)) = expression(source)
+                    && let Some(around) = &fleet.names[around]
+                {
+                    around.ask(whole);
+                }
+            }
+        }
+        for (unit, names) in fleet.names.iter().enumerate() {
+            let Some(names) = names else { continue };
+            let owner = fleet.scopes[fleet.units[unit].scope].owner;
+            for name in names.used() {
+                let Some(parameter) = self.units[unit].by_name.get_mut(name.as_str()) else { continue };
+                parameter.is_used = true;
+                let source = self.source_of(unit, &name);
+                let is_simple = source.is_none_or(|(unit, source)| self.declaration(unit, source).is_some());
+                if !names.is_faulty(&name) && is_simple {
+                    continue;
+                }
+                owner.into_iter().for_each(|owner| report.about(&fleet.members[owner]));
+                let _ = self.whole(unit, &name, report);
+                report.about_all();
+            }
+        }
+    }
+
+    /// The `source` that gives a property its value, and the unit that it is written in.
+    fn source_of(&self, unit: usize, name: &str) -> Option<(usize, &'a Text)> {
+        match self.units[unit].by_name.get(name)?.given? {
+            Given::Component(place, given) => Some((place.unit, given.source()?)),
+            _ => None,
+        }
+    }
+
+    /// The values that a `source` leads to. Faults are reported.
+    pub(super) fn follow(
+        &mut self,
+        place: usize,
+        source: &Text,
+        report: &mut Report<'_>,
+    ) -> Result<Rc<SharedValues<'a>>, ()> {
+        let known = &self.units[place].by_name;
+        let simple = expression(source).filter(|(name, _)| known.contains_key(name) || is_name(name));
+        let Some((name, path)) = simple else {
+            self.no_path(place, source, report);
+            return Err(());
+        };
+        self.named(place, source, name, report)?;
+        let whole = self.whole(place, name, report)?;
+        let parameter = &self.units[place].by_name[name];
+        let property = parameter.property;
+        let Some(path) = path else {
+            // Where the composite does not say it, the component that it implements may.
+            let typed = match parameter.given {
+                Some(Given::Component(_, outside)) if property.element().is_none() => outside,
+                _ => property,
+            };
+            return Ok(whole.inside_elements_of(typed));
+        };
+        if whole.raw().0.is_empty() {
+            // What has no value has no parts either.
+            return Ok(whole);
+        }
+        match whole.part(path) {
+            // Without more steps it is the value itself.
+            Ok(raw) if steps(path).nth(1).is_none() => {
+                Ok(SharedValues::new(raw).inside_elements_of(property))
+            }
+            Ok(raw) => Ok(SharedValues::new(raw)),
+            Err(fault) => {
+                malformed(source, name.len() + 1, fault, report);
+                Err(())
+            }
+        }
+    }
+
+    /// Finds the property that a `source` names, and notes that it is used. One that is not there is reported.
+    fn named(&mut self, place: usize, source: &Text, name: &str, report: &mut Report<'_>) -> Result<(), ()> {
+        let unit = &mut self.units[place];
+        if let Some(parameter) = unit.by_name.get_mut(name) {
+            parameter.is_used = true;
+            return Ok(());
+        }
+        unit.has_wrong_source = true;
+        // That it is not there is told where a component gives it a value, or where one is declared without its name.
+        if unit.has_nameless || unit.owner.is_some_and(|owner| owner.property(name).is_some()) {
+            return Err(());
+        }
+        let names = unit.names();
+        let at = report.part(source, 1..1 + name.len());
+        let message = format!("the composite has no property {}", quoted(name));
+        let known = ("its properties are", names.iter().copied());
+        let one = report.unknown(&codes::UNKNOWN_SOURCE, at, message, name, known);
+        report.push(match names.is_empty() {
+            true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
+            false => one,
+        });
+        Err(())
+    }
+
+    /// The whole value of a property that is there.
+    pub(super) fn whole(
+        &mut self,
+        place: usize,
+        name: &str,
+        report: &mut Report<'_>,
+    ) -> Result<Rc<SharedValues<'a>>, ()> {
+        let Some(parameter) = self.units[place].by_name.get_mut(name) else { return Err(()) };
+        if let Some(known) = &parameter.whole {
+            return Ok(Rc::clone(known));
+        }
+        let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
+        let variable = parameter.variable;
+        let is_judged = std::mem::replace(&mut parameter.is_judged, true);
+        let typed = Typed { property, document: &composite.document };
+        let mut whole = match given {
+            // One that is not of its type is reported.
+            Some(Given::Setting(Setting { value, .. }) | Given::Variable(Variable { value, .. })) => {
+                if !value_type::is_right(typed, value) {
+                    return Err(());
+                }
+                SharedValues::new(Raw::one(value))
+            }
+            Some(Given::Component(outside, outer)) => {
+                let (whole, _) = self.shared(outside, outer, report)?;
+                for piece in whole.raw().0.iter().filter(|_| !is_judged) {
+                    if let Piece::Text(text) = piece
+                        && !report.has_told(&codes::COMPOSITE_VALUE_TYPE, text.location)
+                    {
+                        value_type::given(typed, text, report);
+                    }
+                }
+                whole
+            }
+            None => SharedValues::new(Raw(Vec::new())),
+        };
+        if whole.raw().0.is_empty() {
+            whole = SharedValues::new(match variable {
+                Some(Variable { value, .. }) => {
+                    if !value_type::is_right(typed, value) {
+                        value_type::given(typed, value, report);
+                        return Err(());
+                    }
+                    Raw::one(value)
+                }
+                None => raw(property, &composite.document, None, report)?,
+            });
+        }
+        if whole.raw().0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
+            // Reported where it should have been supplied.
+            if let Some(parameter) = self.units[place].by_name.get_mut(name) {
+                parameter.is_unset = true;
+            }
+            return Err(());
+        }
+        let whole = whole.given_to(property);
+        if let Some(parameter) = self.units[place].by_name.get_mut(name) {
+            parameter.whole = Some(Rc::clone(&whole));
+        }
+        Ok(whole)
+    }
+
+    /// Reports a `source` that is no path from a property.
+    fn no_path(&mut self, place: usize, source: &Text, report: &mut Report<'_>) {
+        let unit = &mut self.units[place];
+        unit.has_wrong_source = true;
+        if source.contains(['$', '(']) {
+            let fault = braced(source).unwrap_or_else(|| {
+                Fault::unknown(0..source.len(), format!("{} is no path from a property", quoted(source)))
+            });
+            return malformed(source, 0, fault, report);
+        }
+        let message = format!("{} names no property of the composite", quoted(source));
+        let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
+            .help("write `$name`, or `$name/part` for a part of a complex property");
+        if unit.by_name.contains_key(source.as_str()) {
+            one = one.suggest("insert `$`", source.location, escaped(&format!("${source}")));
+        }
+        report.push(one);
+    }
+}
+
+/// The fault of `${name}`, as where texts are made of others.
+fn braced(source: &str) -> Option<Fault> {
+    let (name, _) = source.strip_prefix("${")?.split_once('}')?;
+    let written = format!("${{{name}}}");
+    let fault = Fault::unknown(0..written.len(), "names of properties stand without braces here");
+    is_name(name.trim()).then(|| Fault { instead: Some((written, format!("${}", name.trim()))), ..fault })
+}
+
+/// Reports a fault of a `source`, whose bytes count from a place in it. Another program may understand any XPath.
+fn malformed(source: &Text, start: usize, fault: Fault, report: &mut Report<'_>) {
+    let Fault { step, message, is_understood, instead } = fault;
+    let step = start + step.start..start + step.end;
+    let at = report.part(source, step.clone());
+    let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
+    if let Some((name, meant)) = instead
+        && let Some(place) = source[step.clone()].find(&name)
+    {
+        let place = step.start + place;
+        let place = report.part(source, place..place + name.len());
+        one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
+    }
+    report.push(match (is_understood, report.assumes) {
+        (true, _) => one,
+        (false, true) => {
+            one.severity(Severity::Warning).help("another program may understand it: it is taken as given")
+        }
+        (false, false) => one.help(format!(
+            "a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"
+        )),
+    });
+}
+
+/// True if it can be the name of a property, as far as that tells it from other parts of a path.
+fn is_name(name: &str) -> bool {
+    let is_inner = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ':');
+    !name.is_empty() && name.chars().all(is_inner)
+}

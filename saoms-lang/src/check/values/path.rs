@@ -1,0 +1,329 @@
+//! Paths of a `source`: `$name`, and the part of its value that steps lead to.
+//!
+//! SCA takes an XPath (Assembly 1.1, 4.1.3). A path is the part of it that fleets use: steps down into elements by name or `*`, each with one
+//! predicate, steps to any depth (`//`), and at the end an attribute or a text. Where a step leads to several elements, the next one starts from
+//! all of them, as in XPath. Prefixes do not count. Everything else of XPath is an error.
+
+use std::ops::Range;
+
+use super::raw::{Piece, Raw};
+use crate::check::report::list;
+use crate::diagnostic::{nearest, quoted};
+use crate::syntax::{Attribute, Element};
+
+/// The fault of a step of another form.
+const NO_STEP: &str = "no step of a path is written like this";
+
+/// The forms of steps, for help.
+pub(crate) const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
+
+/// Parts that are looked at for what could have been meant.
+const MOST_LOOKED_AT: usize = 1_000;
+
+/// A fault of a path.
+pub(crate) struct Fault {
+    /// Its bytes.
+    pub(crate) step: Range<usize>,
+    /// The message.
+    pub(crate) message: String,
+    /// False for an XPath that is no path: another program may understand it.
+    pub(crate) is_understood: bool,
+    /// A name in the step, and the one that is probably meant by it.
+    pub(crate) instead: Option<(String, String)>,
+}
+
+impl Fault {
+    pub(crate) fn new(step: Range<usize>, message: impl Into<String>) -> Self {
+        Self { step, message: message.into(), is_understood: true, instead: None }
+    }
+
+    /// The fault of what another program may understand.
+    pub(crate) fn unknown(step: Range<usize>, message: impl Into<String>) -> Self {
+        Self { step, message: message.into(), is_understood: false, instead: None }
+    }
+
+    /// With the name among those that there are which is nearly this one.
+    pub(crate) fn near<'n>(mut self, name: &str, known: impl IntoIterator<Item = &'n str>) -> Self {
+        self.instead = nearest(name, known).map(|meant| (name.to_owned(), meant.to_owned()));
+        self
+    }
+}
+
+/// `$name`, `$name[2]`, `$name/path` or `$name[2]/path`: the name, and what follows it.
+pub(crate) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
+    let rest = source.strip_prefix('$')?;
+    let end = rest.find(['/', '[']).unwrap_or(rest.len());
+    let (name, path) = rest.split_at(end);
+    (!name.is_empty()).then_some((name, (!path.is_empty()).then_some(path)))
+}
+
+/// The place of the value that `[2]` behind the name means, of so many; `None` where the path starts from all of them.
+pub(crate) fn one_of(count: usize, path: &str) -> Result<Option<usize>, Fault> {
+    let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(None) };
+    let Some(Predicate::Position(wanted)) = predicate(step) else {
+        return Err(Fault::unknown(at, NO_STEP));
+    };
+    match wanted.of(count) {
+        Some(place) => Ok(Some(place)),
+        None => Err(Fault::new(at, format!("the property has {}", counted(count, "value")))),
+    }
+}
+
+/// The values of a step that leads to no element, such as `@name` or `text()`.
+pub(crate) fn ends<'a>(
+    around: &[Element<'a>],
+    (at, step): (Range<usize>, &str),
+    is_last: bool,
+    instance: Option<&'a crate::check::unfolding::replica::Instance>,
+) -> Option<Result<Raw<'a>, Fault>> {
+    if let Some(name) = step.strip_prefix('@').filter(|name| is_name(name)) {
+        return Some(match is_last {
+            false => Err(Fault::new(at, "an attribute has no parts")),
+            true => attributes(around, name, instance).ok_or_else(|| no_attribute(at, name, around)),
+        });
+    }
+    if step == "text()" {
+        return Some(match is_last {
+            false => Err(Fault::new(at, "a text has no parts")),
+            true => texts(around, instance).ok_or_else(|| Fault::new(at, "there is no text here")),
+        });
+    }
+    let is_missing = step.is_empty();
+    let step = at.start.saturating_sub(1)..at.end;
+    is_missing.then(|| Err(Fault::new(step, format!("a step is missing: {FORMS}"))))
+}
+
+/// The fault of a step that is of no form that is understood here.
+pub(crate) fn no_step(at: Range<usize>) -> Fault {
+    Fault::unknown(at, NO_STEP)
+}
+
+/// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within quotation marks is none.
+pub(crate) fn steps(path: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
+    let mut start = Some(0);
+    std::iter::from_fn(move || {
+        let from = start?;
+        let mut quote = None;
+        let end = path[from..].find(|letter: char| match quote {
+            Some(open) => {
+                if letter == open {
+                    quote = None;
+                }
+                false
+            }
+            None => {
+                quote = matches!(letter, '\'' | '"').then_some(letter);
+                letter == '/'
+            }
+        });
+        let end = end.map_or(path.len(), |length| from + length);
+        start = (end < path.len()).then_some(end + 1);
+        Some((from..end, &path[from..end]))
+    })
+}
+
+/// The test of a step: the elements that it leads to.
+pub(crate) struct Test<'p> {
+    /// Their name; any without.
+    pub(crate) name: Option<&'p str>,
+    pub(crate) predicate: Option<Predicate<'p>>,
+}
+
+pub(crate) enum Predicate<'p> {
+    Position(Position),
+    /// An attribute has this value.
+    Attribute(&'p str, &'p str),
+    /// An element inside has this text.
+    Part(&'p str, &'p str),
+}
+
+#[derive(Clone, Copy)]
+pub(crate) enum Position {
+    /// From one on.
+    Number(usize),
+    Last,
+}
+
+impl Position {
+    /// Its index among so many.
+    pub(crate) fn of(self, count: usize) -> Option<usize> {
+        let place = match self {
+            Self::Number(number) => number.checked_sub(1),
+            Self::Last => count.checked_sub(1),
+        };
+        place.filter(|place| *place < count)
+    }
+}
+
+impl<'p> Test<'p> {
+    pub(crate) fn of(step: &'p str) -> Option<Self> {
+        let step = step.strip_prefix("child::").unwrap_or(step);
+        // As some tools write a name without a prefix.
+        let by_predicate = step.strip_prefix("*[local-name()='").and_then(|rest| rest.split_once("']"));
+        let (name, rest) = match by_predicate {
+            Some((name, rest)) => (name, rest),
+            None => step.split_at(step.find('[').unwrap_or(step.len())),
+        };
+        // Other axes are no names.
+        if name.contains("::") {
+            return None;
+        }
+        let predicate = if rest.is_empty() { None } else { Some(predicate(rest)?) };
+        let name =
+            if name == "*" { None } else { Some(local(name)).filter(|name| is_name(name)).map(Some)? };
+        Some(Self { name, predicate })
+    }
+
+    /// Why it, at these bytes, leads to none of these, of which some have its name.
+    pub(crate) fn fault(&self, at: Range<usize>, all: &[Element<'_>], named: &[Element<'_>]) -> Fault {
+        if named.is_empty() {
+            let mut known: Vec<&str> = Vec::new();
+            for one in all.iter().take(MOST_LOOKED_AT).map(|one| one.local_name()) {
+                if known.len() < 50 && !known.contains(&one) {
+                    known.push(one);
+                }
+            }
+            let asked = self.name.map_or(String::new(), |name| format!(" {}", quoted(name)));
+            let message = match known.is_empty() {
+                true => format!("there is no part{asked}: there are no parts here"),
+                false => format!("there is no part{asked}; the parts are {}", list(known.iter().copied())),
+            };
+            let message = message + self.of_values();
+            return Fault::new(at, message).near(self.name.unwrap_or_default(), known);
+        }
+        let (name, value) = match &self.predicate {
+            Some(Predicate::Attribute(name, value)) => (name, value),
+            Some(Predicate::Part(name, value)) => {
+                let message = format!("no part here has {} as its part {}", quoted(value), quoted(name));
+                return Fault::new(at, message);
+            }
+            _ => {
+                return Fault::new(at, self.no_place(named));
+            }
+        };
+        let values = named.iter().take(MOST_LOOKED_AT).filter_map(|one| attribute(*one, name)).take(50);
+        let values: Vec<_> = values.map(|one| one.value()).collect();
+        let known = match values.is_empty() {
+            true => "none has it".to_owned(),
+            false => format!("its values are {}", list(values.iter().map(|value| &**value))),
+        };
+        let message = format!("no part here has {} as its {}: {known}", quoted(value), quoted(name));
+        Fault::new(at, message).near(value, values.iter().map(|value| &**value))
+    }
+}
+
+impl Test<'_> {
+    /// What is said of a path into `<value>` elements: a variable is the values, not what they are in.
+    pub(crate) fn of_values(&self) -> &'static str {
+        if self.name == Some("value") {
+            "; the values of a property are `$name` itself, the second is `$name[2]`"
+        } else {
+            ""
+        }
+    }
+
+    /// Why no element of these is at a place: it counts within each of the elements that they are in.
+    fn no_place(&self, named: &[Element<'_>]) -> String {
+        let parent = |one: &Element<'_>| one.parent().map(Element::id);
+        let groups: Vec<usize> =
+            named.chunk_by(|one, other| parent(one) == parent(other)).map(<[Element<'_>]>::len).collect();
+        let counted = is_counted(named.len(), self.name);
+        match groups[..] {
+            [_] | [] => format!("there {counted}, from `[1]` on"),
+            _ => {
+                let (most, count) = (groups.iter().max().copied().unwrap_or_default(), groups.len());
+                format!(
+                    "there {counted} in {count} elements, at most {most} in each, and a place counts in each"
+                )
+            }
+        }
+    }
+}
+
+/// `[2]`, `[last()]`, `[@name='value']` or `[part='value']`; the values can be numbers.
+fn predicate(text: &str) -> Option<Predicate<'_>> {
+    let inside = text.strip_prefix('[')?.strip_suffix(']')?.trim();
+    let place = |text: &str| {
+        if text == "last()" {
+            return Some(Predicate::Position(Position::Last));
+        }
+        let is_number = !text.is_empty() && text.bytes().all(|digit| digit.is_ascii_digit());
+        // A number that is too large is one that nothing has.
+        is_number.then(|| Predicate::Position(Position::Number(text.parse().unwrap_or(usize::MAX))))
+    };
+    let Some((name, value)) = inside.split_once('=') else { return place(inside) };
+    let (name, value) = (name.trim(), value.trim());
+    if name == "position()" {
+        return place(value);
+    }
+    let value = match value.chars().next().filter(|open| matches!(open, '\'' | '"')) {
+        Some(open) => value[1..].strip_suffix(open).filter(|value| !value.contains(open))?,
+        None => Some(value).filter(|value| value.parse::<f64>().is_ok())?,
+    };
+    match name.strip_prefix('@') {
+        Some(name) => is_name(name).then_some(Predicate::Attribute(name, value)),
+        None => is_name(name).then_some(Predicate::Part(local(name), value)),
+    }
+}
+
+fn attributes<'a>(
+    around: &[Element<'a>],
+    name: &str,
+    instance: Option<&'a crate::check::unfolding::replica::Instance>,
+) -> Option<Raw<'a>> {
+    let found = around.iter().filter_map(|one| attribute(*one, name));
+    let found: Vec<Piece<'a>> = found.map(|one| Piece::text(one.trimmed(), instance)).collect();
+    (!found.is_empty()).then_some(Raw(found))
+}
+
+fn texts<'a>(
+    around: &[Element<'a>],
+    instance: Option<&'a crate::check::unfolding::replica::Instance>,
+) -> Option<Raw<'a>> {
+    let found = around.iter().filter_map(|one| one.trimmed_text());
+    let found: Vec<Piece<'a>> = found.map(|text| Piece::text(text, instance)).collect();
+    (!found.is_empty()).then_some(Raw(found))
+}
+
+pub(crate) fn attribute<'a>(element: Element<'a>, name: &str) -> Option<Attribute<'a>> {
+    element.attributes().find(|one| one.local_name() == local(name))
+}
+
+fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> Fault {
+    let mut known: Vec<&str> = Vec::new();
+    for one in around.iter().flat_map(|one| one.attributes()).map(Attribute::local_name) {
+        if known.len() < 50 && !known.contains(&one) {
+            known.push(one);
+        }
+    }
+    let said = match known.is_empty() {
+        true => "there are none here".to_owned(),
+        false => format!("the attributes are {}", list(known.iter().copied())),
+    };
+    Fault::new(at, format!("there is no attribute {}; {said}", quoted(name))).near(local(name), known)
+}
+
+/// A name without its prefix.
+fn local(name: &str) -> &str {
+    name.rsplit(':').next().unwrap_or(name)
+}
+
+/// True if it can be the name of an element or an attribute, as far as that tells it from other steps.
+fn is_name(name: &str) -> bool {
+    let is_other = |letter: char| letter.is_whitespace() || "[](){}*@'\"=<>|$,/!+".contains(letter);
+    !name.is_empty() && !name.contains(is_other) && !name.contains("::") && !name.starts_with('.')
+}
+
+fn is_counted(count: usize, name: Option<&str>) -> String {
+    let verb = if count == 1 { "is" } else { "are" };
+    let name = name.map_or(String::new(), |name| format!(" {}", quoted(name)));
+    format!("{verb} {}{name}", counted(count, "part"))
+}
+
+fn counted(count: usize, what: &str) -> String {
+    match count {
+        0 => format!("no {what}"),
+        1 => format!("one {what}"),
+        _ => format!("{count} {what}s"),
+    }
+}

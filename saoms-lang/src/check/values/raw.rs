@@ -1,0 +1,197 @@
+//! Values as files give them, before anybody asks what they should be.
+
+use std::borrow::Cow;
+use std::rc::Rc;
+
+use crate::check::report::Report;
+use crate::check::unfolding::replica::Instance;
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::model::{Part, Property, ValueDocument};
+use crate::source::{Located, Location, Text};
+use crate::syntax::{Document, Element};
+
+/// Every value that a property is given; none when it is given nothing.
+#[derive(Clone)]
+pub(crate) struct Raw<'a>(pub(crate) Vec<Piece<'a>>);
+
+/// One value.
+#[derive(Clone)]
+pub(crate) enum Piece<'a> {
+    /// A text.
+    Text(Cow<'a, Text>),
+    /// Elements: the named values of a complex property, and the replica whose numbers are in their texts.
+    Elements(Rc<[Element<'a>]>, Option<&'a Instance>),
+    /// The root of XML in a file, with the whole text: what counts is for the one who takes it to say.
+    Whole(&'a Text, Element<'a>, Option<&'a Instance>),
+}
+
+impl<'a> Raw<'a> {
+    /// One text.
+    pub(crate) fn one(text: &'a Text) -> Self {
+        Self(vec![Piece::Text(Cow::Borrowed(text))])
+    }
+
+    /// The length of its texts.
+    pub(crate) fn bytes(&self) -> usize {
+        let length = |piece: &Piece<'_>| match piece {
+            Piece::Text(text) => text.len(),
+            Piece::Elements(..) => 0,
+            Piece::Whole(text, ..) => text.len(),
+        };
+        self.0.iter().map(length).sum()
+    }
+
+    /// The values inside these elements, one each.
+    pub(crate) fn of_elements(elements: &[Element<'a>], instance: Option<&'a Instance>) -> Self {
+        Self(elements.iter().map(|element| Piece::inside(*element, instance)).collect())
+    }
+}
+
+impl<'a> Piece<'a> {
+    /// The value inside an element.
+    pub(crate) fn inside(element: Element<'a>, instance: Option<&'a Instance>) -> Self {
+        let children: Rc<[Element<'a>]> = element.children().collect();
+        if !children.is_empty() {
+            return Self::Elements(children, instance);
+        }
+        let nothing = || Located::new("".into(), element.name_location());
+        Self::text(element.trimmed_text().unwrap_or_else(nothing), instance)
+    }
+
+    /// A text of a replica, or of what is none.
+    pub(crate) fn text(text: Text, instance: Option<&'a Instance>) -> Self {
+        Self::Text(match instance {
+            Some(instance) => instance.text(Cow::Owned(text)),
+            None => Cow::Owned(text),
+        })
+    }
+
+    /// Its place.
+    pub(crate) fn location(&self) -> Location {
+        match self {
+            Self::Text(text) => text.location,
+            Self::Whole(text, ..) => text.location,
+            // Never without any: it was made from some.
+            Self::Elements(elements, _) => elements[0].name_location(),
+        }
+    }
+}
+
+/// The values that a property gives directly, in one of four ways: the attribute `value`, what is inside, elements
+/// `value`, or a file. Two ways at once are reported.
+pub(crate) fn raw<'a>(
+    property: &'a Property,
+    document: &'a Document,
+    instance: Option<&'a Instance>,
+    report: &mut Report<'_>,
+) -> Result<Raw<'a>, ()> {
+    let Ok(ways) = ways(property, document, instance) else {
+        // As a rule it was reported by who tried to read it.
+        if let Some(file) = property.file().filter(|_| !report.has_errors()) {
+            let message = "the file was not read";
+            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, message));
+        }
+        return Err(());
+    };
+    let mut ways = ways.into_iter();
+    let Some((first, raw)) = ways.next() else { return Ok(Raw(Vec::new())) };
+    if let Some((second, _)) = ways.next() {
+        let message = format!("the property {} is given a value in two ways", quoted(&property.name));
+        report.push(
+            Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other one").help(
+                "write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
+            ),
+        );
+        return Err(());
+    }
+    Ok(raw)
+}
+
+/// The same, where faults are reported by whoever takes the values.
+pub(crate) fn unreported<'a>(
+    property: &'a Property,
+    document: &'a Document,
+    instance: Option<&'a Instance>,
+) -> Result<Raw<'a>, ()> {
+    let mut ways = ways(property, document, instance)?.into_iter();
+    match (ways.next(), ways.next()) {
+        (None, _) => Ok(Raw(Vec::new())),
+        (Some((_, raw)), None) => Ok(raw),
+        _ => Err(()),
+    }
+}
+
+/// The values of each way in which a property gives some, and where that begins; `Err` where it names a file that was not read.
+fn ways<'a>(
+    property: &'a Property,
+    document: &'a Document,
+    instance: Option<&'a Instance>,
+) -> Result<Vec<(Location, Raw<'a>)>, ()> {
+    let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
+    if let Some(value) = property.value() {
+        ways.push((value.location, Raw::one(value)));
+    }
+    if let Some(text) = property.text() {
+        ways.push((text.location, Raw::one(text)));
+    }
+    if let Some(first) = property.values().first() {
+        let values = property.values().iter().map(|value| {
+            if value.content.is_empty() {
+                return Piece::Text(Cow::Borrowed(&value.text));
+            }
+            Piece::Elements(value.content.iter().map(|id| document.element(*id)).collect(), instance)
+        });
+        ways.push((first.tag(), Raw(values.collect())));
+    }
+    if let Some(first) = property.content().first() {
+        let elements = property.content().iter().map(|id| document.element(*id)).collect();
+        ways.push((document.element(*first).name_location(), Raw(vec![Piece::Elements(elements, instance)])));
+    }
+    if let Some(file) = property.file()
+        && let Some(from) = property.document()
+    {
+        ways.push((file.location, document_value(from, property, instance)));
+    } else if let Some(file) = property.file() {
+        ways.push((file.location, Raw::one(property.from_file().ok_or(())?)));
+    }
+    Ok(ways)
+}
+
+/// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's property has no value of its own, it
+/// is what counts until somebody gives one from outside.
+pub(crate) fn beside_source(
+    property: &Property,
+    source: &Text,
+    document: &Document,
+    report: &mut Report<'_>,
+) {
+    let texts = [property.value(), property.text(), property.file()];
+    let listed = property.values().first().map(Part::tag);
+    let content = property.content().first().map(|id| document.element(*id).name_location());
+    let mut ways = texts.into_iter().flatten().map(|text| text.location).chain(listed).chain(content);
+    let Some(at) = ways.next() else { return };
+    let message = format!("the property {} is given a value beside its `source`", quoted(&property.name));
+    let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message).severity(Severity::Warning);
+    let one = Diagnostic { rule: None, ..one };
+    report.push(
+        one.label(source.location, "this counts").help("this value counts for nothing: keep one of them"),
+    );
+}
+
+/// The values of XML in a file.
+fn document_value<'a>(
+    from: &'a ValueDocument,
+    property: &'a Property,
+    instance: Option<&'a Instance>,
+) -> Raw<'a> {
+    let root = from.document.root();
+    if let (false, Some(text)) = (from.is_list, property.from_file()) {
+        return Raw(vec![Piece::Whole(text, root, instance)]);
+    }
+    let is_value = |one: &Element<'_>| one.local_name() == "value" && one.namespace() == root.namespace();
+    let children: Vec<Element<'a>> = root.children().collect();
+    match children.iter().all(is_value) {
+        true => Raw::of_elements(&children, instance),
+        false => Raw(vec![Piece::Elements(children.into(), instance)]),
+    }
+}

@@ -1,0 +1,145 @@
+//! Services and references of components, whatever implements them.
+
+use super::target::{Provider, parts};
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::{Fleet, Kind};
+use crate::registry::InterfaceDeclaration;
+
+/// The meaning of the name of a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Offer {
+    /// The service of a component of a class; where a composite promotes it, the one that is promoted.
+    Service(Provider),
+    /// Nothing that could be looked at: taken as given, or with a fault that is reported.
+    Open,
+    /// Nothing.
+    Missing,
+}
+
+/// True if services or references are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Service,
+    Reference,
+}
+
+impl Side {
+    /// As people say it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Service => "service",
+            Self::Reference => "reference",
+        }
+    }
+
+    /// The rule of SCA that says that what is promoted has to be there.
+    pub(crate) const fn rule(self) -> &'static str {
+        match self {
+            Self::Service => "ASM60004",
+            Self::Reference => "ASM60007",
+        }
+    }
+}
+
+impl<'a> Fleet<'a> {
+    /// The names of the services of a component; `None` where any may be there.
+    pub(crate) fn service_names<'n>(
+        &'n self,
+        member: usize,
+        classes: &'n [ClassIndex<'_>],
+    ) -> Option<Vec<&'n str>> {
+        match self.members[member].kind {
+            Kind::Class(class) => {
+                Some(classes[class].services.iter().map(|service| service.name.as_str()).collect())
+            }
+            Kind::Composite(_) => {
+                Some(self.inner(member)?.services().map(|service| service.name.as_str()).collect())
+            }
+            Kind::Given | Kind::Nothing => None,
+        }
+    }
+
+    /// The names of the references of a component; `None` where any may be there.
+    pub(crate) fn reference_names<'n>(
+        &'n self,
+        member: usize,
+        classes: &'n [ClassIndex<'_>],
+    ) -> Option<Vec<&'n str>> {
+        match self.members[member].kind {
+            Kind::Class(class) => {
+                Some(classes[class].references.iter().map(|reference| reference.name.as_str()).collect())
+            }
+            Kind::Composite(_) => {
+                Some(self.inner(member)?.references().map(|reference| reference.name.as_str()).collect())
+            }
+            Kind::Given | Kind::Nothing => None,
+        }
+    }
+
+    /// The service of a component that is meant where none is named: the only one. What the host serves for a component counts
+    /// where there is no other.
+    pub(crate) fn only_service<'n>(
+        &'n self,
+        member: usize,
+        classes: &'n [ClassIndex<'_>],
+    ) -> Option<&'n str> {
+        let names = match self.class_of(member, classes) {
+            Some(class) if class.services.iter().any(|service| !service.is_of_host()) => {
+                let own = class.services.iter().filter(|service| !service.is_of_host());
+                own.map(|service| service.name.as_str()).collect()
+            }
+            _ => self.service_names(member, classes)?,
+        };
+        if let [only] = names[..] { Some(only) } else { None }
+    }
+
+    /// The service of this name of a component.
+    pub(crate) fn offer(&self, member: usize, name: &str, classes: &[ClassIndex<'_>]) -> Offer {
+        // What a composite promotes and is not there is reported where it is promoted.
+        let mut missing = Offer::Missing;
+        let (mut member, mut name) = (member, name);
+        loop {
+            let scope = match self.members[member].kind {
+                Kind::Class(class) => {
+                    let found = classes[class].services.iter().position(|service| service.name == name);
+                    return found.map_or(missing, |service| Offer::Service(Provider { member, service }));
+                }
+                Kind::Composite(scope) => scope,
+                Kind::Given | Kind::Nothing => return Offer::Open,
+            };
+            let service =
+                self.inner(member).and_then(|inner| inner.services().find(|service| service.name == name));
+            let Some(service) = service else { return missing };
+            missing = Offer::Open;
+            // Each step leads one composite further in. What does not lead on is reported where it is written.
+            let next = service.promote.as_ref().and_then(|promote| {
+                let (component, part) = parts(promote);
+                let member = self.find(scope, component)?;
+                Some((member, part.or_else(|| self.only_service(member, classes))?))
+            });
+            match next {
+                Some(next) => (member, name) = next,
+                None => return Offer::Open,
+            }
+        }
+    }
+
+    /// Every service of a component by name, as far as it is known.
+    pub(crate) fn offers<'n>(
+        &'n self,
+        member: usize,
+        classes: &'n [ClassIndex<'_>],
+    ) -> Vec<(&'n str, Offer)> {
+        let names = self.service_names(member, classes).unwrap_or_default();
+        names.into_iter().map(|name| (name, self.offer(member, name, classes))).collect()
+    }
+
+    /// The interface of a service.
+    pub(crate) fn interface_of<'c>(
+        &self,
+        provider: Provider,
+        classes: &'c [ClassIndex<'_>],
+    ) -> Option<&'c InterfaceDeclaration> {
+        Some(&self.class_of(provider.member, classes)?.services[provider.service].interface)
+    }
+}

@@ -1,0 +1,246 @@
+//! Promotions: the services and references that composites take from their components.
+
+use std::collections::{HashMap, HashSet};
+
+use super::dangling_names::DanglingNames;
+use super::offer::Side;
+use super::promoted_interface::{self, Found};
+use super::promoted_multiplicity;
+use super::target::{Uri, parts, spread};
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::{Fleet, Kind, Unit};
+use crate::check::report::{Report, list};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::model::{Binding, Part, Reference};
+use crate::source::{Location, Text};
+
+/// A reference of a component, by its name.
+pub(crate) type ReferenceId<'f> = (usize, &'f str);
+
+/// Which references are promoted.
+#[derive(Default)]
+pub(crate) struct Promoted<'f> {
+    /// By composites that run by themselves, with the targets that these give them: nothing else around them can.
+    pub(crate) outermost: HashMap<ReferenceId<'f>, Vec<&'f Text>>,
+    /// By composites that implement components: to these references of theirs.
+    pub(crate) to: HashMap<ReferenceId<'f>, Vec<ReferenceId<'f>>>,
+    /// Those of which one composite's reference promotes several with different interfaces, which is reported.
+    pub(crate) differing: HashSet<ReferenceId<'f>>,
+    /// Names of promoted parts that are not there, which is reported.
+    pub(crate) dangling: DanglingNames<'f>,
+}
+
+/// Checks that what composites promote exists, and that their services and references have names of their own.
+pub(crate) fn check<'f>(
+    fleet: &'f Fleet<'_>,
+    classes: &'f [ClassIndex<'_>],
+    report: &mut Report<'_>,
+) -> Promoted<'f> {
+    let mut promoted = Promoted::default();
+    // What is wrong where a component is implemented counts, and is said once.
+    let is_outermost = |unit: &&Unit<'_>| fleet.scopes[unit.scope].owner.is_none();
+    let inner = fleet.units.iter().filter(|unit| !is_outermost(unit));
+    for unit in inner.chain(fleet.units.iter().filter(is_outermost)) {
+        let known = report.diagnostics().len();
+        repeated(unit.services().map(|service| &service.name), Side::Service, "ASM60003", report);
+        repeated(unit.references().map(|reference| &reference.name), Side::Reference, "ASM60006", report);
+        for (service, promote) in unit.services().filter_map(|one| Some((one, one.promote.as_ref()?))) {
+            if let Some(found) = find(promote, Side::Service, unit, fleet, classes, report) {
+                promoted_interface::service(service, found, fleet, classes, report);
+            }
+        }
+        let owner = fleet.scopes[unit.scope].owner;
+        for reference in unit.references() {
+            if reference.promote().is_empty() {
+                promoted.dangling.add(unit.scope, None, fleet);
+            }
+            let mut found: Vec<Found<'f>> = Vec::new();
+            for promote in reference.promote() {
+                for (text, _) in spread(promote, unit.scope, fleet) {
+                    match find(&text, Side::Reference, unit, fleet, classes, report) {
+                        Some(one) => found.push((one, text.location)),
+                        None => promoted.dangling.add(unit.scope, Some(promote), fleet),
+                    }
+                }
+            }
+            promoted_multiplicity::check(
+                reference,
+                found.iter().map(|(inner, _)| *inner),
+                fleet,
+                classes,
+                report,
+            );
+            let is_one = promoted_interface::reference(reference, &found, fleet, classes, report);
+            // What is taken as given wires itself.
+            let found = found.into_iter().map(|(inner, _)| inner);
+            let found: Vec<ReferenceId<'f>> =
+                found.filter(|(member, _)| fleet.members[*member].kind != Kind::Given).collect();
+            if !is_one {
+                promoted.differing.extend(&found);
+            }
+            match owner {
+                Some(owner) => {
+                    for inner in found {
+                        promoted.to.entry(inner).or_default().push((owner, &reference.name));
+                    }
+                }
+                None => {
+                    let has_address = || has_address(reference.bindings());
+                    let needs_target = || found.iter().any(|inner| needs_target(*inner, fleet, classes));
+                    if reference.targets.is_empty() && !has_address() && needs_target() {
+                        unwired(reference, report);
+                    }
+                    for inner in found {
+                        promoted.outermost.entry(inner).or_default().extend(&reference.targets);
+                    }
+                }
+            }
+        }
+        // What a composite offers that runs by itself nobody here takes: it runs the same with faults in it, and other programs say so of those of
+        // SCA 1.0. A component that it implements is another matter.
+        if owner.is_none() && unit.composites.iter().all(|composite| !composite.version.is_1_1()) {
+            report.diagnostics().adjust(known, |one| one.severity = one.severity.min(Severity::Warning));
+        }
+    }
+    promoted
+}
+
+/// True if a binding says where calls go, so that nothing else has to.
+fn has_address(bindings: &[Binding]) -> bool {
+    bindings.iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
+}
+
+/// True if the reference of a component comes to that of a class, by nothing that has an address of its own.
+fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> bool {
+    let mut waiting = vec![place];
+    let mut seen = HashSet::new();
+    while let Some((member, name)) = waiting.pop() {
+        if !seen.insert((member, name)) {
+            continue;
+        }
+        let own = fleet.members[member].component.reference(name);
+        if own.is_some_and(|own| has_address(own.bindings())) {
+            continue;
+        }
+        let Some(inner) = fleet.inner(member) else {
+            if fleet.class_of(member, classes).is_some() {
+                return true;
+            }
+            continue;
+        };
+        for reference in inner.references().filter(|one| one.name == name && !has_address(one.bindings())) {
+            for promote in reference.promote() {
+                let (component, part) = parts(promote);
+                let Some(member) = fleet.find(inner.scope, component) else { continue };
+                let only = || match &fleet.members[member].component.references[..] {
+                    [only] => Some(only.name.as_str()),
+                    _ => None,
+                };
+                waiting.extend(part.or_else(only).map(|name| (member, name)));
+            }
+        }
+    }
+    false
+}
+
+fn unwired(reference: &Reference, report: &mut Report<'_>) {
+    let message = format!(
+        "reference {} of the composite is wired to nothing: calls through it fail",
+        quoted(&reference.name)
+    );
+    let at = if reference.name.is_empty() { reference.tag() } else { reference.name.location };
+    let one = Diagnostic::new(&codes::PROMOTED_UNWIRED, at, message);
+    report.push(one.help("the composite runs by itself, and nothing around it can wire its references"));
+}
+
+fn repeated<'a>(
+    names: impl Iterator<Item = &'a Text>,
+    side: Side,
+    rule: &'static str,
+    report: &mut Report<'_>,
+) {
+    let mut seen: HashMap<&str, Location> = HashMap::new();
+    for name in names.filter(|name| !name.is_empty()) {
+        if let Some(first) = seen.get(name.as_str()) {
+            let message = format!("the composite has two {}s {}", side.name(), quoted(name));
+            let one = Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, name.location, message);
+            report.push(one.rule(rule).label(*first, "the first").help("give each its own name"));
+        } else {
+            seen.insert(name, name.location);
+        }
+    }
+}
+
+/// The name of what a URI promotes of a component that is taken as given, as far as it is written anywhere. Faults are reported.
+fn find_given<'f>(
+    text: &Text,
+    uri: &Uri<'_>,
+    member: usize,
+    side: Side,
+    fleet: &'f Fleet<'_>,
+    report: &mut Report<'_>,
+) -> Option<&'f str> {
+    let known = fleet.written_names(member, side);
+    if let Some((name, at)) = &uri.part {
+        let at = report.part(text, at.clone());
+        let code = (&codes::UNKNOWN_PROMOTED, Some(side.rule()));
+        fleet.unknown_name(member, side, code, (name, at), report);
+        return known.into_iter().find(|known| known == name);
+    }
+    match known[..] {
+        [only] => Some(only),
+        _ => None,
+    }
+}
+
+/// The part that a URI promotes. Faults are reported.
+fn find<'f>(
+    text: &Text,
+    side: Side,
+    unit: &Unit<'_>,
+    fleet: &'f Fleet<'_>,
+    classes: &'f [ClassIndex<'_>],
+    report: &mut Report<'_>,
+) -> Option<ReferenceId<'f>> {
+    let uri = Uri::of(text, (2, side), (unit.scope, fleet), report)?;
+    let member = uri.member(text, (unit.scope, None), fleet, Some(side.rule()), report)?;
+    let names = match side {
+        Side::Service => fleet.service_names(member, classes),
+        Side::Reference => fleet.reference_names(member, classes),
+    };
+    let Some(names) = names else {
+        return find_given(text, &uri, member, side, fleet, report).map(|name| (member, name));
+    };
+    let (what, component) = (side.name(), quoted(uri.component));
+    let only = match side {
+        Side::Service => fleet.only_service(member, classes),
+        Side::Reference => (names.len() == 1).then(|| names[0]),
+    };
+    let (at, message, wanted) = match (&uri.part, only) {
+        (Some((name, at)), _) => match names.iter().find(|known| *known == name) {
+            Some(name) => return Some((member, name)),
+            None => {
+                let at = report.part(text, at.clone());
+                (at, format!("component {component} has no {what} {}", quoted(name)), *name)
+            }
+        },
+        (None, Some(only)) => return Some((member, only)),
+        (None, None) if names.is_empty() => {
+            (text.location, format!("component {component} has no {what}s to promote"), "")
+        }
+        (None, None) => {
+            (text.location, format!("component {component} has several {what}s: say which is promoted"), "")
+        }
+    };
+    let one = match wanted {
+        "" if names.is_empty() => Diagnostic::new(&codes::UNKNOWN_PROMOTED, at, message),
+        "" => Diagnostic::new(&codes::UNKNOWN_PROMOTED, at, message)
+            .help(format!("write `{text}/` and one of {}", list(names))),
+        name => {
+            let known = (&*format!("its {what}s are"), names.iter().copied());
+            report.unknown(&codes::UNKNOWN_PROMOTED, at, message, name, known)
+        }
+    };
+    report.push(one.rule(side.rule()));
+    None
+}
