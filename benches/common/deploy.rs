@@ -8,12 +8,9 @@ use saoms_components as _;
 use saoms_core::report::{RunReport, RunStatus};
 use saoms_core::schedule::{Fleet, Settings};
 use saoms_lang::assembly::Assembly;
-use saoms_lang::check::{Options, check};
-use saoms_lang::diagnostic::{Diagnostics, Severity, human};
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
+use saoms_lang::diagnostic::{Human, Severity};
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::Sources;
 
 use super::Outcome;
 
@@ -27,21 +24,17 @@ pub(crate) struct Checked {
 /// Loads and checks the text of a composite.
 pub(crate) fn checked(text: String) -> Outcome<Checked> {
     let registry = Registry::linked()?;
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let project = Project::new().text("benchmark.composite", text).in_memory();
     let start = Instant::now();
-    let file = sources.add("benchmark.composite", text);
-    let composite = load_file(file, &sources, &mut diagnostics);
-    let loaded = Instant::now();
-    let assembly = composite.and_then(|one| {
-        let fleet = Contribution::of(vec![one]);
-        check(&fleet, &registry, &Options::default(), &sources, &mut diagnostics)
-    });
+    let loaded = project.load(&registry);
+    let read = Instant::now();
+    let mut found = loaded.compile();
     let done = Instant::now();
-    match assembly {
-        Some(assembly) => Ok(Checked { assembly, load: loaded - start, check: done - loaded }),
+    match found.output.take() {
+        Some(assembly) => Ok(Checked { assembly, load: read - start, check: done - read }),
         None => {
-            let first = diagnostics.into_sorted().into_iter().find(|one| one.severity == Severity::Error);
-            Err(human(first.as_slice(), &sources, false).into())
+            let first = found.reported().find(|one| one.severity == Severity::Error);
+            Err(Human::of(first, &found.sources, false).to_string().into())
         }
     }
 }

@@ -3,12 +3,9 @@
 use std::path::Path;
 
 use proptest::prelude::*;
-use saoms_lang::check::{Options, count};
-use saoms_lang::contribution::load;
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::model::Contribution;
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::{OpenTexts, Sources};
+use saoms_lang::source::OpenTexts;
 use saoms_tools::editor::LineIndex;
 
 use crate::lsp::diagnostics::reported;
@@ -24,13 +21,9 @@ fn hold(text: &str) -> usize {
     let path = Path::new("/nowhere/fleet.composite");
     let mut open = OpenTexts::default();
     open.insert(path, text);
-    let (mut sources, mut diagnostics) = (Sources::with_open(open), Diagnostics::new());
-    let composite = load(path, &mut sources, &mut diagnostics);
-    let contribution = Contribution::of(composite.into_iter().collect());
-    let registry = Registry::linked().unwrap();
-    count(&contribution, &registry, &Options::default(), &sources, &mut diagnostics);
-    let all = diagnostics.into_sorted();
-    let told: Vec<_> = reported(&all, &sources).collect();
+    let found = Project::new().file(path).open_texts(open).check(&Registry::linked().unwrap());
+    let all: Vec<_> = found.reported().cloned().collect();
+    let told: Vec<_> = reported(&all, &found.sources).collect();
     assert_eq!(all.len(), told.len());
     let lines = LineIndex::new(text);
     for (one, (path, told)) in all.iter().zip(&told) {

@@ -6,23 +6,15 @@ use saoms_api::Time;
 use saoms_components as _;
 use saoms_core::schedule::{ChangeError, Fleet, Settings, Takeover};
 use saoms_lang::assembly::Assembly;
-use saoms_lang::check::{Options, check};
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load_file, read};
-use saoms_lang::model::Contribution;
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::Sources;
 
 use crate::support::root;
 
 fn assembly(composite: &str) -> Assembly {
     let path = root().join("composites").join(composite);
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
-    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
-    let contribution = Contribution::of(vec![composite]);
-    let registry = Registry::linked().unwrap();
-    check(&contribution, &registry, &Options::default(), &sources, &mut diagnostics).unwrap()
+    let compilation = Project::new().file(path).compile(&Registry::linked().unwrap());
+    compilation.output.unwrap()
 }
 
 #[test]

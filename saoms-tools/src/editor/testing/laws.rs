@@ -1,10 +1,7 @@
 //! Laws of editors: what has to hold whatever the text.
 
-use saoms_lang::check::{Options, count};
-use saoms_lang::contribution::{load, load_named};
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, human};
-use saoms_lang::load::MAX_SIZE;
-use saoms_lang::model::Contribution;
+use saoms_lang::diagnostic::{Diagnostic, Severity, human};
+use saoms_lang::project::Project;
 use saoms_lang::source::{OpenTexts, Sources};
 
 use crate::editor::{Scene, rename};
@@ -18,13 +15,10 @@ fn checked(scene: &Scene, texts: &[String]) -> (Vec<Diagnostic>, Sources) {
     for (file, text) in scene.files.iter().zip(texts) {
         open.insert(&file.path, text.as_str());
     }
-    let (mut sources, mut diagnostics) = (Sources::with_open(open), Diagnostics::new());
-    let composite = load(&scene.file().path, &mut sources, &mut diagnostics);
-    let mut contribution = Contribution::of(composite.into_iter().collect());
-    load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
-    let options = Options { assume_classes: true, ..Options::default() };
-    count(&contribution, &scene.registry, &options, &sources, &mut diagnostics);
-    (diagnostics.into_sorted(), sources)
+    let project = Project::new().file(&scene.file().path).open_texts(open).assume_classes(true);
+    let mut found = project.check(scene.registry.as_ref());
+    found.diagnostics.retain(|one| !one.is_allowed());
+    (found.diagnostics, found.sources)
 }
 
 fn is_sound(all: &[Diagnostic]) -> bool {
