@@ -1,4 +1,4 @@
-//! How much processor time and memory `saoms check` takes for large composites. See `benches/README.md`.
+//! Processor time and memory of `saoms check` for large composites. See `benches/README.md`.
 
 #![expect(
     clippy::print_stderr,
@@ -26,7 +26,7 @@ use texts::{real, robots, unknown};
 #[derive(Parser)]
 #[command(name = "cargo bench --bench check --")]
 struct Arguments {
-    /// How often everything is measured.
+    /// Number of measurements of each case.
     #[arg(long, default_value_t = 5)]
     rounds: u32,
     /// The size of the large composites, in MB.
@@ -35,31 +35,31 @@ struct Arguments {
     /// A folder with composites of SCA 1.0, whose components make up one of the large ones.
     #[arg(long)]
     components: Option<PathBuf>,
-    /// What Cargo passes to every benchmark.
+    /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
-/// The most processor time for 10,000 components with wires, in seconds.
+/// Maximum processor time for 10,000 components with wires, in seconds.
 const GOAL_WIRED: f64 = 0.5;
-/// The most processor time for a MB of a large composite, in seconds.
+/// Maximum processor time for a MB of a large composite, in seconds.
 const GOAL_MEGABYTE: f64 = 0.02;
 
-/// What is checked.
+/// A composite to check.
 struct Case {
     name: &'static str,
     text: String,
-    /// Whether classes are taken as given.
+    /// True if classes are taken as given.
     assumes: bool,
-    /// The most seconds of a processor.
+    /// Maximum processor time in seconds.
     goal: f64,
 }
 
-/// What a run took.
+/// Measurements of a run.
 #[derive(Serialize)]
 struct Measured {
     seconds: f64,
-    /// Those of them in the system, for memory above all.
+    /// The part of it in the kernel, mainly for memory.
     system: f64,
 }
 
@@ -117,7 +117,7 @@ fn main() -> Outcome<()> {
     common::write("check", &page, &raw)
 }
 
-/// Checks a composite, in which nothing may be wrong.
+/// Checks a composite, which must not have errors.
 fn checked(path: &Path, assumes: bool) -> Outcome<Measured> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
     command.arg("check").args(assumes.then_some("--assume-classes")).arg(path);
@@ -131,7 +131,8 @@ fn checked(path: &Path, assumes: bool) -> Outcome<Measured> {
     Ok(Measured { seconds: after.0 + after.1 - before.0 - before.1, system: after.1 - before.1 })
 }
 
-/// The processor time of all processes that this one started and that have ended, in seconds: their own, and that of the system for them.
+/// The processor time of all processes that this one started and that have ended, in seconds: their own, and that of
+/// the system for them.
 fn children() -> io::Result<(f64, f64)> {
     // SAFETY: numbers of which all zeros are some.
     let mut usage: libc::rusage = unsafe { std::mem::zeroed() };

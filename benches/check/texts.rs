@@ -11,8 +11,8 @@ const HEAD_1_1: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<composite x
 const NAMESPACE_1_0: &str = "http://www.osoa.org/xmlns/sca/1.0";
 const END: &str = "</composite>\n";
 
-/// A world and robots, each with a charger of its own, up to so many bytes or so many robots. They are wired by a `wire` each, or by the
-/// target of their reference.
+/// A world and robots, each with a charger of its own, up to `size` bytes or `most` robots. Each is wired by a `wire`,
+/// or by the target of its reference.
 pub(crate) fn robots(size: usize, most: usize, with_wires: bool) -> String {
     const BYTES: usize = 350;
     let count = most.min(size / BYTES);
@@ -25,7 +25,7 @@ pub(crate) fn robots(size: usize, most: usize, with_wires: bool) -> String {
     for number in 1..=count {
         let (x, y) = ((number % columns) * 5, (number / columns) * 5);
         let reference = if with_wires { "" } else { "  <reference name=\"world\" target=\"World\"/>\n" };
-        // Nothing fails that is written to a text.
+        // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             " <component name=\"Robot{number:06}\">\n  <implementation.rust class=\"saoms.Robot\"/>\n  <property name=\"ID\" value=\"R{number}\"/>\n  <property name=\"period\" value=\"100ms\"/>\n  <property name=\"number\" value=\"{number}\"/>\n  <property name=\"chargeX\" value=\"{x}\"/>\n  <property name=\"chargeY\" value=\"{y}\"/>\n{reference} </component>"
@@ -37,7 +37,7 @@ pub(crate) fn robots(size: usize, most: usize, with_wires: bool) -> String {
     text + &wires + END
 }
 
-/// Components of classes that nobody knows, each with a property, a service and a target.
+/// Components of unknown classes, each with a property, a service and a target.
 pub(crate) fn unknown(size: usize) -> String {
     const BYTES: usize = 225;
     let count = size / BYTES;
@@ -52,9 +52,9 @@ pub(crate) fn unknown(size: usize) -> String {
     text + END
 }
 
-/// The components of the composites of SCA 1.0 in a folder, with the comments before them, again and again, each time with names of their
-/// own. Composites are left out that use more than components, or prefixes, which would need the rest of their files; and those that are not
-/// right by themselves.
+/// The components of the composites of SCA 1.0 in a folder, with the comments before them, repeated with different
+/// names. Composites are left out if they use more than components, or prefixes, which would need the rest of their
+/// files, or if they have errors of their own.
 pub(crate) fn real(
     folder: &Path,
     size: usize,
@@ -125,7 +125,7 @@ fn components(text: &str) -> Vec<String> {
     while let Some(end) = rest.find("</component>") {
         let (one, behind) = rest.split_at(end + "</component>".len());
         let start = one.rfind("<component ").unwrap_or(one.len());
-        // Other elements before it are not taken.
+        // Elements before the component are left out.
         let from = one[..start].rfind("/>").map_or(0, |at| at + 2);
         found.push(one[from.max(one[..start].rfind("</").map_or(0, |at| at))..].to_owned());
         rest = behind;
@@ -138,7 +138,7 @@ fn name(component: &str) -> Option<&str> {
     tag.split_once("name=\"")?.1.split('"').next()
 }
 
-/// Whether names in it have a prefix, whose namespace may be declared elsewhere.
+/// True if names in it have a prefix, whose namespace may be declared elsewhere.
 fn has_prefix(body: &str) -> bool {
     body.split('<').skip(1).any(|tag| {
         let name = tag.trim_start_matches('/').split([' ', '>', '/', '\n', '\t']).next().unwrap_or_default();

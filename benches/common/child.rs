@@ -8,7 +8,8 @@ use serde::de::DeserializeOwned;
 
 use super::Outcome;
 
-/// Runs this program again with `--inside CASE`, and reads what it [tells](tell). The case is passed as JSON.
+/// Runs this program again with `--inside CASE`, and reads the result that it [prints](tell). The case is passed as
+/// JSON.
 pub(crate) fn run<T: DeserializeOwned>(case: &impl Serialize) -> Outcome<T> {
     let case = serde_json::to_string(case)?;
     let mut command = Command::new(env::current_exe()?);
@@ -20,7 +21,7 @@ pub(crate) fn run<T: DeserializeOwned>(case: &impl Serialize) -> Outcome<T> {
     Ok(serde_json::from_slice(&output.stdout)?)
 }
 
-/// Tells the result of a measurement to the process that started it.
+/// Prints the result of a measurement for the process that started it.
 pub(crate) fn tell(result: &impl Serialize) -> Outcome<()> {
     Ok(serde_json::to_writer(std::io::stdout(), result)?)
 }

@@ -11,7 +11,7 @@ pub(crate) struct Composite {
     text: String,
 }
 
-/// How a component of a [`Composite`] runs.
+/// Task of a component of a [`Composite`].
 pub(crate) struct Task {
     pub(crate) class: &'static str,
     pub(crate) name: String,
@@ -26,7 +26,8 @@ impl Composite {
         Self { text: text.to_owned() }
     }
 
-    /// Adds a periodic component with `properties` beside those of its task, which are written as the original's files do.
+    /// Adds a periodic component with `properties` beside those of its task, which are written as the original's files
+    /// do.
     pub(crate) fn add(&mut self, task: &Task, properties: &[(&str, &str)]) {
         self.open(task, properties);
         self.close();
@@ -66,10 +67,10 @@ impl Composite {
 
 /// Blocks between the chargers of two neighbours.
 const SPACING: u32 = 5;
-/// Each robot gets a piece of luggage in so many of its periods.
+/// Number of periods from one piece of luggage to the next, for each robot.
 const LUGGAGE_EVERY: u32 = 25;
 
-/// When the robots of a fleet act.
+/// Phases of the robots of a fleet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phases {
     /// One after the other, spread evenly over the period.
@@ -78,8 +79,8 @@ pub(crate) enum Phases {
     Together,
 }
 
-/// An airport with this many robots of this period, spread over a map. Close to each of them luggage waits again and again, for as long as
-/// `lasting`. The masters and the environment act twice as often as a robot, as in the original's files.
+/// An airport with `robots` robots of this period, spread over a map. Luggage appears repeatedly near each of them,
+/// during `lasting`. The masters and the environment act twice as often as a robot, as in the original's files.
 pub(crate) fn airport(robots: u32, period: Duration, phases: Phases, lasting: Duration) -> String {
     let columns = (1..).find(|columns| columns * columns >= robots).unwrap_or(1);
     let side = (columns * SPACING + 1).to_string();
@@ -93,7 +94,7 @@ pub(crate) fn airport(robots: u32, period: Duration, phases: Phases, lasting: Du
     composite.add(&task("unibg.saoms.MasterRobotManagingSystem", "MasterRobot", half), &[]);
     let mut scenario = String::new();
     let periods = u32::try_from(lasting.as_nanos() / period.as_nanos()).unwrap_or(u32::MAX);
-    // The last wave comes after the end, so that there is always work left.
+    // The last wave comes after the end, so that there is always open work.
     for wave in 0..=periods / LUGGAGE_EVERY + 1 {
         for robot in 0..robots {
             let ((x, y), at) = (place(robot), format_duration(period * LUGGAGE_EVERY * wave));
@@ -105,7 +106,7 @@ pub(crate) fn airport(robots: u32, period: Duration, phases: Phases, lasting: Du
         let (x, y) = place(robot);
         let name = format!("Robot{:05}", robot + 1);
         let delay = if phases == Phases::Spread { period * robot / robots } else { Duration::ZERO };
-        // All robots answer each other, and all of them may hear a new piece of luggage in the same period.
+        // All robots answer each other, and all of them may receive a new request in the same period.
         let queue = (20 * robots).max(1024);
         let properties =
             [("chargeX", x), ("chargeY", y), ("queue", queue)].map(|(name, value)| (name, value.to_string()));

@@ -1,9 +1,9 @@
-//! From the text of a composite to a fleet, as the command does it.
+//! Deployment: from the text of a composite to a fleet, as in the command.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-// Its classes are found only where the crate is used.
+// The crate has to be linked for its classes to be registered.
 use saoms_components as _;
 use saoms_core::report::{RunReport, RunStatus};
 use saoms_core::schedule::{Fleet, Settings};
@@ -14,7 +14,7 @@ use saoms_lang::registry::Registry;
 
 use super::Outcome;
 
-/// A checked composite, and how long its way took.
+/// A checked composite, and the time that this took.
 pub(crate) struct Checked {
     pub(crate) assembly: Assembly,
     pub(crate) load: Duration,
@@ -39,12 +39,12 @@ pub(crate) fn checked(text: String) -> Outcome<Checked> {
     }
 }
 
-/// Starts the fleet of a composite. Nobody is told what happens in it.
+/// Starts the fleet of a composite, without an observer.
 pub(crate) fn start(assembly: Assembly, settings: Settings) -> Outcome<Fleet> {
     Ok(Fleet::start(assembly, settings, Vec::new())?)
 }
 
-/// The report of a fleet that has to end without a failure.
+/// Runs a fleet to its end, without a failure, and returns its report.
 pub(crate) fn finish(fleet: Fleet) -> Outcome<RunReport> {
     let report = fleet.run_to_end();
     match report.outcome.status {

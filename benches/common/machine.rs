@@ -1,11 +1,11 @@
-//! The machine: what it is, and how busy it is with other work.
+//! The machine: its description, and its load by other work.
 
 use std::fs;
 use std::io;
 use std::process::Command;
 use std::time::Duration;
 
-/// One line that says where and when a result was taken.
+/// One line with the machine and the date of a result.
 pub(crate) fn description() -> String {
     let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = cpu
@@ -40,12 +40,12 @@ impl Busy {
         Ok(Self { used: tick(0) + tick(1) + tick(2) + tick(5) + tick(6), stolen: tick(7) })
     }
 
-    /// What was used since `earlier`.
+    /// Time that was used since `earlier`.
     pub(crate) fn used_since(&self, earlier: &Self) -> Duration {
         self.used.saturating_sub(earlier.used)
     }
 
-    /// What the host took away since `earlier`.
+    /// Time that the host took away since `earlier`.
     pub(crate) fn stolen_since(&self, earlier: &Self) -> Duration {
         self.stolen.saturating_sub(earlier.stolen)
     }

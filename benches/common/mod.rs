@@ -1,4 +1,4 @@
-//! What the benchmarks share: fleets to measure, the machine they run on, what a process uses of it, and how results are shown.
+//! Common parts of the benchmarks: fleets to measure, the machine, the usage of a process, and the output of results.
 //!
 //! Each benchmark is a program of its own and uses a part of this.
 
@@ -13,8 +13,8 @@ pub(crate) use machine::{Busy, description};
 pub(crate) use page::{median, verdict, write};
 pub(crate) use process::{Memory, cpu_time, memory};
 
-/// What a benchmark returns: any failure ends it with its text.
+/// Result of a benchmark: any error ends it with its text.
 pub(crate) type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Where results are written, relative to the root of the repository, which is where Cargo starts a benchmark.
+/// Folder of the results, relative to the root of the repository, in which Cargo starts a benchmark.
 pub(crate) const RESULTS: &str = "target/bench";

@@ -1,4 +1,4 @@
-//! How results are shown.
+//! Output of results.
 
 use std::fs;
 use std::io::Write as _;
@@ -18,7 +18,7 @@ pub(crate) fn write(name: &str, page: &str, raw: &impl Serialize) -> Outcome<()>
     Ok(())
 }
 
-/// The middle of some values; of an even number of them, the mean of the two in the middle.
+/// Median of some values; of an even number of them, the mean of the two in the middle.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
@@ -27,7 +27,7 @@ pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     Some(f64::midpoint(*lower, *upper))
 }
 
-/// What a table says about a goal.
+/// Cell of a table for a goal.
 pub(crate) fn verdict(met: bool) -> &'static str {
     if met { "met" } else { "missed" }
 }

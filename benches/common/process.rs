@@ -1,4 +1,4 @@
-//! What one process has used, read from outside or by itself.
+//! Usage of one process, read from outside or by itself.
 
 use std::fs;
 use std::io;
@@ -27,7 +27,7 @@ pub(crate) fn cpu_time(pid: u32) -> io::Result<Duration> {
 pub(crate) struct Memory {
     /// Resident now, in kB.
     pub(crate) resident_kb: u64,
-    /// The most that was ever resident, in kB.
+    /// Maximum that was ever resident, in kB.
     pub(crate) peak_kb: u64,
 }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Subscription, Topic};
 
-/// As large as a robot's position with its time.
+/// A message of the size of a robot's position with its time.
 #[derive(Clone, Debug, Message)]
 pub(crate) struct Position {
     robot: u32,
@@ -17,17 +17,17 @@ pub(crate) struct Position {
 /// A topic that loses nothing.
 pub(crate) const EVENTS: Topic<Position> = Topic::event("BENCHMARK");
 
-/// How many messages arrived at all receivers together.
+/// Number of messages that arrived at all receivers together.
 pub(crate) static RECEIVED: AtomicU64 = AtomicU64::new(0);
 
-/// How much a sender sends.
+/// Properties of a sender.
 #[derive(Properties)]
 pub(crate) struct SenderProperties {
-    /// In each execution.
+    /// Number of messages in each execution.
     messages: u32,
 }
 
-/// Sends so many messages in each execution.
+/// Sends messages in each execution.
 #[derive(Class)]
 #[class(name = "bench.Sender", periodic, publishes(EVENTS))]
 pub(crate) struct Sender {

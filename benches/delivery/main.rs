@@ -1,4 +1,4 @@
-//! What the delivery of a message inside the process costs. See `benches/README.md`.
+//! Cost of the delivery of a message inside the process. See `benches/README.md`.
 
 #![expect(
     clippy::print_stderr,
@@ -28,27 +28,27 @@ use components::RECEIVED;
 #[derive(Parser)]
 #[command(name = "cargo bench --bench delivery --")]
 struct Arguments {
-    /// How often everything is measured.
+    /// Number of measurements of each case.
     #[arg(long, default_value_t = 5)]
     rounds: u32,
-    /// How long, in seconds of the fleet's time.
+    /// Duration in seconds of the fleet's time.
     #[arg(long, default_value_t = 1)]
     seconds: u64,
-    /// What Cargo passes to every benchmark.
+    /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
 const PERIOD: Duration = Duration::from_millis(10);
-/// The most that a delivery may cost where there are ten receivers or more, in ns.
+/// Maximum cost of a delivery with ten receivers or more, in ns.
 const GOAL: f64 = 50.0;
 
-/// So many components send to so many others on one topic.
+/// Numbers of senders and receivers on one topic.
 #[derive(Clone, Copy, Serialize)]
 struct Case {
     senders: u32,
     receivers: u32,
-    /// That a sender sends in each execution.
+    /// Number of messages of a sender in each execution.
     messages: u32,
 }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::common::composite::{Composite, Phases, Task, airport};
 use crate::common::{Outcome, cpu_time, deploy, memory};
 
-/// Which fleet.
+/// A fleet to measure.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) enum Case {
     /// Robots in real time.
@@ -22,7 +22,7 @@ pub(crate) enum Case {
     Empty { tasks: u32 },
 }
 
-/// What a process told.
+/// Result of a process.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Measured {
     /// Executions of robots, or of empty tasks.
@@ -54,7 +54,7 @@ impl Component for Empty {
 const ROBOT: &str = "saoms.Robot";
 /// The period in virtual time, where it says nothing about speed.
 const PERIOD: Duration = Duration::from_millis(100);
-/// In virtual time a fleet runs until there were about so many executions.
+/// Approximate number of executions in virtual time.
 const ROBOT_EXECUTIONS: u32 = 100_000;
 const EMPTY_EXECUTIONS: u32 = 3_000_000;
 

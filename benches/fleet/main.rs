@@ -1,4 +1,4 @@
-//! What a robot of the airport fleet costs in real time, and how fast a fleet runs in virtual time. See `benches/README.md`.
+//! Cost of a robot of the airport fleet in real time, and speed of a fleet in virtual time. See `benches/README.md`.
 
 #![expect(
     clippy::print_stderr,
@@ -26,10 +26,10 @@ use original::ORIGINAL;
 #[derive(Parser)]
 #[command(name = "cargo bench --bench fleet --")]
 struct Arguments {
-    /// How often everything is measured.
+    /// Number of measurements of each case.
     #[arg(long, default_value_t = 3)]
     rounds: u32,
-    /// How long a fleet runs in real time, in seconds.
+    /// Duration of a fleet in real time, in seconds.
     #[arg(long, default_value_t = 10)]
     seconds: u32,
     /// Fleets in virtual time, in robots.
@@ -38,14 +38,14 @@ struct Arguments {
     /// Measure one case, for the process that started this one.
     #[arg(long, hide = true)]
     inside: Option<String>,
-    /// What Cargo passes to every benchmark.
+    /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
 /// Executions of robots per second and core in virtual time.
 const GOAL_PER_SECOND: f64 = 1e6;
-/// The most memory of a fleet of ten robots, in MB.
+/// Maximum memory of a fleet of ten robots, in MB.
 const GOAL_MB: f64 = 50.0;
 
 fn main() -> Outcome<()> {

@@ -1,4 +1,4 @@
-//! Who is measured, and how each is started.
+//! The contenders, and how each is started.
 
 use std::env;
 use std::fs;
@@ -15,12 +15,12 @@ use crate::{cyclictest, interval, saoms};
 
 /// One way to start tasks periodically.
 pub(crate) struct Contender {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub(crate) name: &'static str,
-    /// Its name in the tables.
+    /// Name in the tables.
     pub(crate) title: &'static str,
     kind: Kind,
-    /// Whether it runs unless others are asked for.
+    /// True if it runs unless others are asked for.
     pub(crate) usual: bool,
 }
 
@@ -32,11 +32,12 @@ enum Kind {
     Java {
         mode: &'static str,
     },
-    /// This program again, so that processor time and memory are the contender's own.
+    /// A process of this program, so that processor time and memory are the contender's own.
     Inside(fn(&Plan) -> Outcome<()>),
 }
 
-/// Beyond this many threads the measurement is one of thread creation, and the process or the machine can run out of them.
+/// Maximum number of threads. Beyond it, thread creation dominates the measurement, and the process or the machine can
+/// run out of threads.
 const MOST_THREADS: u32 = 2000;
 
 /// All contenders, in the order of the tables.
@@ -95,7 +96,7 @@ pub(crate) const ALL: &[Contender] = &[
 ];
 
 impl Contender {
-    /// Says why the contender cannot run on this machine, if so.
+    /// Reason why the contender cannot run on this machine, if there is one.
     pub(crate) fn unavailable(&self) -> Option<String> {
         let (tool, package) = match self.kind {
             Kind::Cyclictest { .. } => ("cyclictest", "Debian package rt-tests"),
@@ -120,7 +121,7 @@ impl Contender {
         }
     }
 
-    /// Is the contender, in a process of its own.
+    /// Runs the contender in this process.
     pub(crate) fn be(&self, plan: &Plan) -> Outcome<()> {
         match self.kind {
             Kind::Inside(run) => run(plan),

@@ -11,12 +11,12 @@ use crate::common::{Outcome, RESULTS, memory};
 use crate::probe::Plan;
 use crate::run::{Run, Sample, limited};
 
-/// The largest lateness that it tells apart, in us.
+/// Maximum lateness of its histogram, in us.
 const RANGE_US: u64 = 20_000;
 /// Each thread's histogram is locked memory, so many threads get shorter ones.
 const RANGE_US_OF_MANY: u64 = 5_000;
 
-/// Measures one run. `tuned` lets it hold the processors out of their idle states, as it does unless told otherwise.
+/// Measures one run. `tuned` lets it keep the processors out of their idle states, which is its default.
 pub(crate) fn run(plan: &Plan, fifo: bool, tuned: bool) -> Outcome<Run> {
     let size = plan.size;
     let result = Path::new(RESULTS).join("cyclictest.json");
@@ -65,7 +65,7 @@ fn small_stacks() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Samples it well after its start and before it writes its histograms; its rate is known.
+/// Samples the process well after its start and before it writes its histograms; its rate is known.
 fn sample(child: &mut Child, plan: &Plan) -> Outcome<Run> {
     let mut run = Run::default();
     thread::sleep(plan.lead() + plan.warm_up / 2);
@@ -91,7 +91,7 @@ fn read(result: &Path, run: &mut Run) -> Outcome<()> {
             run.latenesses.add(us.parse::<u64>()? * 1000, count);
             shown += count;
         }
-        // What was later than its range is counted at the thread's maximum.
+        // Latenesses beyond its range are counted at the thread's maximum.
         let beyond = thread["cycles"].as_u64().unwrap_or(0).saturating_sub(shown);
         if beyond > 0 {
             run.latenesses.add(thread["max"].as_u64().unwrap_or(0) * 1000, beyond);

@@ -8,7 +8,7 @@ use crate::common::{median, verdict};
 use crate::report::{Figure, cpu, p99};
 use crate::rounds::{AtSize, Measured};
 
-/// At a size, one contender's figure is at most so many times another's.
+/// A goal: at a size, one contender's figure is at most `limit` times another's.
 struct Goal {
     sizes: &'static [&'static str],
     figure: Figure,
@@ -61,7 +61,7 @@ const GOALS: &[Goal] = &[
     },
 ];
 
-/// One goal at one size.
+/// Result of a goal at one size.
 struct Judged {
     size: String,
     goal: &'static Goal,

@@ -62,7 +62,8 @@ impl Histogram {
         self.total
     }
 
-    /// The lateness in us that a share of `quantile` of all executions did not exceed (nearest rank); 1.0 gives the maximum.
+    /// The lateness in us that a share of `quantile` of all executions did not exceed (nearest rank); 1.0 gives the
+    /// maximum.
     pub(crate) fn quantile_us(&self, quantile: f64) -> f64 {
         let rank = (quantile * self.total as f64).ceil() as u64;
         let mut seen = 0;

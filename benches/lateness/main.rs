@@ -41,19 +41,19 @@ struct Arguments {
     /// Measured time of one run, in seconds.
     #[arg(long, default_value = "2.5", value_parser = seconds)]
     seconds: Duration,
-    /// Time before that counts for nothing, in seconds.
+    /// Time before the measurement, in seconds.
     #[arg(long, default_value = "1", value_parser = seconds)]
     warm_up: Duration,
     /// Sizes, as TASKSxPERIOD.
     #[arg(long, value_delimiter = ',', default_value = "10x100ms,100x10ms,1000x10ms,1000x100ms,10000x100ms")]
     sizes: Vec<Size>,
-    /// Contenders by name; the usual ones unless given.
+    /// Contenders by name; by default the usual ones.
     #[arg(long, value_delimiter = ',')]
     contenders: Vec<String>,
-    /// Be this contender, for the driver.
+    /// Run this contender, for the driver.
     #[arg(long, hide = true)]
     inside: Option<String>,
-    /// What Cargo passes to every benchmark.
+    /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }

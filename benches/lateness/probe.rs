@@ -1,4 +1,4 @@
-//! The contender's side of a run: the common start, the window that counts, and what the driver is told.
+//! The contender's side of a run: the common start, the measured window, and the report to the driver.
 
 use std::io::{self, Read, Write};
 use std::sync::OnceLock;
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use crate::histogram::Recorder;
 use crate::size::Size;
 
-/// What a contender is asked to run.
+/// Parameters of a contender's run.
 #[derive(Clone, Copy)]
 pub(crate) struct Plan {
     pub(crate) size: Size,
@@ -18,12 +18,12 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// How long creating the tasks may take before the first is due.
+    /// Time for creating the tasks before the first is due.
     pub(crate) fn lead(&self) -> Duration {
         Duration::from_millis(500) + Duration::from_micros(100) * self.size.tasks
     }
 
-    /// How long after the window an execution may start before it counts as missed.
+    /// Time after the window in which an execution may start without counting as missed.
     pub(crate) fn grace(&self) -> Duration {
         self.size.period.max(Duration::from_millis(100))
     }
@@ -59,7 +59,7 @@ pub(crate) fn open(plan: &Plan, start: Instant) {
     WINDOW.get_or_init(|| Window { start: begin, end: begin + plan.measured });
 }
 
-/// Waits until the window is over, and tells the driver what happened in it.
+/// Waits until the window is over, and reports to the driver.
 ///
 /// The driver samples the process between the lines `begin` and `end`; only then is the histogram written.
 pub(crate) fn report(plan: &Plan) -> io::Result<()> {

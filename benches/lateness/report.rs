@@ -1,4 +1,4 @@
-//! What was measured, as a page of tables and as JSON.
+//! Results, as a page of tables and as JSON.
 
 use std::fmt::Write as _;
 
@@ -25,7 +25,7 @@ pub(crate) fn cpu(run: &Run) -> f64 {
     run.cpu.as_secs_f64() * 1e6 / run.executions as f64
 }
 
-/// Shows the page and keeps it.
+/// Prints the page and writes it to a file.
 pub(crate) fn write(measured: &Measured) -> Outcome<()> {
     common::write("lateness", &page(measured)?, &raw(measured))
 }

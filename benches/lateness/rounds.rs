@@ -6,7 +6,7 @@ use crate::probe::Plan;
 use crate::run::Run;
 use crate::size::Size;
 
-/// Everything that was measured.
+/// All results.
 pub(crate) struct Measured {
     pub(crate) machine: String,
     pub(crate) rounds: u32,
@@ -46,7 +46,7 @@ fn at_size(plan: &Plan, contenders: &[&'static Contender], rounds: u32) -> AtSiz
     let mut results: Vec<OfContender> = contenders.iter().map(start).collect();
     for round in 1..=rounds {
         for result in &mut results {
-            // What failed once (too many threads, no permission) would only take time again.
+            // A contender that failed once (too many threads, no permission) is not run again.
             if result.failure.is_some() {
                 result.rounds.push(None);
                 continue;
@@ -65,7 +65,7 @@ fn at_size(plan: &Plan, contenders: &[&'static Contender], rounds: u32) -> AtSiz
             };
             result.rounds.push(run);
         }
-        // A drift of the machine falls on all alike.
+        // A drift of the machine affects all contenders in the same way.
         results.reverse();
     }
     if rounds % 2 == 1 {

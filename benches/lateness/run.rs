@@ -10,7 +10,7 @@ use crate::common::{Busy, Memory, Outcome, cpu_time, memory};
 use crate::histogram::Histogram;
 use crate::probe::Plan;
 
-/// What one run of one contender gave.
+/// Result of one run of one contender.
 #[derive(Clone, Default)]
 pub(crate) struct Run {
     pub(crate) latenesses: Histogram,
@@ -20,7 +20,7 @@ pub(crate) struct Run {
     pub(crate) executions: u64,
     pub(crate) cpu: Duration,
     pub(crate) memory: Memory,
-    /// What other processes and the host used of one core, as a share of the time.
+    /// Usage of one core by other processes and the host, as a share of the time.
     pub(crate) others: f64,
     pub(crate) stolen: f64,
 }
@@ -39,7 +39,7 @@ impl Sample {
 }
 
 impl Run {
-    /// Fills in what was used between two samples, and gives the time between them.
+    /// Sets the usage between two samples, and returns the time between them.
     pub(crate) fn used(&mut self, from: &Sample, to: &Sample) -> Duration {
         let time = to.time - from.time;
         self.cpu = to.cpu.saturating_sub(from.cpu);
@@ -64,7 +64,7 @@ pub(crate) fn run(mut command: Command, plan: &Plan) -> Outcome<Run> {
     Ok(run)
 }
 
-/// Does `work` with the child, which is killed when that takes longer than `limit` or fails.
+/// Runs `work` with the child, which is killed if that takes longer than `limit` or fails.
 pub(crate) fn limited<T>(
     child: &mut Child,
     limit: Duration,
@@ -75,7 +75,8 @@ pub(crate) fn limited<T>(
     let guard = thread::spawn(move || {
         let late = waiting.recv_timeout(limit) == Err(mpsc::RecvTimeoutError::Timeout);
         if late {
-            // SAFETY: a plain system call; the child is not waited for before this thread has ended, so `pid` is its own.
+            // SAFETY: a plain system call; the child is not waited for before this thread has ended, so `pid` is its
+            // own.
             unsafe { libc::kill(pid, libc::SIGKILL) };
         }
         late
@@ -125,7 +126,7 @@ fn measure(child: &mut Child, plan: &Plan) -> Outcome<Run> {
     Ok(run)
 }
 
-/// The first line of what the contender wrote to its standard error.
+/// First line of the contender's standard error.
 fn last_words(child: &mut Child) -> String {
     let mut text = String::new();
     if let Some(mut errors) = child.stderr.take() {

@@ -10,10 +10,10 @@ use crate::common::composite::{Composite, Task};
 use crate::common::{Outcome, deploy};
 use crate::probe::{self, Plan};
 
-/// Where the run's time starts on the machine's clock.
+/// Start of the run on the machine's clock.
 static START: OnceLock<Instant> = OnceLock::new();
 
-/// When the task is due, as the composite says it and apart from what the engine says.
+/// Due time of the task, computed from the composite, independently of the engine.
 #[derive(Properties)]
 pub(crate) struct Due {
     first: Duration,

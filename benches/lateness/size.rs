@@ -1,4 +1,4 @@
-//! One size of the measurement: so many tasks at such a period.
+//! One size of the measurement: a number of tasks and their period.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,7 +12,7 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    /// When task `index` starts first, counted from the common start.
+    /// Time from the common start to the first start of task `index`.
     pub(crate) fn delay(&self, index: u32) -> Duration {
         self.period * index / self.tasks
     }

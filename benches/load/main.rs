@@ -1,4 +1,5 @@
-//! How long a composite takes from its text to the first execution of everything in it, and the memory it takes. See `benches/README.md`.
+//! Time of a composite from its text to the first execution of all its components, and its memory. See
+//! `benches/README.md`.
 
 #![expect(
     clippy::print_stderr,
@@ -28,7 +29,7 @@ use common::{Outcome, child, deploy, median, memory, verdict};
 #[derive(Parser)]
 #[command(name = "cargo bench --bench load --")]
 struct Arguments {
-    /// How often everything is measured.
+    /// Number of measurements of each case.
     #[arg(long, default_value_t = 5)]
     rounds: u32,
     /// Numbers of components.
@@ -37,14 +38,14 @@ struct Arguments {
     /// Measure one case, for the process that started this one.
     #[arg(long, hide = true)]
     inside: Option<String>,
-    /// What Cargo passes to every benchmark.
+    /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
-/// The most time that 1000 components may take to their first execution, in ms; of more components, each as much.
+/// Maximum time of 1000 components to their first execution, in ms; proportional for more components.
 const GOAL_MS: f64 = 50.0;
-/// The most memory of an idle component, in kB.
+/// Maximum memory of an idle component, in kB.
 const GOAL_KB: f64 = 4.0;
 /// Longer than the measurement, so that nothing is executed twice.
 const PERIOD: Duration = Duration::from_secs(60);
@@ -73,24 +74,24 @@ impl Component for Idle {
     }
 }
 
-/// What is in the composite.
+/// Content of the composite.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 enum Case {
-    /// Components that do nothing: they have the goals.
+    /// Components that do nothing, to which the goals apply.
     Idle(u32),
-    /// An airport with so many robots.
+    /// An airport with this number of robots.
     Robots(u32),
 }
 
-/// What a process told: times in ms, memory in kB.
+/// Result of a process: times in ms, memory in kB.
 #[derive(Serialize, Deserialize)]
 struct Measured {
     load: f64,
     check: f64,
     start: f64,
-    /// From the end of the start to the last first execution; of robots it is not known.
+    /// Time from the end of the start to the last first execution; unknown for robots.
     first_executions: f64,
-    /// Beyond what the process had before it had the text.
+    /// Additional memory since before the text was read.
     resident: f64,
     peak: f64,
 }

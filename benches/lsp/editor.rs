@@ -44,13 +44,14 @@ impl Editor {
         Ok(editor)
     }
 
-    /// Waits for the first diagnostics; the time since the file was opened, in ms.
+    /// Waits for the first diagnostics; returns the time since the file was opened, in ms.
     pub(crate) fn diagnostics(&mut self) -> Outcome<f64> {
         while self.read()?["method"] != "textDocument/publishDiagnostics" {}
         Ok(milliseconds(self.opened))
     }
 
-    /// Types something, waits for the diagnostics of the text as it is then, and takes it back; the time until then, in ms.
+    /// Types `typed`, waits for the diagnostics of the new text, and undoes it; returns the time to the diagnostics, in
+    /// ms.
     pub(crate) fn check(&mut self, text: &str, at: usize, typed: &str) -> Outcome<f64> {
         let (start, end) = places(text, at, typed.len());
         let begun = Instant::now();
@@ -58,12 +59,12 @@ impl Editor {
         self.shown()?;
         let took = milliseconds(begun);
         self.change(&start, &end, "")?;
-        // The next check waits for no other one.
+        // The next check must not wait for this one.
         self.shown()?;
         Ok(took)
     }
 
-    /// Waits for the diagnostics of the text as it is.
+    /// Waits for the diagnostics of the current text.
     fn shown(&mut self) -> Outcome<()> {
         let version = self.next;
         loop {
@@ -75,12 +76,12 @@ impl Editor {
         }
     }
 
-    /// Asks a question about a place; the time until the answer, in ms.
+    /// Sends a request about a position; returns the time until the response, in ms.
     pub(crate) fn question(&mut self, method: &str, text: &str, at: usize) -> Outcome<f64> {
         let (place, _) = places(text, at, 0);
         let document = json!({ "uri": self.uri });
         let context = json!({ "includeDeclaration": true });
-        // Each question takes what it knows.
+        // Each request takes the parameters that it knows.
         let asked =
             json!({ "textDocument": document, "position": place, "newName": "Another", "context": context });
         let begun = Instant::now();
@@ -92,7 +93,7 @@ impl Editor {
         Ok(took)
     }
 
-    /// Types something, asks what can be written there, and takes it back; the time from typing to the answer, in ms.
+    /// Types `typed`, requests completions, and undoes it; returns the time from typing to the response, in ms.
     pub(crate) fn complete(&mut self, text: &str, at: usize, typed: &str) -> Outcome<f64> {
         let (start, end) = places(text, at, typed.len());
         let begun = Instant::now();
@@ -162,7 +163,7 @@ impl Editor {
     }
 }
 
-/// A place of a text, which is ASCII, and that so many characters behind it.
+/// A position in an ASCII text, and the position `length` characters after it.
 fn places(text: &str, at: usize, length: usize) -> (Value, Value) {
     let before = &text[..at];
     let line = before.matches('\n').count();

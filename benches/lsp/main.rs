@@ -1,4 +1,4 @@
-//! How long the language server takes to say what can be written, in a large composite. See `benches/README.md`.
+//! Response times of the language server in a large composite. See `benches/README.md`.
 
 #![expect(clippy::print_stderr, reason = "the progress of a measurement is for the person who waits for it")]
 
@@ -22,30 +22,30 @@ use editor::Editor;
 #[derive(Parser)]
 #[command(name = "cargo bench --bench lsp --")]
 struct Arguments {
-    /// How often each question is asked.
+    /// Number of times that each request is sent.
     #[arg(long, default_value_t = 100)]
     rounds: usize,
     /// Numbers of components.
     #[arg(long, value_delimiter = ',', default_value = "1000,10000")]
     sizes: Vec<u32>,
-    /// What Cargo passes to every benchmark.
+    /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
 /// The row of the first diagnostics.
 const OPENED: &str = "diagnostics after opening";
-/// What the rows of completion end with.
+/// End of the names of the rows of completion.
 const COMPLETED: &str = "typed and completed";
-/// How often a check is waited for.
+/// Number of measured checks.
 const CHECKS: usize = 10;
 
-/// The most time that an answer about 1,000 components may take, in ms.
+/// Maximum time of a response about 1,000 components, in ms.
 const GOAL_MS: f64 = 50.0;
-/// The size that the goal is for.
+/// Size for which the goal applies.
 const GOAL_SIZE: u32 = 1000;
 
-/// The places where something is typed: what they are called, what stands before them in the last robot, and what is typed there.
+/// Positions for typing: their names, the text before them in the last robot, and the text that is typed.
 const PLACES: [(&str, &str, &str); 5] = [
     ("element", "\n    ", "<"),
     ("class", "<implementation.java class=\"", "s"),
@@ -54,7 +54,7 @@ const PLACES: [(&str, &str, &str); 5] = [
     ("component in a target", "<reference name=\"world\" target=\"", "W"),
 ];
 
-/// The questions about the name of the world in a target of the last robot, which thousands name.
+/// Requests about the name of the world in a target of the last robot, which thousands of targets name.
 const QUESTIONS: [&str; 5] = ["hover", "definition", "references", "rename", "documentSymbol"];
 
 #[derive(Serialize)]
@@ -120,7 +120,7 @@ fn measure(size: u32, rounds: usize, rows: &mut Vec<Row>) -> Outcome<()> {
             (0..rounds).map(|_| editor.question(&method, &text, world + 1)).collect();
         row(what, &times?);
     }
-    // The blank says nothing new, and the text is another one.
+    // A blank changes the text, but not its meaning.
     let times: Outcome<Vec<f64>> =
         (0..CHECKS.min(rounds)).map(|_| editor.check(&text, world - 8, " ")).collect();
     row("diagnostics after a change", &times?);

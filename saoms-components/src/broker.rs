@@ -2,14 +2,14 @@
 
 use saoms_api::{Class, Component, Context, Failure, Properties, interface};
 
-/// What other components can ask the broker.
+/// Service by which other components learn where the broker is.
 #[interface(name = "unibg.robotics.tca.MessageBroker")]
 pub trait MessageBrokerInterface {
-    /// Where it serves, as `host:port`: what a task's `url` names.
+    /// The address as `host:port`, which the property `url` of a task names.
     fn address(&mut self, context: &mut Context<'_>) -> Result<String, Failure>;
 }
 
-/// Where a broker serves.
+/// Properties of a message broker.
 #[derive(Debug, Properties)]
 pub struct MessageBrokerProperties {
     /// The name or address of the machine.
@@ -20,7 +20,7 @@ pub struct MessageBrokerProperties {
     port: u16,
 }
 
-/// Carries the topics of all tasks whose `url` names it. The topics are served inside this process.
+/// Carries the topics of all tasks whose `url` names this broker. The topics are served inside this process.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.MessageBroker",

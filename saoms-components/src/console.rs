@@ -1,4 +1,4 @@
-//! What the lines of the original's console have in common.
+//! Formats that the lines of the original's console share.
 
 use std::fmt;
 use std::time::Duration;
@@ -29,8 +29,8 @@ impl<I> fmt::Debug for JavaList<I> {
     }
 }
 
-/// A date and time of day, given since 1970-01-01 00:00, as the manual's figures show it: decimals end with their last digit that is
-/// not 0, at least one.
+/// A date and time of day, as time since 1970-01-01 00:00, printed as in the manual's figures: trailing zeros of the
+/// fraction are left out, but one digit always stays.
 #[derive(Clone, Copy, Debug)]
 pub struct Timestamp(pub Duration);
 
@@ -38,7 +38,7 @@ pub struct Timestamp(pub Duration);
 const START: Duration = Duration::from_secs(1_422_023_555);
 
 impl Timestamp {
-    /// The present date; a run in virtual time, which has none, starts in the second in which that of figure 8.1 did.
+    /// The current date and time. A run in virtual time has none: it starts at the date of the manual's figure 8.1.
     pub fn now(context: &Context<'_>) -> Timestamp {
         Timestamp(context.date().unwrap_or_else(|| START + Duration::from_nanos(context.now().as_nanos())))
     }
@@ -59,8 +59,8 @@ impl fmt::Display for Timestamp {
     }
 }
 
-/// Year, month and day of a day counted from 1970-01-01, by the algorithm `civil_from_days` of Howard Hinnant ("chrono-Compatible
-/// Low-Level Date Algorithms", 2013), for days that are not negative.
+/// Year, month and day of a number of days since 1970-01-01, by Howard Hinnant's algorithm `civil_from_days`
+/// ("chrono-Compatible Low-Level Date Algorithms", 2013). The number is not negative.
 const fn date(days: u64) -> (u64, u64, u64) {
     let day = days + 719_468;
     let (era, day_of_era) = (day / 146_097, day % 146_097);

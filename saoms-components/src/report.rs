@@ -1,4 +1,4 @@
-//! The counts of the fleet in reports, and their summary.
+//! Counts of the fleet in reports, and their summary.
 
 use saoms_api::extension::{Counts, RunSummary, submit};
 
@@ -19,7 +19,7 @@ submit! {
     }
 }
 
-/// `1 of 1 pieces of luggage delivered, no collision, 0 stranded`; nothing where no luggage was requested.
+/// `1 of 1 pieces of luggage delivered, no collision, 0 stranded`; `None` if no luggage was requested.
 fn result(count: &Counts<'_>) -> Option<String> {
     let delivered = progress(count)?;
     let collisions = match count("collisions.vertex") + count("collisions.swap") {
@@ -29,7 +29,7 @@ fn result(count: &Counts<'_>) -> Option<String> {
     Some(format!("{delivered}, {collisions}, {} stranded", count("stranded")))
 }
 
-/// `1 of 1 pieces of luggage delivered`; nothing where no luggage was requested.
+/// `1 of 1 pieces of luggage delivered`; `None` if no luggage was requested.
 fn progress(count: &Counts<'_>) -> Option<String> {
     let requested = count("luggage.requested");
     (requested > 0)

@@ -1,25 +1,25 @@
-//! Faults in the texts of properties.
+//! Faults in property texts.
 
 use std::fmt;
 use std::ops::Range;
 
 use saoms_api::{Finding, Place};
 
-/// What is wrong with a part of a text.
+/// A fault in a part of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// Which bytes of the text.
+    /// Byte range of the fault.
     pub bytes: Range<usize>,
-    /// What was found, and what was expected.
+    /// Message: what was found, and what was expected.
     pub message: String,
-    /// What probably is meant in their place.
+    /// Probable correction of the text in the range.
     pub instead: Option<String>,
-    /// What to do.
+    /// Help text.
     pub help: Option<String>,
 }
 
 impl TextFault {
-    /// A fault in these bytes.
+    /// A fault in a byte range.
     pub fn new(bytes: Range<usize>, message: impl Into<String>) -> TextFault {
         TextFault { bytes, message: message.into(), instead: None, help: None }
     }
@@ -29,19 +29,19 @@ impl TextFault {
         TextFault::new(bytes(text, part), message)
     }
 
-    /// The same fault with what probably is meant.
+    /// Adds the probable correction.
     #[must_use]
     pub fn instead(self, meant: Option<impl Into<String>>) -> TextFault {
         TextFault { instead: meant.map(Into::into), ..self }
     }
 
-    /// The same fault with what to do.
+    /// Adds a help text.
     #[must_use]
     pub fn help(self, text: impl Into<String>) -> TextFault {
         TextFault { help: Some(text.into()), ..self }
     }
 
-    /// What a constructor says about it, where the text is this value of the property.
+    /// The fault as a finding about a value of a property.
     pub(crate) fn finding(self, property: &str, value: usize) -> Finding {
         let mut finding = Finding::new(Place::property(property).part(value, self.bytes), self.message);
         if let Some(instead) = self.instead {
@@ -62,7 +62,7 @@ impl fmt::Display for TextFault {
 
 impl std::error::Error for TextFault {}
 
-/// Where in a text its part is.
+/// Byte range of a part within its text.
 pub(crate) fn bytes(text: &str, part: &str) -> Range<usize> {
     let start = (part.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize).min(text.len());
     start..(start + part.len()).min(text.len())

@@ -178,7 +178,7 @@ fn representation(input: &DeriveInput) -> Result<(Ident, &'static str)> {
     Ok(found)
 }
 
-/// The numbers of the variants: the explicit one, or one more than that before.
+/// Numbers of the variants: the explicit one, or one more than the number before.
 fn numbers(data: &DataEnum) -> Result<Vec<i128>> {
     let mut numbers: Vec<i128> = Vec::new();
     for variant in &data.variants {

@@ -42,7 +42,7 @@ impl Json {
         self.text(quote!(::saoms_api::host::declaration::Text::Quoted(#text)));
     }
 
-    /// `[a,b,c]`: what `element` writes for each item.
+    /// `[a,b,c]`, where `element` writes each item.
     pub(crate) fn list<T>(
         &mut self,
         items: impl IntoIterator<Item = T>,

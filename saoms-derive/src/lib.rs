@@ -75,7 +75,7 @@ pub fn loop_class(input: TokenStream) -> TokenStream {
 pub fn interface(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let item = parse_macro_input!(item as ItemTrait);
     let result = interface::interface(arguments.into(), &item);
-    // The trait stays, so that what uses it does not fail as well.
+    // The trait is kept, so that its users do not fail as well.
     finish(result.or_else(|error| {
         let error = error.into_compile_error();
         Ok(quote::quote!(#item #error))

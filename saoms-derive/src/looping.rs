@@ -11,7 +11,7 @@ use crate::field::no_generics;
 use crate::json::{self, Json};
 use crate::parts::{self, Reference};
 
-/// Everything that `#[looping(...)]` says.
+/// Content of `#[looping(...)]`.
 #[derive(Default)]
 struct Declared {
     name: Option<LitStr>,

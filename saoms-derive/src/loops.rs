@@ -73,11 +73,11 @@ impl DefaultLoops {
         text.plain("}");
     }
 
-    /// The constant of the class that brings the loops, with what can be checked while compiling.
+    /// The constant of the class that registers the loops, with compile-time checks.
     pub(crate) fn registrations(&self, properties: &TokenStream, knowledge: &Path) -> TokenStream {
         let mut loops: Vec<&Path> = Vec::new();
         for path in self.lists.iter().flat_map(|(_, loops)| loops) {
-            // Two lists may have the same loop; one that comes twice by two paths does no harm.
+            // Two lists may contain the same loop; a duplicate under another path does no harm.
             let text = |path: &Path| path.to_token_stream().to_string();
             if loops.iter().all(|known| text(known) != text(path)) {
                 loops.push(path);

@@ -14,10 +14,10 @@ use serde_json::Value;
 
 use crate::stage::{Happened, Stage};
 
-/// One component without a fleet: a test says what it hears, and sees what it says and does.
+/// One component without a fleet: a test sends it messages, and sees its messages and other output.
 ///
-/// Time is virtual: each [`execute`](Bench::execute) is one period later. What the component did is that of the last step (a start, an
-/// execution, the end), but for the [transcript](Bench::transcript), which has everything.
+/// Time is virtual: each [`execute`](Bench::execute) is one period later. What the component did is that of the last
+/// step (a start, an execution, the end), but for the [transcript](Bench::transcript), which has everything.
 ///
 /// ```
 /// use saoms_components::grid::Block;
@@ -36,14 +36,14 @@ use crate::stage::{Happened, Stage};
 pub struct Bench {
     component: Box<dyn DynComponent>,
     stage: Stage,
-    /// For the next execution, by subscription.
+    /// Messages for the next execution, by subscription.
     waiting: Vec<(String, SharedMessage)>,
-    /// Where the last step begins in what happened.
+    /// Index of the first event of the last step.
     step: usize,
     started: bool,
 }
 
-/// The index of whoever the test stands for.
+/// Component index of the sender of the test's messages.
 const TEST: u32 = u32::MAX;
 
 impl Bench {
@@ -52,7 +52,7 @@ impl Bench {
     /// # Errors
     /// The component refuses the values.
     pub fn of<C: Class>(values: &[(&str, &str)]) -> Result<Bench, Failure> {
-        // Read once: a test makes many.
+        // Built once, as a test makes many benches.
         static LINKED: OnceLock<Result<Registry, String>> = OnceLock::new();
         let linked = LINKED.get_or_init(|| Registry::linked().map_err(|error| error.to_string()));
         let mut registry = linked.clone()?;
@@ -102,14 +102,14 @@ impl Bench {
         Bench { component, stage, waiting: Vec::new(), step: 0, started: false }
     }
 
-    /// Gives it another period than 100 ms.
+    /// Sets the period, which is 100 ms by default.
     #[must_use]
     pub fn period(mut self, period: Duration) -> Bench {
         self.stage.period = period;
         self
     }
 
-    /// Gives its chance another seed than 0.
+    /// Sets the seed of its random numbers, which is 0 by default.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Bench {
         self.stage.set_seed(seed);
@@ -123,10 +123,10 @@ impl Bench {
         self
     }
 
-    /// Initializes it.
+    /// Initializes the component.
     ///
     /// # Errors
-    /// Those of the component.
+    /// Errors of the component.
     pub fn start(&mut self) -> Result<(), Failure> {
         self.started = true;
         self.stage.initializing = true;
@@ -135,10 +135,10 @@ impl Bench {
         result
     }
 
-    /// Executes it once, with what was delivered since the last time.
+    /// Executes the component once, with the messages that were delivered since the last execution.
     ///
     /// # Errors
-    /// Those of the component, panics included; or it was not started.
+    /// Errors of the component, including panics; or it was not started.
     pub fn execute(&mut self) -> Result<(), Failure> {
         if !self.started {
             return Err(Failure::new("this component was not started: call `start` first"));
@@ -158,10 +158,10 @@ impl Bench {
         result
     }
 
-    /// Executes it again and again until that time of the run.
+    /// Executes the component periodically until this time of the run.
     ///
     /// # Errors
-    /// Those of the component.
+    /// Errors of the component.
     pub fn execute_until(&mut self, time: Duration) -> Result<(), Failure> {
         while self.stage.now.as_nanos() < time.as_nanos() as u64 {
             self.execute()?;
@@ -169,10 +169,10 @@ impl Bench {
         Ok(())
     }
 
-    /// Ends it.
+    /// Shuts the component down.
     ///
     /// # Errors
-    /// Those of the component.
+    /// Errors of the component.
     pub fn shutdown(&mut self) -> Result<(), Failure> {
         self.started = false;
         self.call(|component, context| component.shutdown(context))
@@ -196,13 +196,13 @@ impl Bench {
         Header { sender: TEST, sent: self.stage.now, cause: Cause::default() }
     }
 
-    /// Lets it hear a message in its next execution.
+    /// Delivers a message to the next execution.
     pub fn deliver<M: Message>(&mut self, topic: &Topic<M>, message: M) {
         let message = SharedMessage::new(self.header(), message);
         self.waiting.push((topic.name().to_owned(), message));
     }
 
-    /// Lets it hear a message that is given as JSON.
+    /// Delivers a message that is given as JSON.
     ///
     /// # Errors
     /// Its class does not subscribe to the topic, or the JSON is none of its messages.
@@ -213,17 +213,17 @@ impl Bench {
         Ok(())
     }
 
-    /// Lets it hear any bytes.
+    /// Delivers any bytes as a message.
     pub fn deliver_bytes(&mut self, topic: &str, bytes: Vec<u8>) {
         self.waiting.push((topic.to_owned(), SharedMessage::from_bytes(self.header(), None, bytes)));
     }
 
-    /// What it sent on a topic.
+    /// Messages that the component sent on a topic.
     pub fn sent<M: Message>(&self, topic: &Topic<M>) -> Vec<M> {
         self.messages(topic.name()).filter_map(|message| message.get::<M>().cloned()).collect()
     }
 
-    /// What it sent on a topic, as JSON.
+    /// Messages that the component sent on a topic, as JSON.
     pub fn sent_json(&self, topic: &str) -> Vec<Value> {
         let schema = self.stage.schema_said(topic);
         let as_json = |message: &SharedMessage| schema.as_ref()?.decode(message.bytes()).ok();
@@ -237,7 +237,7 @@ impl Bench {
         })
     }
 
-    /// The lines that it wrote to the log.
+    /// Lines that the component wrote to the log.
     pub fn log(&self) -> Vec<&str> {
         self.lines(|what| match what {
             Happened::Log(_, line) => Some(line),
@@ -245,7 +245,7 @@ impl Bench {
         })
     }
 
-    /// The records that it left in the journal, and the entries that its loops changed.
+    /// Records of the component in the journal, and changes of entries by its loops.
     pub fn journal(&self) -> Vec<&str> {
         self.lines(|what| match what {
             Happened::Journal(line) => Some(line),
@@ -258,23 +258,24 @@ impl Bench {
         step.filter_map(|(_, what)| choose(what)).map(String::as_str).collect()
     }
 
-    /// What it said last about the work that is left, in any step.
+    /// Open work, as the component reported it last, in any step.
     pub fn work(&self) -> Option<Work> {
         self.stage.work
     }
 
-    /// A value that it gave to the report, or what it counted there.
+    /// A value or count of the component in the report.
     pub fn report(&self, path: &str) -> Option<&ReportValue> {
         self.stage.report.iter().rev().find(|(known, _)| known == path).map(|(_, value)| value)
     }
 
-    /// Everything that it did, a line each with its time, messages as JSON: to look at, or to hold to a file with
+    /// Everything that the component did, a line each with its time, messages as JSON: to read, or to compare with a
+    /// file by
     /// [`expect_transcript`](Bench::expect_transcript).
     pub fn transcript(&self) -> String {
         self.stage.transcript()
     }
 
-    /// What its class subscribes to, with the schema of the messages.
+    /// Topics to which its class subscribes, with the schemas of their messages.
     pub fn hears(&self) -> Vec<(String, Schema)> {
         self.stage.heard().collect()
     }

@@ -4,10 +4,10 @@ use saoms_api::{Chance, Class, Failure};
 
 use crate::Bench;
 
-/// How many messages of each topic a component has to stand.
+/// Number of messages of each topic that a component has to handle.
 const MESSAGES: u32 = 60;
 
-/// What a component has to keep, whatever it does.
+/// Rules for every component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rule {
     Constructs,
@@ -35,8 +35,9 @@ impl fmt::Display for Rule {
     }
 }
 
-/// Holds a component to what every component has to keep: it can be constructed again and again, starts with the topics and references that it declares,
-/// stands silence, any values in the messages of its topics and bytes that are none, ends, restarts, and does the same when it hears the same.
+/// Checks a component against the rules for every component: it can be constructed repeatedly, starts with the topics
+/// and references that it declares, handles silence, any values in the messages of its topics and invalid bytes, shuts
+/// down, restarts, and does the same for the same messages.
 ///
 /// # Panics
 /// With what it does not keep, and its own words.
@@ -50,7 +51,7 @@ pub fn comply<C: Class>(values: &[(&str, &str)]) {
     comply_as(|| Bench::of::<C>(values));
 }
 
-/// The same for a component that is made in another way, such as [`Bench::of_library`], or with wires.
+/// The same for a component that is constructed in another way, such as [`Bench::of_library`], or with wires.
 ///
 /// # Panics
 /// As [`comply`].

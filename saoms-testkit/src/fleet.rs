@@ -14,9 +14,10 @@ use saoms_lang::source::{FileId, SourceFile};
 use crate::expected::{Checked, Found};
 use crate::run::{Log, Run};
 
-/// A fleet under test: one or several composites, values for their properties, variables of the environment, and severities.
+/// A fleet under test: one or several composites, values for their properties, variables of the environment, and
+/// severities.
 ///
-/// The environment of the process is not looked at: a test gives the same everywhere.
+/// The environment of the process is ignored, so that a test has the same result everywhere.
 #[derive(Clone, Debug, Default)]
 pub struct Fleet {
     composites: Vec<Composite>,
@@ -56,8 +57,8 @@ impl Fleet {
         self
     }
 
-    /// The same fleet with a variable of the environment, for composite properties with `saoms:env`. Of one that is given twice the last
-    /// value counts.
+    /// The same fleet with a variable of the environment, for composite properties with `saoms:env`. Of one that is
+    /// given twice the last value counts.
     ///
     /// ```
     /// use saoms_testkit::Fleet;
@@ -74,7 +75,8 @@ impl Fleet {
         self
     }
 
-    /// The same fleet with another severity for a code, as `--severity` gives it: `allow`, `note`, `warning` or `error`.
+    /// The same fleet with another severity for a code, as `--severity` gives it: `allow`, `note`, `warning` or
+    /// `error`.
     ///
     /// ```
     /// use saoms_testkit::Fleet;
@@ -91,7 +93,7 @@ impl Fleet {
         self
     }
 
-    /// What the checker finds, a line each: `error S3001 5:32 there is no class ...`; empty where all is well.
+    /// Diagnostics of the checker, a line each: `error S3001 5:32 there is no class ...`; empty if there are none.
     pub fn diagnostics(&self) -> String {
         let found = self.compiled();
         let mut text = String::new();
@@ -103,7 +105,7 @@ impl Fleet {
         text
     }
 
-    /// Every text that was read, with what the checker finds in it.
+    /// Every text that was read, with its diagnostics.
     pub(crate) fn texts(&self) -> Vec<Checked> {
         let found = self.compiled();
         let text = |(id, file): (FileId, &SourceFile)| {
@@ -119,7 +121,7 @@ impl Fleet {
         found.sources.iter().map(text).collect()
     }
 
-    /// The one composite that is left when all is resolved, as `saoms expand` writes it: what a test can hold an assembly to.
+    /// The single composite with everything resolved, as `saoms expand` writes it, for comparisons in tests.
     ///
     /// # Panics
     /// With all diagnostics when the composites have errors.
@@ -129,7 +131,7 @@ impl Fleet {
         found.expanded().unwrap_or_else(|| panic!("{}", found.text()))
     }
 
-    /// The same as people see it, each with a picture of its place.
+    /// Diagnostics as they are shown to people, each with an excerpt of the text.
     pub fn shown(&self) -> String {
         self.compiled().text()
     }
@@ -144,7 +146,7 @@ impl Fleet {
         Run::new(report, &log)
     }
 
-    /// The same, and tells somebody else what happens meanwhile.
+    /// The same, with an observer of the run.
     ///
     /// # Panics
     /// As [`run`](Fleet::run).

@@ -1,4 +1,4 @@
-//! Texts that are held to files.
+//! Comparison of texts with files.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,16 +10,18 @@ use saoms_tools::format::{WIDTH, format};
 
 use crate::{Bench, Fleet};
 
-/// Lines around a difference that are shown.
+/// Number of lines that are shown around a difference.
 const AROUND: usize = 3;
 
 impl Fleet {
-    /// Holds what the fleet comes to when all is resolved, as `saoms expand` writes it, to the text of a file; paths are relative to the crate.
+    /// Compares the fleet with everything resolved, as `saoms expand` writes it, with the text of a file; paths are
+    /// relative to the crate.
     ///
     /// With `UPDATE_EXPECT=1` in the environment the file is written anew.
     ///
     /// # Panics
-    /// With the lines that differ, when the text is another one, or there is no such file; with all diagnostics when the composites have errors.
+    /// With the lines that differ, when the text is another one, or there is no such file; with all diagnostics when
+    /// the composites have errors.
     #[track_caller]
     pub fn expect_expanded(&self, path: impl AsRef<Path>) {
         let path = path.as_ref();
@@ -33,7 +35,8 @@ impl Fleet {
 }
 
 impl Bench {
-    /// Holds everything that the component did so far, its [transcript](Bench::transcript), to the text of a file; paths are relative to the crate.
+    /// Compares the [transcript](Bench::transcript) of everything that the component did so far with the text of a
+    /// file; paths are relative to the crate.
     ///
     /// With `UPDATE_EXPECT=1` in the environment the file is written anew.
     ///
@@ -45,7 +48,7 @@ impl Bench {
     }
 }
 
-/// Holds a text to that of a file, or writes the file.
+/// Compares a text with that of a file, or writes the file.
 #[track_caller]
 #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
 fn hold(what: &str, text: &str, path: &Path) {

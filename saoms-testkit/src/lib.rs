@@ -1,4 +1,4 @@
-//! What tests of composites and components use: check a fleet, or run it in virtual time and look at what came of it.
+//! Tests of composites and components: check a fleet, or run it in virtual time and look at the result.
 //!
 //! ```
 //! use std::time::Duration;
@@ -18,11 +18,11 @@
 //! assert_eq!(run.components[0].executions, 200);
 //! ```
 //!
-//! A composite says in comments what is wrong with it, and [`expect_diagnostics`] holds it to them; [`Run::expect`] asks what a component did in a run.
-//! `docs/testing.md` of the project is the guide.
+//! A composite says in comments what is wrong with it, and [`expect_diagnostics`] holds it to them; [`Run::expect`]
+//! asks what a component did in a run. `docs/testing.md` of the project is the guide.
 //!
-//! A test holds a fleet to how it adapts itself by the [journal](saoms_core::journal) of a run: what each loop saw, decided and did, when, and
-//! what came from what.
+//! A test holds a fleet to how it adapts itself by the [journal](saoms_core::journal) of a run: what each loop saw,
+//! decided and did, when, and what came from what.
 //!
 //! ```
 //! use std::time::Duration;
@@ -54,7 +54,7 @@ pub use comply::{comply, comply_as};
 pub use expected::expect_diagnostics;
 pub use fleet::Fleet;
 pub use loop_bench::LoopBench;
-pub use moment::{Expect, Moment, Point};
+pub use moment::{Expect, Moment, PointInTime};
 pub use run::Run;
 use saoms_components as _;
 

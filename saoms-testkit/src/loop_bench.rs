@@ -12,10 +12,12 @@ use saoms_lang::registry::Registry;
 
 use crate::Bench;
 
-/// One loop on knowledge that a test makes: the test changes what the loop senses, and sees what it decides and changes.
+/// One loop on knowledge that a test provides: the test changes what the loop senses, and sees its decisions and
+/// changes.
 ///
-/// It is a [`Bench`] otherwise: [`start`](Bench::start), [`execute`](Bench::execute), messages, log, journal. In each execution the loop
-/// monitors, analyzes, plans and executes, with the same checks as in a fleet: a loop that changes what it does not declare has failed.
+/// It is a [`Bench`] otherwise: [`start`](Bench::start), [`execute`](Bench::execute), messages, log, journal. In each
+/// execution the loop monitors, analyzes, plans and executes, with the same checks as in a fleet: a loop that changes
+/// what it does not declare has failed.
 ///
 /// ```
 /// use saoms_api::{
@@ -136,12 +138,13 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
         Ok(LoopBench { bench: Bench::of_loop(class, Box::new(component)), knowledge })
     }
 
-    /// What the loop works on, to look at it and to change it between executions.
+    /// Knowledge of the loop, to read it and to change it between executions.
     pub fn knowledge(&self) -> MutexGuard<'_, K> {
         self.knowledge.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The value of an entry by its name, also of one that the loop added; `None` where there is none, or no single value.
+    /// Value of an entry by its name, including entries that the loop added; `None` if there is no such entry, or if it
+    /// is no single value.
     pub fn value(&self, entry: &str) -> Option<Value> {
         let knowledge = self.knowledge();
         let knowledge: &dyn Knowledge = &*knowledge;
@@ -149,14 +152,14 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
         knowledge.value(u32::try_from(place).ok()?)
     }
 
-    /// Gives it another period than 100 ms.
+    /// Sets the period, which is 100 ms by default.
     #[must_use]
     pub fn period(mut self, period: Duration) -> LoopBench<K> {
         self.bench = self.bench.period(period);
         self
     }
 
-    /// Gives its chance another seed than 0.
+    /// Sets the seed of its random numbers, which is 0 by default.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> LoopBench<K> {
         self.bench = self.bench.seed(seed);
@@ -184,7 +187,7 @@ impl<K> fmt::Debug for LoopBench<K> {
     }
 }
 
-/// A component that is nothing but its loop.
+/// A component that only runs its loop.
 struct Subject<K> {
     knowledge: Arc<Mutex<K>>,
     loops: Loops,

@@ -1,4 +1,4 @@
-//! What happened in a run, and in which order.
+//! Events of a run, and their order.
 
 use std::fmt;
 use std::time::Duration;
@@ -7,23 +7,23 @@ use saoms_api::{Cause, Time};
 
 use crate::Run;
 
-/// How much of what a component did is shown where it did not do what was expected.
+/// Maximum number of a component's events that a failure shows.
 const SHOWN: usize = 40;
 
-/// What is expected of a component of a run; see [`Run::expect`].
+/// Expectations about a component of a run; see [`Run::expect`].
 #[derive(Clone, Copy, Debug)]
 pub struct Expect<'r> {
     run: &'r Run,
     component: &'r str,
 }
 
-/// Something that a component did.
+/// An event of a component.
 #[derive(Clone, Debug)]
 pub struct Moment<'r> {
     of: Expect<'r>,
-    /// The words by which it was found.
+    /// Words by which the event was found.
     words: String,
-    /// Its place among what the component did.
+    /// Index among the events of the component.
     place: usize,
     record: Told,
 }
@@ -32,20 +32,20 @@ pub struct Moment<'r> {
 #[derive(Clone, Debug)]
 struct Told {
     time: Time,
-    /// The number of a record.
+    /// Number of a record.
     number: Option<Cause>,
     text: String,
 }
 
-/// A point in a run that others can be compared with: a [`Moment`], or the [time](Duration) since the start.
-pub trait Point {
-    /// When it is; records of one time are told apart by their numbers.
+/// A point in time of a run: a [`Moment`], or the [time](Duration) since the start.
+pub trait PointInTime {
+    /// Time since the start; records with equal times are distinguished by their numbers.
     fn when(&self) -> (Time, Option<Cause>);
-    /// In words.
+    /// Description for failures.
     fn describe(&self) -> String;
 }
 
-impl Point for Duration {
+impl PointInTime for Duration {
     fn when(&self) -> (Time, Option<Cause>) {
         (Time::START + *self, None)
     }
@@ -55,7 +55,7 @@ impl Point for Duration {
     }
 }
 
-impl Point for Moment<'_> {
+impl PointInTime for Moment<'_> {
     fn when(&self) -> (Time, Option<Cause>) {
         (self.record.time, self.record.number)
     }
@@ -65,7 +65,7 @@ impl Point for Moment<'_> {
     }
 }
 
-impl<P: Point> Point for &P {
+impl<P: PointInTime> PointInTime for &P {
     fn when(&self) -> (Time, Option<Cause>) {
         (*self).when()
     }
@@ -76,7 +76,7 @@ impl<P: Point> Point for &P {
 }
 
 impl Run {
-    /// What a component is expected to have done, by its path: what its loops wrote to the journal, and what it wrote to its log.
+    /// Expectations about a component, by its path: about the records of its loops in the journal, and about its log.
     ///
     /// ```
     /// use std::time::Duration;
@@ -104,7 +104,7 @@ impl Run {
 }
 
 impl<'r> Expect<'r> {
-    /// The first time that it did something with these words in it.
+    /// The first event with these words.
     ///
     /// # Panics
     /// With what it did instead.
@@ -117,7 +117,7 @@ impl<'r> Expect<'r> {
         Moment { of: self, words: words.to_owned(), place, record: all[place].clone() }
     }
 
-    /// That it did nothing with these words in it.
+    /// Checks that no event has these words.
     ///
     /// # Panics
     /// When it did, and when records of the run were overwritten, so that nobody knows.
@@ -131,7 +131,7 @@ impl<'r> Expect<'r> {
         self.all_known();
     }
 
-    /// How often it did something with these words in it.
+    /// Number of events with these words.
     ///
     /// # Panics
     /// When records of the run were overwritten, so that nobody knows.
@@ -147,7 +147,7 @@ impl<'r> Expect<'r> {
         assert!(overwritten == 0, "{overwritten} records of this run were overwritten: let it be shorter");
     }
 
-    /// All that it did, in order. What is told twice, in the journal and in the log, stands there twice.
+    /// All events in order. An event that is both in the journal and in the log is there twice.
     fn told(self) -> Vec<Told> {
         let entries = self.run.journal().of(self.component);
         let entries = entries.iter().map(|entry| Told {
@@ -162,7 +162,7 @@ impl<'r> Expect<'r> {
     }
 }
 
-/// What a component did, as far as it can be shown.
+/// Events of a component, as far as they are shown.
 fn did(all: &[Told]) -> String {
     if all.is_empty() {
         return "it did nothing".to_owned();
@@ -176,17 +176,17 @@ fn did(all: &[Told]) -> String {
 }
 
 impl<'r> Moment<'r> {
-    /// When it was, since the start of the run.
+    /// Time since the start of the run.
     pub fn time(&self) -> Duration {
         self.record.time.since(Time::START)
     }
 
-    /// All that was told of it.
+    /// Text of the record or line.
     pub fn text(&self) -> &str {
         &self.record.text
     }
 
-    /// The next time that the component did something with the same words.
+    /// The next event of the component with the same words.
     ///
     /// # Panics
     /// When it did not.
@@ -206,12 +206,12 @@ impl<'r> Moment<'r> {
         }
     }
 
-    /// That it was before another one, or before a time of the run.
+    /// Checks that it was before another event, or before a time of the run.
     ///
     /// # Panics
     /// When it was not.
     #[track_caller]
-    pub fn before(self, other: impl Point) -> Self {
+    pub fn before(self, other: impl PointInTime) -> Self {
         let (this, that) = (self.when(), other.when());
         let is_before =
             this.0 < that.0 || this.0 == that.0 && this.1.zip(that.1).is_some_and(|(this, that)| this < that);
@@ -219,12 +219,12 @@ impl<'r> Moment<'r> {
         self
     }
 
-    /// That it was after another one, or after a time of the run.
+    /// Checks that it was after another event, or after a time of the run.
     ///
     /// # Panics
     /// When it was not.
     #[track_caller]
-    pub fn after(self, other: impl Point) -> Self {
+    pub fn after(self, other: impl PointInTime) -> Self {
         let (this, that) = (self.when(), other.when());
         let is_after =
             this.0 > that.0 || this.0 == that.0 && this.1.zip(that.1).is_some_and(|(this, that)| this > that);
@@ -232,10 +232,11 @@ impl<'r> Moment<'r> {
         self
     }
 
-    /// That it follows, directly or through others, from something with these words in it, whoever did that.
+    /// Checks that it follows, directly or indirectly, from an event with these words, of any component.
     ///
     /// # Panics
-    /// With what it follows from, when it does not; or when it is a line of the log, which follows from nothing that is known.
+    /// With what it follows from, when it does not; or when it is a line of the log, which follows from nothing that is
+    /// known.
     #[track_caller]
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn because(self, words: &str) -> Self {

@@ -9,7 +9,7 @@ use saoms_core::report::RunReport;
 
 /// A run that has ended: its report, its journal and its log.
 ///
-/// What is asked of a run directly is asked of its [report](RunReport).
+/// A run dereferences to its [report](RunReport).
 #[derive(Clone, Debug)]
 pub struct Run {
     report: RunReport,
@@ -21,13 +21,13 @@ impl Run {
         Run { report, log: std::mem::take(&mut log.events()) }
     }
 
-    /// What the loops saw, decided and did.
+    /// Observations, decisions and actions of the loops.
     pub fn journal(&self) -> &Journal {
         &self.report.journal
     }
 
-    /// What components wrote to the log, and what else happened to them, such as failures; starts and proper ends aside. One line for each:
-    /// `[1.100 s] Robot7: takes luggage 1 from (3,1) to (3,10)`.
+    /// Log lines of components, and their other events such as failures, without starts and proper ends. One line for
+    /// each: `[1.100 s] Robot7: takes luggage 1 from (3,1) to (3,10)`.
     pub fn log(&self) -> String {
         self.log.iter().fold(String::new(), |mut text, event| {
             let _ = writeln!(text, "{event}");
@@ -60,7 +60,7 @@ impl Deref for Run {
     }
 }
 
-/// Remembers what happens.
+/// An observer that stores the events of a run.
 #[derive(Debug, Default)]
 pub(crate) struct Log(Mutex<Vec<RunEvent>>);
 

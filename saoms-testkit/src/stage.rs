@@ -14,9 +14,9 @@ use saoms_lang::schema::Schema;
 
 use crate::Bench;
 
-/// What a component did.
+/// An action of a component.
 pub(crate) enum Happened {
-    /// It sent a message as the publisher of this place.
+    /// A message that it sent as the publisher with this index.
     Sent(usize, SharedMessage),
     Log(Level, String),
     Console(String),
@@ -25,14 +25,14 @@ pub(crate) enum Happened {
     Work(Work),
 }
 
-/// A topic that the component took.
+/// A topic to which the component subscribed.
 pub(crate) struct Taken {
     pub(crate) name: String,
     schema: Option<Schema>,
 }
 
 pub(crate) struct Stage {
-    /// Absent where a loop is alone on the stage.
+    /// `None` if the stage runs only a loop.
     class: Option<Arc<Class>>,
     loops: Vec<Arc<LoopClass>>,
     loop_names: Vec<String>,
@@ -256,7 +256,7 @@ impl Host for Stage {
                 "neither its class nor a loop declares the reference `{name}`"
             )));
         }
-        // One that is not wired has a handle, too.
+        // A reference that is not wired has a handle, too.
         let wired = self.wires.iter().position(|(reference, ..)| reference == name);
         Ok(wired.unwrap_or(usize::from(u16::MAX)) as u32)
     }

@@ -28,7 +28,7 @@ pub(crate) struct GraphArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
 
-    /// Where the picture goes; the ending says the format (`.svg`, `.mmd`, `.dot`), `-` is standard output
+    /// File of the picture; its ending selects the format (`.svg`, `.mmd`, `.dot`), `-` is standard output
     #[arg(short, long, value_name = "PICTURE")]
     pub(crate) output: Option<PathBuf>,
 

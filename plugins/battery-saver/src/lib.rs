@@ -1,29 +1,29 @@
-//! A loop that changes when a robot charges: listing 10.2 of the manual.
+//! A loop that changes the battery level at which a robot charges: listing 10.2 of the manual.
 //!
-//! Batteries last for years where they are never discharged deeply. A robot charges when its battery is as low as the way to the charger allows;
-//! with this loop it learns from each time that this was too low, and charges earlier from then on. The loop knows no robot: it reads and sets
-//! entries of whatever knowledge has them.
+//! Batteries last for years if they are never discharged deeply. A robot charges when its battery is as low as the way
+//! to the charger allows. With this loop it learns from each time that this was too low, and charges earlier from then
+//! on. The loop does not depend on robots: it reads and sets entries of any knowledge that has them.
 
 use saoms_api::{
     Context, Effector, Entries, Entry, Failure, Knowledge, Loop, LoopClass, Properties, Record, Recordable,
     record,
 };
 
-/// What a composite says about the loop.
+/// Properties of the loop.
 #[derive(Debug, Properties)]
 pub struct BatterySaverProperties {
-    /// The battery should never have less than this.
+    /// Minimum battery level that the loop aims for.
     #[property(default = 40.0, range = 0.0..=100.0, unit = "%")]
     floor: f64,
-    /// So much earlier the robot charges after it had less, and so much later after it had far more.
+    /// Step by which the robot charges earlier after a lower level, and later after a far higher level.
     #[property(default = 10.0, range = 1.0..=50.0, unit = "%")]
     step: f64,
 }
 
-/// What the loop adds to the knowledge.
+/// Entry that the loop adds to the knowledge.
 #[derive(Debug, Entries)]
 pub struct Discharge {
-    /// What the battery had at least since it was charged last.
+    /// Lowest battery level since the last charge.
     #[entry(unit = "%")]
     lowest: f64,
 }
@@ -34,7 +34,7 @@ impl Default for Discharge {
     }
 }
 
-/// Learns when a robot has to charge, so that its battery is never discharged deeply.
+/// Learns the battery level at which a robot has to charge, so that its battery is never discharged deeply.
 #[derive(Debug, LoopClass)]
 #[looping(
     name = "saver.BatterySaver",
@@ -51,16 +51,16 @@ pub struct BatterySaver {
     was_in_charge: bool,
 }
 
-/// What the loop finds when the robot begins to charge.
+/// Observation when the robot starts to charge.
 #[derive(Clone, Copy, Debug)]
 pub enum Symptom {
-    /// The battery had less than it should.
+    /// The battery was lower than it should be.
     Deep(f64),
-    /// It had far more.
+    /// The battery was far higher.
     Shallow(f64),
 }
 
-/// At how many percent the robot charges from now on; 0: no earlier than it has to.
+/// Battery level in percent at which the robot charges from now on; 0 for the latest possible moment.
 #[derive(Clone, Copy, Debug)]
 pub struct ChargeAt(f64);
 
@@ -105,7 +105,7 @@ impl Loop for BatterySaver {
         Ok(())
     }
 
-    /// Remembers how low the battery was.
+    /// Records the lowest battery level.
     fn monitor(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         if self.in_charge.get(robot)? {
             return Ok(());
@@ -116,7 +116,7 @@ impl Loop for BatterySaver {
         self.lowest.set(robot, lowest)
     }
 
-    /// Once, when the robot begins to charge: was it too late, or far too early?
+    /// Decides once, when the robot starts to charge, if that was too late, or far too early.
     fn analyze(
         &mut self,
         robot: &mut dyn Knowledge,
@@ -135,7 +135,7 @@ impl Loop for BatterySaver {
         })
     }
 
-    /// Earlier by a step, or later.
+    /// Charges a step earlier, or later.
     fn plan(
         &mut self,
         symptom: Symptom,

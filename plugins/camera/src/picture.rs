@@ -1,24 +1,24 @@
 use saoms_api::{Message, Topic};
 use saoms_components::grid::Block;
 
-/// How bright a block is that no robot can enter.
+/// Brightness of a block that no robot can enter.
 pub(crate) const WALL: u8 = 0;
-/// How bright the floor is.
+/// Brightness of the floor.
 pub(crate) const FLOOR: u8 = 120;
-/// How bright a robot is.
+/// Brightness of a robot.
 pub(crate) const ROBOT: u8 = 255;
 
-/// What the camera of a robot saw: a square of blocks around the robot, seen from above.
+/// A picture of a robot's camera: a square of blocks around the robot, seen from above.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(key = "robot")]
 pub struct Snapshot {
-    /// The robot's number.
+    /// Number of the robot.
     pub robot: u32,
-    /// The block in the middle, where the robot was.
+    /// Block in the middle, the position of the robot.
     pub block: Block,
-    /// How many blocks the picture is wide and high.
+    /// Width and height of the picture, in blocks.
     pub size: u32,
-    /// How bright each block is, row by row from the lowest x and y on.
+    /// Brightness of each block, row by row, starting at the lowest x and y.
     pub pixels: Vec<u8>,
 }
 
@@ -26,7 +26,7 @@ pub struct Snapshot {
 pub const CAMERA: Topic<Snapshot> = Topic::state("CAMERATOPIC");
 
 impl Snapshot {
-    /// Takes a picture that reaches so many blocks in each direction.
+    /// Takes a picture of `reach` blocks in each direction.
     pub(crate) fn take(robot: u32, block: Block, reach: u32, brightness: impl Fn(Block) -> u8) -> Snapshot {
         let size = 2 * reach + 1;
         let at = |pixel: u32| {
@@ -37,7 +37,7 @@ impl Snapshot {
         Snapshot { robot, block, size, pixels }
     }
 
-    /// How many other robots are in the picture. One that was made elsewhere may be any.
+    /// Number of other robots in the picture, which may come from any sender and so have any content.
     pub fn others(&self) -> usize {
         let robots = self.pixels.iter().filter(|pixel| **pixel == ROBOT).count();
         robots.saturating_sub(1)

@@ -3,21 +3,21 @@ use saoms_components::robot::{Robot, RobotProperties};
 
 use crate::picture::{CAMERA, FLOOR, ROBOT, Snapshot, WALL};
 
-/// What a composite says about a robot with a camera.
+/// Properties of a robot with a camera.
 #[derive(Debug, Properties)]
 pub struct CameraRobotProperties {
-    /// What it says about any robot.
+    /// Properties of any robot.
     #[property(flatten)]
     robot: RobotProperties,
-    /// How many blocks the camera sees in each direction.
+    /// Number of blocks that the camera sees in each direction.
     #[property(default = 2, range = 0..=20, unit = "blocks")]
     reach: u32,
-    /// The camera takes a picture in each so many executions.
+    /// Number of executions from one picture to the next.
     #[property(default = 1, range = 1..)]
     every: u64,
 }
 
-/// A robot that brings luggage as any other, and publishes what its camera sees.
+/// A robot that brings luggage as any other, and publishes the pictures of its camera.
 ///
 /// The manual's `Robot999` is one with its number, its charger and its battery set.
 #[derive(Debug, Class)]
@@ -62,7 +62,7 @@ impl Component for CameraRobot {
         self.robot.shutdown(context)
     }
 
-    // The camera remembers nothing: a new build goes on where the robot was.
+    // The camera has no state of its own, so a new build only restores the robot.
     fn save(&mut self) -> Result<Saved, Failure> {
         self.robot.save()
     }
@@ -73,7 +73,7 @@ impl Component for CameraRobot {
 }
 
 impl CameraRobot {
-    /// Put the calls of your camera here: this one shows what the robot knows.
+    /// The place for the calls of a real camera: this one draws the knowledge of the robot.
     fn snapshot(&self) -> Snapshot {
         let robot = self.robot.knowledge();
         Snapshot::take(robot.number, robot.block, self.reach, |block| {

@@ -2,10 +2,10 @@ use saoms_api::{Class, Component, Context, Failure, Properties, Subscription};
 
 use crate::picture::{CAMERA, Snapshot};
 
-/// What a composite says about a viewer.
+/// Properties of a viewer.
 #[derive(Debug, Properties)]
 pub struct ViewerProperties {
-    /// It says something about pictures with at least so many other robots.
+    /// Minimum number of other robots in a picture that the viewer logs.
     #[property(default = 1, range = 0..)]
     others: usize,
 }

@@ -18,7 +18,7 @@ fn a_robot_with_a_camera_works_as_any_robot() {
     let pictures = report["camera"]["pictures"].as_u64();
     assert!(pictures > Some(20), "{report:?}");
     assert!(run.log_of("Viewer").iter().any(|line| line.starts_with("sees 1 other robots from robot 1")));
-    // Its loops are those of the robot, and keep a journal.
+    // Its loops are those of the robot, and write to the journal.
     assert!(run.journal().of("Robot1").of_loop("EventLuggageMS").texts().len() > 2);
 }
 

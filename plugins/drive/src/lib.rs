@@ -1,8 +1,8 @@
 //! The wheels of a robot: hardware that takes several periods for a move, and can fail.
 //!
-//! A robot calls the [`Hardware`] behind its reference `world`, and never waits: `begin` starts an action, `poll` asks in each period how it goes,
-//! `cancel` stops it. [`Drive`] is such hardware. It counts periods where a real one would turn motors, and it hands on to the world what only the
-//! world can tell: whether the next block can be entered, and what becomes of luggage.
+//! A robot calls the [`Hardware`] at its reference `world`, and never waits: `begin` starts an action, `poll` returns
+//! its progress in each period, `cancel` stops it. [`Drive`] is such hardware. It counts periods where a real one would
+//! turn motors. It forwards to the world what only the world can decide: entering the next block, and handling luggage.
 
 mod motor;
 
@@ -12,18 +12,18 @@ use saoms_components::hardware::{Action, ActionKind, Area, Hardware, HardwareRef
 
 use motor::{Motor, Turn};
 
-/// What a composite says about a drive.
+/// Properties of a drive.
 #[derive(Debug, Properties)]
 pub struct DriveProperties {
-    /// How many periods of its robot a move takes.
+    /// Number of the robot's periods that a move takes.
     #[property(default = 3, range = 1..=1000, unit = "periods")]
     move_periods: u32,
-    /// How often a move jams, so that the robot has to try again.
+    /// Probability that a move jams, so that the robot has to try again.
     #[property(default = 0.0, range = 0.0..=1.0, unit = "jams per move")]
     jams: f64,
-    /// The moves that jam in any case, counted from 1.
+    /// Numbers of the moves that always jam, counted from 1.
     jams_at: Vec<u32>,
-    /// After so many moves it is worn out, and every further one fails; by default never.
+    /// Number of moves after which it is worn out, so that every further move fails; by default never.
     wears_out_after: Option<u32>,
 }
 
@@ -38,12 +38,12 @@ pub struct DriveProperties {
 pub struct Drive {
     properties: DriveProperties,
     world: HardwareReference,
-    /// Whether there is a world; a drive without one has the area for itself, 11 x 11 blocks.
+    /// True if there is a world. Without one, the drive has an area of 11 x 11 blocks for itself.
     has_world: bool,
     robot: Option<u32>,
     block: Block,
     motor: Motor,
-    /// What the world is busy with for the robot.
+    /// The robot's action that the world is running.
     in_world: Option<Action>,
 }
 
@@ -71,7 +71,7 @@ impl Component for Drive {
 }
 
 impl DriveProperties {
-    /// Whether the move of this number jams.
+    /// True if the move with this number jams.
     fn jams(&self, number: u32, chance: &mut Chance) -> bool {
         let by_chance = chance.unit() < self.jams;
         by_chance || self.jams_at.contains(&number) || self.wears_out_after.is_some_and(|last| number > last)
@@ -79,7 +79,7 @@ impl DriveProperties {
 }
 
 impl Drive {
-    /// Has the world do what a robot's body does there.
+    /// Starts the action in the world.
     fn begin_in_world(
         &mut self,
         context: &mut Context<'_>,
@@ -101,7 +101,7 @@ impl Drive {
         }
     }
 
-    /// Ends everything that the motor and the world do.
+    /// Stops the motor and the action in the world.
     fn stop(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
         self.motor.stop();
         if self.in_world.take().is_some() {
@@ -151,7 +151,7 @@ impl Hardware for Drive {
                 context.warn(format_args!("jams in move {number}, from {} to {}", self.block, action.block));
                 return Ok(Progress::Failed);
             }
-            // The robot is on the edge of the block: the world says whether it gets in.
+            // The robot is at the edge of the block: the world decides if it can enter.
             Turn::Through(action) => return self.begin_in_world(context, robot, action),
             Turn::Rests => {}
         }
@@ -173,7 +173,7 @@ impl Hardware for Drive {
     fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
         self.motor.stop();
         self.in_world = None;
-        // From now on the world lets others reach the robot's block.
+        // From now on other robots can reach the robot's block.
         Ok(if self.has_world { self.world.retire(context, robot)? } else { self.block })
     }
 }

@@ -4,34 +4,34 @@ use saoms_components::hardware::Action;
 #[derive(Debug, Default)]
 pub(crate) struct Motor {
     running: Option<Running>,
-    /// How many moves it started.
+    /// Number of moves that it started.
     moves: u32,
 }
 
 #[derive(Debug)]
 struct Running {
     action: Action,
-    /// For how many periods it still turns.
+    /// Number of periods that are left.
     left: u32,
-    /// When so many are left, it jams.
+    /// Number of periods left at which it jams.
     jams_at: Option<u32>,
 }
 
-/// What became of a motor in a period.
+/// State of a motor after a period.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Turn {
-    /// It does nothing.
+    /// The motor is at rest.
     Rests,
-    /// It turns.
+    /// The motor turns.
     Goes,
-    /// It jammed in this move, the one of this number.
+    /// The motor jammed in this move, which has this number.
     Jams(Action, u32),
-    /// It turned for as long as the move takes.
+    /// The move is done.
     Through(Action),
 }
 
 impl Motor {
-    /// Starts a move that takes so many periods.
+    /// Starts a move that takes `periods` periods.
     pub(crate) fn start(&mut self, action: Action, periods: u32, jams: impl FnOnce(u32) -> bool) {
         self.moves = self.moves.saturating_add(1);
         let jams_at = jams(self.moves).then_some(periods / 2);
@@ -50,7 +50,7 @@ impl Motor {
         if jams { Turn::Jams(action, self.moves) } else { Turn::Through(action) }
     }
 
-    /// Stops where it is.
+    /// Stops the motor.
     pub(crate) fn stop(&mut self) {
         self.running = None;
     }

@@ -19,7 +19,7 @@ fn count(run: &Run, section: &str, name: &str) -> u64 {
 
 #[test]
 fn no_luggage_is_lost_whenever_the_wheels_wear_out() {
-    // On the way to collect, at the luggage, with it on board, and just before the end.
+    // On the way to the luggage, at the luggage, carrying it, and just before the end.
     for wears_out_after in [0, 1, 3, 4, 6, 8, 9] {
         let run = run(wears_out_after, 0.0, 1);
         assert_eq!(count(&run, "luggage", "delivered"), 2, "after {wears_out_after}: {}", run.log());

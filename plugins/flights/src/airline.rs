@@ -7,20 +7,20 @@ use saoms_components::grid::Block;
 
 use crate::messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
 
-/// What a composite says about an airline.
+/// Properties of an airline.
 #[derive(Debug, Properties)]
 pub struct AirlineProperties {
-    /// The number of its flight.
+    /// Number of its flight.
     #[property(unique = "flight")]
     flight: u32,
-    /// How many pieces of luggage the flight has.
+    /// Number of pieces of luggage of the flight.
     #[property(range = 1..=500)]
     pieces: u32,
-    /// Where they wait: a block such as `(1,1)`.
+    /// Block where the luggage waits, such as `(1,1)`.
     from: String,
-    /// Where the airplane is.
+    /// Block of the airplane.
     to: String,
-    /// When the airline says so, from its own start on.
+    /// Time of the announcement, since the start of the airline.
     #[property(default = "0s", range = "0s"..)]
     at: Duration,
 }
@@ -31,7 +31,7 @@ pub struct AirlineProperties {
 pub struct Airline {
     flight: Flight,
     at: Duration,
-    /// When its first execution was due.
+    /// Time of its first execution.
     start: Option<Time>,
     announced: bool,
     flights: Publisher<Flight>,

@@ -1,7 +1,6 @@
-//! A master of the environment that also knows flights: listing 6.13 of the manual.
+//! A master of the environment that also handles flights: listing 6.13 of the manual.
 //!
-//! [`MasterEnvironment`] wraps the master that ships, and does everything that it does. Beside that it hears of [`Flight`]s on a topic of its own,
-//! turns each into requests for luggage, and says on another topic how far it is.
+//! [`MasterEnvironment`] wraps the master that ships, and does everything that it does. In addition it subscribes to [`Flight`]s on a topic of its own, turns each into requests for luggage, and publishes their progress on another topic.
 
 mod airline;
 mod master;

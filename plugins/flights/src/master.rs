@@ -5,15 +5,15 @@ use saoms_components::messages::{ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, E
 use crate::messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
 use crate::open::Flights;
 
-/// What a composite says about the master.
+/// Properties of the master.
 #[derive(Debug, Properties)]
 pub struct MasterEnvironmentProperties {
-    /// The luggage of flights is numbered from this number on; other luggage has to have lower ones.
+    /// First number of the luggage of flights; other luggage must have lower numbers.
     #[property(default = 1000, range = 1..)]
     first_luggage: u32,
 }
 
-/// Sorts the events of the environment, and has the luggage of flights brought.
+/// Distributes the events of the environment, and requests the luggage of flights.
 #[derive(Debug, Class)]
 #[class(
     name = "flights.MasterEnvironment",
@@ -65,7 +65,7 @@ impl Component for MasterEnvironment {
                         flight.number, flight.pieces
                     ));
                     context.send(&self.states, state)?;
-                    // As luggage from anybody: the master hears this itself, and checks it.
+                    // Like luggage from any other sender, the master receives and checks this itself.
                     context
                         .send(&self.events, EnvironmentEvent { luggage, ..EnvironmentEvent::default() })?;
                 }

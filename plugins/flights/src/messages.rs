@@ -1,35 +1,35 @@
 use saoms_api::{Message, Topic};
 use saoms_components::grid::Block;
 
-/// A flight whose luggage has to be brought to the airplane.
+/// A flight, whose luggage has to be brought to the airplane.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct Flight {
-    /// The flight's number.
+    /// Number of the flight.
     pub number: u32,
-    /// How many pieces of luggage there are.
+    /// Number of pieces of luggage.
     pub pieces: u32,
-    /// Where they wait.
+    /// Block where the luggage waits.
     pub from: Block,
-    /// Where the airplane is.
+    /// Block of the airplane.
     pub to: Block,
 }
 
-/// How far the luggage of a flight is.
+/// Progress of the luggage of a flight.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(key = "number")]
 pub struct FlightState {
-    /// The flight's number.
+    /// Number of the flight.
     pub number: u32,
-    /// How many pieces are not there yet.
+    /// Number of pieces that are not at the airplane yet.
     pub open: u32,
-    /// How many are on board.
+    /// Number of pieces at the airplane.
     pub loaded: u32,
-    /// How many nobody can bring.
+    /// Number of pieces that no robot can bring.
     pub lost: u32,
 }
 
 /// Flights, as airlines announce them.
 pub const FLIGHT: Topic<Flight> = Topic::event("FLIGHTTOPIC");
 
-/// How far each flight is.
+/// Progress of each flight, the newest message of each.
 pub const FLIGHT_STATE: Topic<FlightState> = Topic::state("FLIGHTSTATETOPIC");

@@ -4,13 +4,13 @@ use saoms_components::messages::{EventLuggage, LuggageStage};
 
 use crate::messages::{Flight, FlightState};
 
-/// The most pieces that a flight has.
+/// Maximum number of pieces of a flight.
 const MOST: u32 = 500;
 
-/// The flights, and which luggage belongs to which.
+/// Flights and their luggage.
 #[derive(Debug)]
 pub(crate) struct Flights {
-    /// The number of the next piece.
+    /// Number of the next piece.
     next: u32,
     states: BTreeMap<u32, FlightState>,
     /// The flight of each piece that is open.
@@ -18,12 +18,12 @@ pub(crate) struct Flights {
 }
 
 impl Flights {
-    /// None; their luggage is numbered from this number on.
+    /// No flights; their luggage is numbered from `first` on.
     pub(crate) fn new(first: u32) -> Flights {
         Flights { next: first, states: BTreeMap::new(), pieces: BTreeMap::new() }
     }
 
-    /// Takes in a flight: its state, and the requests for its luggage.
+    /// Adds a flight; returns its state, and the requests for its luggage.
     pub(crate) fn add(&mut self, flight: &Flight) -> Result<(FlightState, Vec<EventLuggage>), String> {
         let Flight { number, pieces, from, to } = *flight;
         if self.states.contains_key(&number) {
@@ -40,7 +40,7 @@ impl Flights {
         Ok((state, numbers.map(|luggage| EventLuggage::request(luggage, from, to)).collect()))
     }
 
-    /// Takes in what became of luggage: the new state of its flight, if that changed.
+    /// Handles a message about luggage; returns the new state of its flight, if that changed.
     pub(crate) fn hear(&mut self, event: &EventLuggage) -> Option<FlightState> {
         let is_loaded = match event.stage {
             LuggageStage::Delivered => true,

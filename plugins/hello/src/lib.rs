@@ -2,15 +2,15 @@
 
 use saoms_api::{Class, Component, Context, Failure, Properties};
 
-/// What a composite says about a greeter.
+/// Properties of a greeter.
 #[derive(Debug, Properties)]
 pub struct GreeterProperties {
-    /// Whom to greet.
+    /// Name to greet.
     #[property(default = "world")]
     name: String,
 }
 
-/// Greets somebody in each period.
+/// Logs a greeting in each period.
 #[derive(Debug, Class)]
 #[class(name = "hello.Greeter", periodic)]
 pub struct Greeter {

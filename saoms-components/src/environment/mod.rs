@@ -1,4 +1,4 @@
-//! What happens outside the fleet, as a scenario tells it.
+//! Events outside the fleet, played from a scenario.
 
 mod outside;
 mod player;
@@ -15,31 +15,32 @@ use saoms_api::{
 use crate::console::Timestamp;
 use crate::grid::Map;
 use crate::hardware::Area;
-use crate::intake::Intake;
 use crate::messages::{
     AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage,
     ROBOT_LIST, RobotList,
 };
+use crate::validation::MessageValidator;
 
 use player::Player;
 
-pub use player::Event;
-pub use scenario::{Drawn, Happening, Line, Next, Scenario, Spot, Written, next};
+pub use player::ScenarioEvent;
+pub use scenario::{Continuation, EventSpec, Line, RandomRange, Scenario, Spanned, Spot, continuations};
 
-/// What a composite says about the environment.
+/// Properties of an environment.
 #[derive(Clone, Debug, Properties)]
 pub struct EnvironmentProperties {
-    /// What happens and when, counted from the environment's first execution, one event a line: `at 6s luggage (3,1) to (3,10)`,
-    /// `then 500ms luggage (10,8) to (1,8)` (after the line before), `at 3s landing 4`, `at 3s takeoff 4`, `at 9s breakdown Robot002`; again
-    /// and again: `from 10s every 5s 100 times luggage random to random`. Two values with `..` between them are the ends of a range from
-    /// which one is drawn: `every 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`. `;` ends a line, too, and `#` starts a comment. Without it
-    /// nothing happens. A long one has its place in a file: `file="scenario.txt"`.
+    /// Events and their times since the environment's first execution, one event a line: `at 6s luggage (3,1) to
+    /// (3,10)`, `then 500ms luggage (10,8) to (1,8)` (after the line before), `at 3s landing 4`, `at 3s takeoff 4`, `at
+    /// 9s breakdown Robot002`; repeated events: `from 10s every 5s 100 times luggage random to random`. Two values with
+    /// `..` between them are a range from which a value is drawn: `every 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`.
+    /// `;` ends a line, too, and `#` starts a comment. Without a scenario nothing happens. A long scenario can be in a
+    /// file: `file="scenario.txt"`.
     pub(crate) scenario: Vec<String>,
 }
 
-/// Plays a scenario: publishes its events at their times. What is left to chance follows from the seed of the run.
+/// Plays a scenario: publishes its events at their times. Random values follow from the seed of the run.
 ///
-/// It sees the run as done when the scenario is over, and all its luggage is delivered or given up.
+/// Votes that the run is done when the scenario is over and all its luggage is delivered or given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.Environment",
@@ -52,11 +53,11 @@ pub struct Environment {
     scenario: Scenario,
     playing: Option<(Time, Player)>,
     played: usize,
-    /// Luggage that is published and not delivered yet.
+    /// Luggage that is published, but not delivered yet.
     open: BTreeSet<u32>,
     luggage: u32,
     map: Option<Map>,
-    intake: Intake,
+    validator: MessageValidator,
     has_world: bool,
     events: Publisher<EnvironmentEvent>,
     robots: Subscription<RobotList>,
@@ -76,7 +77,7 @@ impl Component for Environment {
             open: BTreeSet::new(),
             luggage: 0,
             map: None,
-            intake: Intake::default(),
+            validator: MessageValidator::default(),
             has_world: false,
             events: Publisher::default(),
             robots: Subscription::default(),
@@ -127,21 +128,21 @@ impl Component for Environment {
 impl Environment {
     fn listen(&mut self, context: &mut Context<'_>) {
         for (header, area) in context.receive(&self.area).with_headers() {
-            if self.intake.lets_in(area, header, None, context) {
-                // A world counts luggage itself.
+            if self.validator.accepts(area, header, None, context) {
+                // A world counts the luggage itself.
                 self.has_world = true;
                 self.map = area.clone().into();
             }
         }
-        // Who speaks for which robot.
+        // The components that speak for each robot.
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            self.intake.lets_in(robot, header, self.map.as_ref(), context);
+            self.validator.accepts(robot, header, self.map.as_ref(), context);
         }
         for (header, response) in context.receive(&self.responses).with_headers() {
-            if !self.intake.lets_in(response, header, self.map.as_ref(), context) {
+            if !self.validator.accepts(response, header, self.map.as_ref(), context) {
                 continue;
             }
-            // What is given up stays open in the report, but nobody waits for it.
+            // Luggage that is given up counts as open in the report, but nobody waits for it.
             let counted = match response.stage {
                 LuggageStage::Delivered => -1,
                 LuggageStage::GivenUp => 0,
@@ -153,7 +154,7 @@ impl Environment {
         }
     }
 
-    /// Starts to play, once the area is known where the scenario needs it.
+    /// Starts the scenario, once the area is known if the scenario needs it.
     fn begin(&self, context: &mut Context<'_>) -> Option<(Time, Player)> {
         if self.scenario.needs_area() && self.map.is_none() {
             if context.execution() == 0 {
@@ -164,7 +165,7 @@ impl Environment {
         Some((context.due(), Player::new(&self.scenario, context.chance())))
     }
 
-    fn publish(&mut self, context: &mut Context<'_>, event: Option<Event>) -> Result<(), Failure> {
+    fn publish(&mut self, context: &mut Context<'_>, event: Option<ScenarioEvent>) -> Result<(), Failure> {
         self.played += 1;
         let (test, now) = (self.played, Timestamp::now(context));
         match event {
@@ -176,7 +177,7 @@ impl Environment {
                 );
                 Ok(())
             }
-            Some(Event::Luggage { from, to }) => {
+            Some(ScenarioEvent::Luggage { from, to }) => {
                 self.luggage += 1;
                 let request = EventLuggage::request(self.luggage, from, to);
                 self.open.insert(self.luggage);
@@ -194,7 +195,7 @@ impl Environment {
                 ));
                 context.send(&self.events, request.into())
             }
-            Some(Event::Exceptional(event)) => {
+            Some(ScenarioEvent::Exceptional(event)) => {
                 context.console(format_args!("Environment: Test{test}: New event: {event}."));
                 context.info(format_args!("{event}"));
                 let pieces = event.pieces;
@@ -204,8 +205,8 @@ impl Environment {
                 });
                 context.send(&self.events, event.into())
             }
-            Some(Event::End) => Ok(()),
-            Some(Event::Breakdown(robot)) => {
+            Some(ScenarioEvent::End) => Ok(()),
+            Some(ScenarioEvent::Breakdown(robot)) => {
                 let fault = Fault::breakdown(robot);
                 context.console(format_args!("Environment: Test{test}: New event: {fault}."));
                 context.info(format_args!("{fault}"));

@@ -6,7 +6,7 @@ use saoms_api::{Chance, Time};
 
 use super::player::draw;
 use super::scenario::line::{read_outside, split};
-use super::{Event, Happening, Line, Spot};
+use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
 use crate::text::{TextFault, bytes};
 
@@ -51,7 +51,7 @@ impl Reader {
                 let message = format!("found more than {MOST} events in a line from outside");
                 return Err(TextFault::new(line.bytes, message));
             }
-            let event = draw(&line.happening, &mut chance, None).ok_or_else(|| {
+            let event = draw(&line.event, &mut chance, None).ok_or_else(|| {
                 TextFault::new(line.bytes.clone(), "found no two blocks for luggage where the line wants it")
             })?;
             let (message, text) = self.message(&event);
@@ -66,29 +66,31 @@ impl Reader {
     }
 
     /// The message of an event, and the scenario line that says it, without its time.
-    fn message(&mut self, event: &Event) -> (EnvironmentEvent, String) {
+    fn message(&mut self, event: &ScenarioEvent) -> (EnvironmentEvent, String) {
         match event {
-            Event::Luggage { from, to } => {
+            ScenarioEvent::Luggage { from, to } => {
                 let request = EventLuggage::request(self.luggage, *from, *to);
                 self.luggage = self.luggage.saturating_add(1);
                 (request.into(), format!("luggage {from} to {to}"))
             }
-            Event::Exceptional(event) => {
+            ScenarioEvent::Exceptional(event) => {
                 let kind = match event.kind {
                     ExceptionalKind::Landing => "landing",
                     ExceptionalKind::Takeoff => "takeoff",
                 };
                 (event.clone().into(), format!("{kind} {}", event.pieces))
             }
-            Event::Breakdown(robot) => (Fault::breakdown(*robot).into(), format!("breakdown {robot}")),
-            Event::End => (EnvironmentEvent::default(), "end".to_owned()),
+            ScenarioEvent::Breakdown(robot) => {
+                (Fault::breakdown(*robot).into(), format!("breakdown {robot}"))
+            }
+            ScenarioEvent::End => (EnvironmentEvent::default(), "end".to_owned()),
         }
     }
 }
 
 /// Refuses `random`, for which the area has to be known.
 fn place_is_known(line: &Line) -> Result<(), TextFault> {
-    let Happening::Luggage { from, to } = &line.happening else { return Ok(()) };
+    let EventSpec::Luggage { from, to } = &line.event else { return Ok(()) };
     match [from, to].into_iter().find(|spot| spot.value == Spot::Anywhere) {
         None => Ok(()),
         Some(spot) => {

@@ -4,37 +4,37 @@ use std::time::Duration;
 
 use saoms_api::Chance;
 
-use super::scenario::{Happening, Line, Scenario};
+use super::scenario::{EventSpec, Line, Scenario};
 use crate::grid::{Block, Map};
 use crate::messages::{ExceptionalEvent, ExceptionalKind};
 
-/// Something that happens.
+/// An event of a scenario with its random values drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// Luggage waits to be brought somewhere.
+pub enum ScenarioEvent {
+    /// New luggage that waits for a robot.
     Luggage {
-        /// Where it is.
+        /// Block where the luggage is.
         from: Block,
-        /// Where it has to go.
+        /// Destination of the luggage.
         to: Block,
     },
     /// A landing or a take-off.
     Exceptional(ExceptionalEvent),
-    /// The robot of this number breaks down.
+    /// The robot with this number breaks down.
     Breakdown(u32),
-    /// Nothing: the scenario lasts until then.
+    /// No event: the scenario lasts until this time.
     End,
 }
 
-/// Plays a scenario: gives its events at their times, what is left to chance drawn.
+/// Player of a scenario: returns its events at their times and draws their random values.
 ///
-/// Each line has a source of chance of its own, so that another line more or less changes nothing in it.
+/// Each line has a random generator of its own, so that adding or removing a line does not change the others.
 #[derive(Debug)]
 pub(super) struct Player {
     lines: Vec<(Line, Chance)>,
-    /// How many events each line had.
+    /// Number of events that each line has had.
     played: Vec<u64>,
-    /// The time of the next event of each line that goes on.
+    /// Time of the next event of each active line.
     due: BinaryHeap<Reverse<(Duration, usize)>>,
 }
 
@@ -51,18 +51,18 @@ impl Player {
         player
     }
 
-    /// Whether all has happened.
+    /// True if all events have happened.
     pub(super) fn is_over(&self) -> bool {
         self.due.is_empty()
     }
 
-    /// The next event that is due at this time; the inner `None` is one for which there is no block in the area.
-    pub(super) fn next(&mut self, now: Duration, area: Option<&Map>) -> Option<Option<Event>> {
+    /// The next event that is due at this time. The inner `None` is an event for which the area has no free block.
+    pub(super) fn next(&mut self, now: Duration, area: Option<&Map>) -> Option<Option<ScenarioEvent>> {
         let Reverse((at, place)) = self.due.peek().copied().filter(|Reverse((at, _))| *at <= now)?;
         self.due.pop();
         self.played[place] += 1;
         let (line, chance) = &mut self.lines[place];
-        let event = draw(&line.happening, chance, area);
+        let event = draw(&line.event, chance, area);
         let is_last = line.times.is_some_and(|times| self.played[place] >= times);
         let next = at.saturating_add(line.every.draw(chance));
         if is_last || line.until.is_some_and(|until| next > until) {
@@ -73,7 +73,7 @@ impl Player {
         Some(event)
     }
 
-    /// Lets a line begin; its time counts from here. One that is over before its first event lets the next begin.
+    /// Starts a line, whose time counts from `from`. If it ends before its first event, the next line starts.
     fn begin(&mut self, mut place: usize, mut from: Duration) {
         loop {
             let (line, chance) = &mut self.lines[place];
@@ -89,7 +89,7 @@ impl Player {
         }
     }
 
-    /// The last event of a line was then.
+    /// Ends a line whose last event was at `at`.
     fn end(&mut self, place: usize, at: Duration) {
         if self.follows(place + 1) {
             self.begin(place + 1, at);
@@ -101,16 +101,16 @@ impl Player {
     }
 }
 
-pub(super) fn draw(happening: &Happening, chance: &mut Chance, area: Option<&Map>) -> Option<Event> {
-    let exceptional = |kind, pieces| Some(Event::Exceptional(ExceptionalEvent { kind, pieces }));
-    match happening {
-        Happening::Luggage { from, to } => {
+pub(super) fn draw(event: &EventSpec, chance: &mut Chance, area: Option<&Map>) -> Option<ScenarioEvent> {
+    let exceptional = |kind, pieces| Some(ScenarioEvent::Exceptional(ExceptionalEvent { kind, pieces }));
+    match event {
+        EventSpec::Luggage { from, to } => {
             let from = from.value.draw(chance, area, to.value.block())?;
-            Some(Event::Luggage { from, to: to.value.draw(chance, area, Some(from))? })
+            Some(ScenarioEvent::Luggage { from, to: to.value.draw(chance, area, Some(from))? })
         }
-        Happening::Landing(pieces) => exceptional(ExceptionalKind::Landing, pieces.draw(chance)),
-        Happening::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),
-        Happening::Breakdown(robot) => Some(Event::Breakdown(robot.value.draw(chance))),
-        Happening::End => Some(Event::End),
+        EventSpec::Landing(pieces) => exceptional(ExceptionalKind::Landing, pieces.draw(chance)),
+        EventSpec::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),
+        EventSpec::Breakdown(robot) => Some(ScenarioEvent::Breakdown(robot.value.draw(chance))),
+        EventSpec::End => Some(ScenarioEvent::End),
     }
 }

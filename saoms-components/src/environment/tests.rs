@@ -3,21 +3,21 @@ use std::time::Duration;
 use proptest::prelude::*;
 use saoms_api::Chance;
 
-use super::player::{Event, Player};
-use super::scenario::{Next, Scenario, next};
+use super::player::{Player, ScenarioEvent};
+use super::scenario::{Continuation, Scenario, continuations};
 use crate::grid::{Block, Map};
 use crate::messages::{ExceptionalEvent, ExceptionalKind};
 
-fn luggage(from: (i32, i32), to: (i32, i32)) -> Event {
-    Event::Luggage { from: Block::new(from.0, from.1), to: Block::new(to.0, to.1) }
+fn luggage(from: (i32, i32), to: (i32, i32)) -> ScenarioEvent {
+    ScenarioEvent::Luggage { from: Block::new(from.0, from.1), to: Block::new(to.0, to.1) }
 }
 
-fn exceptional(kind: ExceptionalKind, pieces: u32) -> Event {
-    Event::Exceptional(ExceptionalEvent { kind, pieces })
+fn exceptional(kind: ExceptionalKind, pieces: u32) -> ScenarioEvent {
+    ScenarioEvent::Exceptional(ExceptionalEvent { kind, pieces })
 }
 
-/// What happens up to a time, looked at every 100 ms.
-fn played(text: &str, seed: u64, area: Option<&Map>, until: u64) -> Vec<(u64, Event)> {
+/// Events up to a time, polled every 100 ms.
+fn played(text: &str, seed: u64, area: Option<&Map>, until: u64) -> Vec<(u64, ScenarioEvent)> {
     let scenario = Scenario::read(&[text]).unwrap_or_else(|findings| panic!("{findings:?}"));
     let mut player = Player::new(&scenario, &mut Chance::new(seed));
     let mut events = Vec::new();
@@ -47,9 +47,9 @@ fn a_scenario_happens_in_the_order_of_its_times() {
         (6000, luggage((3, 1), (3, 10))),
         (7000, luggage((1, 5), (10, 5))),
         (7500, luggage((10, 8), (1, 8))),
-        (9000, Event::Breakdown(2)),
-        (9000, Event::Breakdown(3)),
-        (9500, Event::End),
+        (9000, ScenarioEvent::Breakdown(2)),
+        (9000, ScenarioEvent::Breakdown(3)),
+        (9500, ScenarioEvent::End),
     ];
     assert_eq!(played(text, 1, None, 10_000), expected);
     assert!(Scenario::read::<&str>(&[]).unwrap().lines().is_empty());
@@ -86,19 +86,21 @@ fn chance_draws_within_the_ends_and_by_the_seed_alone() {
     let mut pieces = 0;
     for (at, event) in &events {
         match event {
-            Event::Luggage { from, to } => {
+            ScenarioEvent::Luggage { from, to } => {
                 pieces += 1;
                 assert!(area.is_free(*from) && area.is_free(*to) && from != to && to.y <= 1, "{event:?}");
                 assert!((1000..=2100).contains(&(at - last)) || (0..=400).contains(&(at - last)), "{at}");
                 last = *at;
             }
-            Event::End => unreachable!("no line says so"),
-            Event::Breakdown(robot) => assert!((1..=3).contains(robot) && (30_000..=60_100).contains(at)),
-            Event::Exceptional(event) => assert!((2..=8).contains(&event.pieces)),
+            ScenarioEvent::End => unreachable!("no line says so"),
+            ScenarioEvent::Breakdown(robot) => {
+                assert!((1..=3).contains(robot) && (30_000..=60_100).contains(at))
+            }
+            ScenarioEvent::Exceptional(event) => assert!((2..=8).contains(&event.pieces)),
         }
     }
     assert_eq!((pieces, events.len()), (200, 202));
-    // Another line changes nothing in the ones before it.
+    // Another line does not change the ones before it.
     let more = played(&format!("{text}\nat 1s landing 1..9"), 7, Some(&area), 90_000);
     assert!(events.iter().all(|event| more.contains(event)));
 }
@@ -200,7 +202,7 @@ proptest! {
     }
 }
 
-/// What scenarios are made of, and what they are not.
+/// Words of scenarios, and words that are none.
 fn word() -> impl Strategy<Value = String> {
     let known = [
         "at ",
@@ -256,7 +258,7 @@ fn the_examples_of_the_documentation_are_scenarios() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whoever takes what is offered until nothing is writes a line that can be read.
+    /// Following the offered continuations until there are none yields a line that can be read.
     #[test]
     fn what_can_follow_leads_to_lines_that_can_be_read(
         choices in prop::collection::vec(any::<prop::sample::Index>(), 16),
@@ -264,21 +266,21 @@ proptest! {
     ) {
         let mut line = String::new();
         for (choice, ranges) in choices.iter().zip(ranges) {
-            let all = next(&line);
+            let all = continuations(&line);
             if all.is_empty() {
                 break;
             }
             let one = all[choice.index(all.len())];
             let until = line.ends_with("until ");
             let value = match one {
-                Next::Word(word) => word,
-                Next::Time if until => "60s",
-                Next::Time => if ranges { "2s..8 s" } else { "500" },
-                Next::Times => "3 times",
-                Next::Pieces => if ranges { "2..8" } else { "4" },
-                Next::Place if line.ends_with("to ") => "random",
-                Next::Place => if ranges { "(1,0)..(10,10)" } else { "(3, 1)" },
-                Next::Robot => if ranges { "1..3" } else { "Robot002" },
+                Continuation::Word(word) => word,
+                Continuation::Time if until => "60s",
+                Continuation::Time => if ranges { "2s..8 s" } else { "500" },
+                Continuation::Times => "3 times",
+                Continuation::Pieces => if ranges { "2..8" } else { "4" },
+                Continuation::Place if line.ends_with("to ") => "random",
+                Continuation::Place => if ranges { "(1,0)..(10,10)" } else { "(3, 1)" },
+                Continuation::Robot => if ranges { "1..3" } else { "Robot002" },
             };
             line.push_str(value);
             line.push(' ');
@@ -290,25 +292,28 @@ proptest! {
 
 #[test]
 fn what_can_follow_is_what_the_grammar_says() {
-    let words = |line: &str| -> Vec<Next> { next(line) };
-    assert_eq!(words(""), ["at", "from", "then"].map(Next::Word));
+    let words = |line: &str| -> Vec<Continuation> { continuations(line) };
+    assert_eq!(words(""), ["at", "from", "then"].map(Continuation::Word));
     for (line, expected) in [
-        ("at ", Next::Time),
-        ("at 2s..", Next::Time),
-        ("from 1s every ", Next::Time),
-        ("from 1 s ", Next::Word("every")),
-        ("at 1s 3 ", Next::Word("times")),
-        ("at 1s luggage ", Next::Place),
-        ("at 1s luggage (1, 2) ", Next::Word("to")),
-        ("at 1s luggage (1,2)..(3,4) to random..", Next::Place),
-        ("at 1s breakdown ", Next::Robot),
-        ("then 1s every 2s 3 times takeoff 2..", Next::Pieces),
+        ("at ", Continuation::Time),
+        ("at 2s..", Continuation::Time),
+        ("from 1s every ", Continuation::Time),
+        ("from 1 s ", Continuation::Word("every")),
+        ("at 1s 3 ", Continuation::Word("times")),
+        ("at 1s luggage ", Continuation::Place),
+        ("at 1s luggage (1, 2) ", Continuation::Word("to")),
+        ("at 1s luggage (1,2)..(3,4) to random..", Continuation::Place),
+        ("at 1s breakdown ", Continuation::Robot),
+        ("then 1s every 2s 3 times takeoff 2..", Continuation::Pieces),
     ] {
         assert_eq!(words(line), [expected], "{line}");
     }
-    assert!(words("from 1s every 2s ").contains(&Next::Word("until")));
-    assert!(!words("at 1s ").contains(&Next::Word("until")) && words("at 1s ").contains(&Next::Times));
-    assert!(!words("at 1s 3 times ").contains(&Next::Times));
+    assert!(words("from 1s every 2s ").contains(&Continuation::Word("until")));
+    assert!(
+        !words("at 1s ").contains(&Continuation::Word("until"))
+            && words("at 1s ").contains(&Continuation::Times)
+    );
+    assert!(!words("at 1s 3 times ").contains(&Continuation::Times));
     for line in ["at 1s end ", "nonsense ", "at 1s landing 4 ", "at 1s nonsense "] {
         assert_eq!(words(line), [], "{line}");
     }

@@ -3,7 +3,7 @@ use std::str::FromStr;
 
 use saoms_api::{Field, Value};
 
-/// A block of the area: robots move from one to the next, and luggage lies on one.
+/// A block of the area. Robots move from block to block, and luggage lies on blocks.
 ///
 /// ```
 /// use saoms_components::grid::Block;
@@ -27,18 +27,18 @@ impl Block {
         Block { x, y }
     }
 
-    /// How many moves lead from here to there where nothing is in the way.
+    /// Number of moves to another block if nothing is in the way.
     pub const fn distance(self, other: Block) -> u32 {
         self.x.abs_diff(other.x).saturating_add(self.y.abs_diff(other.y))
     }
 
-    /// The square of the straight-line distance, which orders as the distance does and is exact.
+    /// Square of the straight-line distance. It has the same order as the distance and is exact.
     pub fn straight_squared(self, other: Block) -> u128 {
         let (x, y) = (u128::from(self.x.abs_diff(other.x)), u128::from(self.y.abs_diff(other.y)));
         x * x + y * y
     }
 
-    /// The four blocks beside this one: right, left, up, down.
+    /// The four adjacent blocks: right, left, up, down.
     pub const fn neighbours(self) -> [Block; 4] {
         let Block { x, y } = self;
         [
@@ -49,12 +49,12 @@ impl Block {
         ]
     }
 
-    /// The next block on the way there, first along x, then along y.
+    /// The next block on the way to `to`, first along x, then along y.
     pub const fn step_x_first(self, to: Block) -> Block {
         if self.x != to.x { Block { x: toward(self.x, to.x), y: self.y } } else { self.step_y_first(to) }
     }
 
-    /// The next block on the way there, first along y, then along x.
+    /// The next block on the way to `to`, first along y, then along x.
     pub const fn step_y_first(self, to: Block) -> Block {
         if self.y != to.y {
             Block { x: self.x, y: toward(self.y, to.y) }
@@ -90,7 +90,7 @@ impl fmt::Display for Block {
 impl FromStr for Block {
     type Err = String;
 
-    /// Reads `(3,10)`; blanks do not count.
+    /// Parses `(3,10)`; blanks are ignored.
     fn from_str(text: &str) -> Result<Block, String> {
         let expected = || format!("found `{}`, expected a block such as (3,10)", text.trim());
         let inner =

@@ -1,54 +1,55 @@
 use super::{Block, Map};
 
-/// The cost of a block that cannot be reached.
+/// Cost of a block that cannot be reached.
 pub const UNREACHABLE: u32 = u32::MAX;
 
-/// What a move costs in the direction of its lane.
+/// Cost of a move in the direction of its lane.
 pub const MOVE: u32 = 4;
 
-/// What a move costs against the direction of its lane.
+/// Cost of a move against the direction of its lane.
 const AGAINST: u32 = 5;
 
-/// What a move to a block that is better left alone costs.
+/// Cost of a move to a block that robots should avoid.
 const COSTLY: u32 = 4 * MOVE - 1;
 
-/// A ring of lists that holds all costs from the present one to the dearest move more.
+/// Number of buckets in the ring: costs in use differ at most by the most expensive move.
 const RING: usize = COSTLY as usize + 1;
 
-/// What it costs to go from each block of a map to one block, by Dijkstra's search with Dial's buckets (1969).
+/// Costs of the ways from all blocks of a map to one block, found by Dijkstra's algorithm with Dial's buckets (1969).
 ///
-/// Rows and columns are lanes, one to one side, the next to the other: moving against them costs a little more, so that of ways that are as
-/// short robots choose those where fewer come towards them. Such lanes are the highways of Cohen, Uras and Koenig ("Feasibility Study: Using
-/// Highways for Bounded-Suboptimal Multi-Agent Path Finding", 2015).
+/// Rows and columns are lanes with alternating directions. A move against its lane costs a little more, so that of
+/// equally short ways robots choose the one with less oncoming traffic. Such lanes are the highways of Cohen, Uras and
+/// Koenig ("Feasibility Study: Using Highways for Bounded-Suboptimal Multi-Agent Path Finding", 2015).
 ///
-/// It keeps its memory from one search to the next, so that a robot that goes from goal to goal does not allocate.
+/// The buffers are kept from one search to the next, so that searches do not allocate.
 #[derive(Clone, Debug, Default)]
 pub struct Distances {
     to: Option<Block>,
-    /// The costs row by row, with a border of one block around, so that every block has four neighbours. Blocked blocks cost 0 here, and so
-    /// are never reached for less.
+    /// Costs row by row, with a border of one block around the map, so that every block has four neighbours. Blocked
+    /// blocks have cost 0: no way can improve that, so the search never enters them.
     costs: Vec<u32>,
-    /// From one row to the next in `costs`.
+    /// Distance from one row to the next in `costs`.
     stride: u32,
-    frontier: [Vec<Place>; RING],
+    frontier: [Vec<Cell>; RING],
 }
 
-/// A block, and where its cost stands.
+/// A block and its index in `costs`.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct Cell {
     x: u16,
     y: u16,
     at: u32,
 }
 
 impl Distances {
-    /// Searches the ways to a block. What `costly` marks as blocked is entered only where the way around is long.
+    /// Searches the ways to a block. Blocks that are blocked in `costly` are entered only if the way around them is
+    /// long.
     pub fn search(&mut self, map: &Map, to: Block, costly: &Map) {
         let start = if map.is_free(to) { Some(to) } else { None };
         self.search_from(map, to, start, costly);
     }
 
-    /// The same for a block that may be blocked: the ways end beside it.
+    /// The same for a block that may be blocked: ways end next to it.
     pub fn search_beside(&mut self, map: &Map, to: Block, costly: &Map) {
         let start = if map.contains(to) { Some(to) } else { None };
         self.search_from(map, to, start, costly);
@@ -75,7 +76,7 @@ impl Distances {
         }
     }
 
-    /// Costs that any way is better than, and none for blocked blocks and the border.
+    /// Sets all costs to unreachable, and those of blocked blocks and the border to 0.
     fn prepare(&mut self, map: &Map) {
         self.stride = map.width() + 2;
         let size = self.stride as usize * (map.height() as usize + 2);
@@ -88,17 +89,17 @@ impl Distances {
         }
     }
 
-    /// Reaches the blocks beside a place from which it costs so much.
-    fn spread(&mut self, place: Place, cost: u32, dear: bool) {
-        let Place { x, y, at } = place;
-        // Even rows lead to the right and even columns up in y; the moves here come to the place from its neighbours.
+    /// Updates the neighbours of a block whose cost is known.
+    fn spread(&mut self, place: Cell, cost: u32, dear: bool) {
+        let Cell { x, y, at } = place;
+        // Even rows lead to the right and even columns up in y. The moves come from the neighbours to this block.
         let (right, left) = if y % 2 == 0 { (MOVE, AGAINST) } else { (AGAINST, MOVE) };
         let (up, down) = if x % 2 == 0 { (MOVE, AGAINST) } else { (AGAINST, MOVE) };
         let neighbours = [
-            (Place { x: x.wrapping_sub(1), y, at: at - 1 }, right),
-            (Place { x: x + 1, y, at: at + 1 }, left),
-            (Place { x, y: y.wrapping_sub(1), at: at - self.stride }, up),
-            (Place { x, y: y + 1, at: at + self.stride }, down),
+            (Cell { x: x.wrapping_sub(1), y, at: at - 1 }, right),
+            (Cell { x: x + 1, y, at: at + 1 }, left),
+            (Cell { x, y: y.wrapping_sub(1), at: at - self.stride }, up),
+            (Cell { x, y: y + 1, at: at + self.stride }, down),
         ];
         for (from, lane) in neighbours {
             let reached = cost + if dear { COSTLY } else { lane };
@@ -110,16 +111,16 @@ impl Distances {
         }
     }
 
-    fn place(&self, map: &Map, block: Block) -> Option<Place> {
+    fn place(&self, map: &Map, block: Block) -> Option<Cell> {
         if map.is_free(block) { self.at(block) } else { None }
     }
 
-    fn at(&self, block: Block) -> Option<Place> {
+    fn at(&self, block: Block) -> Option<Cell> {
         let (x, y) = (u16::try_from(block.x).ok()?, u16::try_from(block.y).ok()?);
-        Some(Place { x, y, at: (u32::from(y) + 1) * self.stride + u32::from(x) + 1 })
+        Some(Cell { x, y, at: (u32::from(y) + 1) * self.stride + u32::from(x) + 1 })
     }
 
-    /// The block that the present costs lead to.
+    /// The goal of the last search.
     pub fn to(&self) -> Option<Block> {
         self.to
     }
@@ -129,7 +130,7 @@ impl Distances {
         self.to = None;
     }
 
-    /// The cost from a block of the map that was searched, [`UNREACHABLE`] where no way leads.
+    /// Cost of the way from a block of the searched map; [`UNREACHABLE`] if there is none.
     #[inline]
     pub fn of(&self, map: &Map, block: Block) -> u32 {
         self.place(map, block)
@@ -139,7 +140,7 @@ impl Distances {
     }
 }
 
-impl Place {
+impl Cell {
     fn block(self) -> Block {
         Block::new(i32::from(self.x), i32::from(self.y))
     }

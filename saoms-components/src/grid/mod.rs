@@ -1,4 +1,4 @@
-//! The area of a fleet: blocks on a grid, and the maps made of them.
+//! The area of a fleet: blocks, maps, and distances on a grid.
 
 mod block;
 mod distances;

@@ -4,10 +4,10 @@ use std::ops::Range;
 use super::{Block, Map};
 use crate::text::{TextFault, bytes};
 
-/// Lines that do not fit; behind so many nothing is read.
+/// Maximum number of wrong lines, after which reading stops.
 const MOST_WRONG: usize = 1000;
 
-/// The header of a map file, as far as it was read: the sides, and where they are.
+/// The header of a map file as read so far: the sides and their places in the text.
 #[derive(Default)]
 struct Header<'a> {
     width: Option<(u32, &'a str)>,
@@ -16,11 +16,12 @@ struct Header<'a> {
 }
 
 impl Map {
-    /// Reads a map: one line a row, the first is y = 0, with `.`, `G`, `E` and `S` free and `@`, `O`, `T` and `W` blocked. The header of
-    /// the MovingAI format (`type octile`, `height H`, `width W`, `map`) may stand before the rows, with or without its first line.
+    /// Reads a map: one line for each row, starting with y = 0. `.`, `G`, `E` and `S` are free; `@`, `O`, `T` and `W`
+    /// are blocked. The header of the MovingAI format (`type octile`, `height H`, `width W`, `map`) may stand before
+    /// the rows, with or without its first line.
     ///
-    /// The format is that of Nathan Sturtevant, "Benchmarks for Grid-Based Pathfinding" (2012); `E` and `S` are the stations of the League
-    /// of Robot Runners' maps.
+    /// The format is that of Nathan Sturtevant, "Benchmarks for Grid-Based Pathfinding" (2012); `E` and `S` are the
+    /// stations of the League of Robot Runners' maps.
     ///
     /// ```
     /// use saoms_components::grid::{Block, Map};
@@ -34,7 +35,7 @@ impl Map {
     /// ```
     ///
     /// # Errors
-    /// Every line that does not fit, the first thousand of them.
+    /// The lines that do not fit, at most a thousand.
     pub fn read(text: &str) -> Result<Map, Vec<TextFault>> {
         let (mut header, mut faults) = (Header::default(), Vec::new());
         let mut rows: Vec<&str> = Vec::new();
@@ -82,7 +83,7 @@ impl Map {
         if faults.is_empty() { Ok(map) } else { Err(faults) }
     }
 
-    /// Where a block stands in the text of a map that [`read`](Map::read) reads.
+    /// Byte range of a block in the text of a map for [`read`](Map::read).
     pub(crate) fn written(text: &str, block: Block) -> Option<Range<usize>> {
         let mut header = Header::default();
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
@@ -121,7 +122,7 @@ impl Map {
     }
 }
 
-/// The length that most rows have; of equally many the one that comes first.
+/// The most frequent length of a row; of equally frequent ones the first.
 fn usual_length(rows: &[&str]) -> usize {
     let mut counts: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
     for (place, row) in rows.iter().enumerate() {
@@ -131,7 +132,7 @@ fn usual_length(rows: &[&str]) -> usize {
 }
 
 impl<'a> Header<'a> {
-    /// Takes a line of the header; `false` when it is none.
+    /// Takes a line of the header; `false` if it belongs to the rows.
     fn take(&mut self, line: &'a str) -> Result<bool, (&'a str, String)> {
         if self.ended {
             return Ok(false);

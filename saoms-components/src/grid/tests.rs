@@ -88,7 +88,7 @@ fn wrong_maps_say_where_and_why() {
     assert!(Map::read(&wide).unwrap_err()[0].message.contains("expected at most 8192 on a side"));
 }
 
-/// Moves and costs by relaxing every block again and again.
+/// Number of moves and costs, computed by relaxing every block until nothing changes.
 fn reference(map: &Map, to: Block) -> Vec<u32> {
     let mut moves = vec![UNREACHABLE; map.size()];
     if let Some(place) = map.place(to).filter(|_| map.is_free(to)) {
@@ -115,7 +115,7 @@ fn distances_are_those_of_the_shortest_ways() {
         distances.search(&map, to, &Map::new(4, 5));
         for (place, moves) in reference(&map, to).into_iter().enumerate() {
             let cost = distances.of(&map, map.block(place));
-            // Moving against a lane costs a quarter more.
+            // A move against a lane costs a quarter more.
             let most = moves.saturating_mul(MOVE + 1);
             assert!(
                 (moves.saturating_mul(MOVE)..=most).contains(&cost),

@@ -2,26 +2,26 @@ use saoms_api::Field;
 
 use crate::grid::Block;
 
-/// What a robot's hardware can do.
+/// Kinds of actions of a robot's hardware.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub enum ActionKind {
-    /// Move the wheels to a block beside the present one.
+    /// Move to an adjacent block.
     #[default]
     Move,
-    /// Collect luggage at the present block.
+    /// Collect luggage.
     Collect,
-    /// Deposit it there.
+    /// Deposit luggage.
     Deposit,
 }
 
-/// One action of a robot's hardware.
+/// An action of a robot's hardware.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub struct Action {
-    /// What to do.
+    /// Kind of the action.
     pub kind: ActionKind,
-    /// Where to go, or where the luggage is collected or deposited.
+    /// Block to move to, or where luggage is collected or deposited.
     pub block: Block,
-    /// The luggage's number; 0 for a move.
+    /// Number of the luggage; 0 for a move.
     pub luggage: u32,
 }
 
@@ -31,24 +31,24 @@ impl Action {
         Action { kind: ActionKind::Move, block, luggage: 0 }
     }
 
-    /// Collecting luggage.
+    /// Collection of luggage.
     pub const fn collect(luggage: u32, block: Block) -> Action {
         Action { kind: ActionKind::Collect, block, luggage }
     }
 
-    /// Depositing luggage.
+    /// Deposit of luggage.
     pub const fn deposit(luggage: u32, block: Block) -> Action {
         Action { kind: ActionKind::Deposit, block, luggage }
     }
 }
 
-/// How an action goes.
+/// Progress of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
 pub enum Progress {
-    /// It takes its time; ask again in the next period.
+    /// The action is running; ask again in the next period.
     Running,
-    /// It is done.
+    /// The action is done.
     Done,
-    /// It is over and failed; the hardware said why in its own words.
+    /// The action failed; the hardware has logged the reason.
     Failed,
 }

@@ -2,14 +2,14 @@ use saoms_api::Message;
 
 use crate::grid::Map;
 
-/// A map as it travels through a service call or a topic.
+/// A map as sent by service calls and topics.
 #[derive(Clone, Debug, PartialEq, Eq, Message)]
 pub struct Area {
-    /// How many blocks wide it is.
+    /// Number of columns.
     pub width: u32,
-    /// How many blocks high it is.
+    /// Number of rows.
     pub height: u32,
-    /// One bit a block, row by row, set where it is blocked.
+    /// Bits of the blocked blocks, row by row.
     pub blocked: Vec<u64>,
 }
 

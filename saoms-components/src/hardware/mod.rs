@@ -1,7 +1,8 @@
-//! What a robot asks of its hardware: to move, to collect, to deposit.
+//! Service that a robot's hardware offers: moving, collecting and depositing.
 //!
-//! A robot whose reference `world` is wired drives what is behind it: the simulated hardware of a [`World`](crate::world::World), or a component
-//! that drives a real one. The calls never wait: `begin` starts an action, `poll` asks how it goes, `cancel` stops it. `retire` ends the work of a robot that is broken.
+//! A robot whose reference `world` is wired drives the hardware at its other end: the simulated hardware of a
+//! [`World`](crate::world::World), or a component that drives real hardware. The calls never wait: `begin` starts an
+//! action, `poll` returns its progress, `cancel` stops it. `retire` ends the work of a robot that is broken.
 
 mod action;
 mod area;
@@ -13,10 +14,10 @@ use crate::grid::Block;
 pub use action::{Action, ActionKind, Progress};
 pub use area::Area;
 
-/// The hooks to a robot's hardware.
+/// Service of a robot's hardware.
 #[interface(name = "saoms.Hardware")]
 pub trait Hardware {
-    /// Says that the robot of this number and name starts, as it believes at this block; the answer is where it really is.
+    /// Registers a robot with its number, its name and the block where it assumes to be; returns its real position.
     fn enter(
         &mut self,
         context: &mut Context<'_>,
@@ -25,19 +26,19 @@ pub trait Hardware {
         block: Block,
     ) -> Result<Block, Failure>;
 
-    /// The area that the robots share.
+    /// The map that the robots share.
     fn area(&mut self, context: &mut Context<'_>) -> Result<Area, Failure>;
 
-    /// Starts an action; a robot does one at a time.
+    /// Starts an action; a robot runs one at a time.
     fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure>;
 
-    /// How the robot's action goes.
+    /// Progress of the robot's action.
     fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Progress, Failure>;
 
-    /// Stops the robot's action where it is; nothing happens when there is none.
+    /// Stops the robot's action where it is; does nothing if no action is running.
     fn cancel(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure>;
 
-    /// Says that the robot is out of order: its action ends, it stays where it is, and robots beside it collect and deposit on its block in
-    /// its place. The answer is where it is.
+    /// Takes the robot out of service: its action ends, it stays where it is, and adjacent robots may collect and
+    /// deposit on its block in its place. Returns its position.
     fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Block, Failure>;
 }

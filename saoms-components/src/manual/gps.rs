@@ -2,7 +2,7 @@ use std::fmt;
 
 use saoms_api::{Class, Component, Context, Failure, Field, interface};
 
-/// A place, in metres.
+/// A position, in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Field)]
 pub struct Point {
     /// To the east of the origin.
@@ -17,17 +17,17 @@ impl fmt::Display for Point {
     }
 }
 
-/// What a GPS receiver offers to the robot that carries it.
+/// Service of a GPS receiver for the robot that carries it.
 #[interface(name = "resources.robotEnvironment.GPSInterface")]
 pub trait GpsInterface {
-    /// Says that its carrier moved by so much, which the simulated receiver cannot know otherwise.
+    /// Moves a simulated receiver together with its carrier.
     fn carried(&mut self, context: &mut Context<'_>, by: Point) -> Result<(), Failure>;
 
-    /// Where it is.
+    /// The current position.
     fn position(&mut self, context: &mut Context<'_>) -> Result<Point, Failure>;
 }
 
-/// A simulated GPS receiver. It starts at the origin and goes where it is carried.
+/// A simulated GPS receiver. It starts at the origin and moves with its carrier.
 #[derive(Debug, Default, Class)]
 #[class(name = "resources.robotEnvironment.GPS", passive, service("position": GpsInterface))]
 pub struct Gps {

@@ -6,4 +6,4 @@ mod robot;
 
 pub use gps::{Gps, GpsInterface, GpsInterfaceReference, Point};
 pub use navigator::{Navigator, NavigatorProperties};
-pub use robot::{Robot, RobotInterface, RobotInterfaceReference, RobotProperties};
+pub use robot::{ManualRobot, ManualRobotProperties, RobotInterface, RobotInterfaceReference};

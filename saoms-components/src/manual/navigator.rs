@@ -2,12 +2,12 @@ use saoms_api::{CallError, Class, Component, Context, Failure, Finding, Place, P
 
 use super::{Point, RobotInterface, RobotInterfaceReference};
 
-/// What a composite says about the navigator.
+/// Properties of a navigator.
 #[derive(Clone, Debug, Properties)]
 pub struct NavigatorProperties {
-    /// The corners of the path in metres, such as `3 0`; by default a square of 2 metres. The path ends at the last corner.
+    /// Corners of the path in metres, such as `3 0`; by default a square of 2 metres. The path ends at the last corner.
     path: Vec<String>,
-    /// How far the robot moves in a period.
+    /// Distance that the robot moves in a period.
     #[property(default = 1.0, range = 0.001.., unit = "m")]
     step: f64,
 }
@@ -23,7 +23,7 @@ pub struct Navigator {
     path: Vec<Point>,
     step: f64,
     next: usize,
-    /// Where the robot is, as it said last.
+    /// The last position that the robot reported.
     place: Point,
     robot: RobotInterfaceReference,
 }
@@ -62,7 +62,7 @@ impl Component for Navigator {
         let share = if distance > step { step / distance } else { 1.0 };
         match self.robot.move_by(context, Point { x: x * share, y: y * share }) {
             Ok(place) => self.place = place,
-            // The robot is asked again in the next period.
+            // The call is repeated in the next period.
             Err(CallError::Busy { .. } | CallError::NotRunning { .. }) => return Ok(()),
             Err(error) => return Err(error.into()),
         }

@@ -2,34 +2,34 @@ use saoms_api::{Class, Component, Context, Failure, Properties, interface};
 
 use super::{GpsInterface, GpsInterfaceReference, Point};
 
-/// What the robot offers to whoever drives it.
+/// Service of the robot for the component that drives it.
 #[interface(name = "resources.robotEnvironment.RobotInterface")]
 pub trait RobotInterface {
-    /// Moves by so much; the answer is where the robot is then.
+    /// Moves the robot by a distance and returns its new position.
     fn move_by(&mut self, context: &mut Context<'_>, by: Point) -> Result<Point, Failure>;
 }
 
-/// What figure 3.1 says about the robot.
+/// Properties of the robot of figure 3.1.
 #[derive(Clone, Debug, Properties)]
-pub struct RobotProperties {
+pub struct ManualRobotProperties {
     /// The robot's name.
     #[property(name = "ID", required_text, unique = "robot")]
     id: String,
-    /// What people call it.
+    /// Nickname of the robot.
     #[property(default = "")]
     nickname: String,
-    /// How heavy it is.
+    /// Weight of the robot.
     #[property(default = 0.0, range = 0.0.., unit = "kg")]
     weight: f64,
-    /// How high it is.
+    /// Height of the robot.
     #[property(default = 0.0, range = 0.0.., unit = "cm")]
     height: f64,
-    /// What it costs.
+    /// Price of the robot.
     #[property(default = 0.0, range = 0.0.., unit = "EUR")]
     price: f64,
 }
 
-/// The robot of figures 3.1 and 3.2: it moves when it is told to, and asks the GPS where it is.
+/// The robot of figures 3.1 and 3.2: it moves on request and asks the GPS for its position.
 #[derive(Debug, Class)]
 #[class(
     name = "resources.robotEnvironment.Robot",
@@ -37,27 +37,27 @@ pub struct RobotProperties {
     service("move": RobotInterface),
     reference("updatePosition": GpsInterface)
 )]
-pub struct Robot {
-    properties: RobotProperties,
+pub struct ManualRobot {
+    properties: ManualRobotProperties,
     gps: GpsInterfaceReference,
 }
 
-impl Component for Robot {
-    type Properties = RobotProperties;
+impl Component for ManualRobot {
+    type Properties = ManualRobotProperties;
 
-    fn new(properties: RobotProperties) -> Result<Self, Failure> {
-        Ok(Robot { properties, gps: GpsInterfaceReference::default() })
+    fn new(properties: ManualRobotProperties) -> Result<Self, Failure> {
+        Ok(ManualRobot { properties, gps: GpsInterfaceReference::default() })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.gps = context.reference("updatePosition")?;
-        let RobotProperties { id, nickname, weight, height, price } = &self.properties;
+        let ManualRobotProperties { id, nickname, weight, height, price } = &self.properties;
         context.info(format_args!("{id} `{nickname}`: {weight} kg, {height} cm, {price} EUR"));
         Ok(())
     }
 }
 
-impl RobotInterface for Robot {
+impl RobotInterface for ManualRobot {
     fn move_by(&mut self, context: &mut Context<'_>, by: Point) -> Result<Point, Failure> {
         self.gps.carried(context, by)?;
         let position = self.gps.position(context)?;

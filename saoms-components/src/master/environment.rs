@@ -1,19 +1,21 @@
 use saoms_api::{Cause, Class, Component, Context, Failure, Header, Level, Publisher, Subscription};
 
-use super::gate::Gate;
-use super::open::Open;
+use super::event_filter::EventFilter;
+use super::open_luggage::OpenLuggage;
 use crate::console::Timestamp;
 use crate::hardware::Area;
-use crate::intake::{Intake, Judged, Problem};
 use crate::messages::{
     AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent,
     FAULT, Fault, LuggageStage, ROBOT_LIST, RobotList,
 };
+use crate::validation::{MessageValidator, Problem, Validate};
 
-/// Sorts the events of the environment to their topics: luggage and faults to the robots, exceptional events to the master of the robots.
+/// Distributes the events of the environment to their topics: luggage and faults to the robots, exceptional events to
+/// the master of the robots.
 ///
-/// Anybody may publish on the environment's topic. What is impossible, such as luggage outside the area that the world has said, is
-/// reported with its sender, counted, and gets no further. What all robots refuse, or what none is left for, is reported as given up.
+/// Any component may publish on the environment's topic. Impossible events, such as luggage outside the area of the
+/// world, are reported with their sender, counted, and dropped. Luggage that all robots refuse, or for which no robot
+/// is left, is reported as given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.MasterEnvironment",
@@ -23,9 +25,9 @@ use crate::messages::{
     also("unibg.saoms.MasterEnvironmentManagingSystem")
 )]
 pub struct MasterEnvironment {
-    intake: Intake,
-    gate: Gate,
-    open: Open,
+    validator: MessageValidator,
+    filter: EventFilter,
+    open: OpenLuggage,
     events: Subscription<EnvironmentEvent>,
     area: Subscription<Area>,
     responses: Subscription<EventLuggage>,
@@ -40,9 +42,9 @@ impl Component for MasterEnvironment {
 
     fn new((): ()) -> Result<Self, Failure> {
         Ok(MasterEnvironment {
-            intake: Intake::default(),
-            gate: Gate::default(),
-            open: Open::default(),
+            validator: MessageValidator::default(),
+            filter: EventFilter::default(),
+            open: OpenLuggage::default(),
             events: Subscription::default(),
             area: Subscription::default(),
             responses: Subscription::default(),
@@ -70,12 +72,12 @@ impl Component for MasterEnvironment {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, area) in context.receive(&self.area).with_headers() {
-            if self.intake.lets_in(area, header, None, context) {
-                self.gate.learn(area.clone().into());
+            if self.validator.accepts(area, header, None, context) {
+                self.filter.learn(area.clone().into());
             }
         }
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            if self.intake.lets_in(robot, header, self.gate.area(), context) {
+            if self.validator.accepts(robot, header, self.filter.area(), context) {
                 self.open.hear_robot(robot);
             }
         }
@@ -111,7 +113,7 @@ impl MasterEnvironment {
     ) -> Result<(), Failure> {
         for request in &event.luggage {
             let EventLuggage { luggage, from, to, .. } = *request;
-            match self.gate.luggage(request) {
+            match self.filter.luggage(request) {
                 Ok(()) => {
                     self.open.add(luggage, from, to);
                     context.count("luggage.requested", 1);
@@ -119,7 +121,7 @@ impl MasterEnvironment {
                 }
                 Err(refusal) => {
                     context.count("luggage.ignored", 1);
-                    self.intake.tell(context, header, request, refusal.problem);
+                    self.validator.log_rejection(context, header, request, refusal.problem);
                     if refusal.is_lost {
                         context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
                     }
@@ -130,9 +132,9 @@ impl MasterEnvironment {
             context.send(&self.exceptional, exceptional.clone())?;
         }
         for fault in &event.faults {
-            if let Err(problem) = fault.judge(header.sender, &mut self.intake, self.gate.area()) {
+            if let Err(problem) = fault.validate(header.sender, &mut self.validator, self.filter.area()) {
                 context.count("faults.ignored", 1);
-                self.intake.tell(context, header, fault, problem);
+                self.validator.log_rejection(context, header, fault, problem);
             } else {
                 self.open.break_down(fault.robot);
                 context.send(&self.faults, fault.clone())?;
@@ -141,19 +143,20 @@ impl MasterEnvironment {
         Ok(())
     }
 
-    /// Takes in what robots say about luggage, or what somebody else does on their topic.
+    /// Handles a message about luggage from a robot, or from another component on the robots' topic.
     fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
-        if header.sender == context.sender() || !self.intake.lets_in(said, header, self.gate.area(), context)
+        if header.sender == context.sender()
+            || !self.validator.accepts(said, header, self.filter.area(), context)
         {
             return;
         }
         if said.stage == LuggageStage::Request {
-            self.gate.note(said.luggage);
-        } else if self.gate.knows(said.luggage) {
+            self.filter.note(said.luggage);
+        } else if self.filter.knows(said.luggage) {
             self.open.hear_response(said);
         } else {
             context.count("messages.ignored", 1);
-            self.intake.tell(context, header, said, Problem::UnknownLuggage);
+            self.validator.log_rejection(context, header, said, Problem::UnknownLuggage);
         }
     }
 }

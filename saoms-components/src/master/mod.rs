@@ -1,8 +1,8 @@
-//! The masters: one sorts what the environment says, one keeps an eye on the robots.
+//! The masters: of the environment, which distributes its events, and of the robots, which wakes them.
 
 mod environment;
-mod gate;
-mod open;
+mod event_filter;
+mod open_luggage;
 pub mod robot;
 
 pub use environment::MasterEnvironment;

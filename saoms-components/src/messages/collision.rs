@@ -4,16 +4,17 @@ use saoms_api::Message;
 
 use crate::grid::Block;
 
-/// Two robots were in each other's way.
+/// A collision of two robots.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct Collision {
-    /// The number of the robot that entered the block.
+    /// Number of the robot that entered the block.
     pub robot: u32,
-    /// The number of the robot that held it.
+    /// Number of the robot that held it.
     pub other: u32,
-    /// Where they met.
+    /// Block of the collision.
     pub block: Block,
-    /// Whether it turned out that the two exchanged their blocks. They were told of as meeting there before: this is the same collision.
+    /// True if the two robots exchanged their blocks. It is the same collision that was reported before as a meeting in
+    /// one block.
     pub swap: bool,
 }
 

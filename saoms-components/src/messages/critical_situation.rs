@@ -5,59 +5,60 @@ use saoms_api::{Field, Message};
 use crate::grid::Block;
 use crate::robot::Job;
 
-/// What a robot was doing when it became critical.
+/// Activity of a robot when it became critical.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub enum CriticalKind {
-    /// It carries luggage: the healer collects that where the robot is and delivers it. Kind 1 of the manual.
+    /// The robot carries luggage. The healer collects it from the robot's block and delivers it. Kind 1 of the manual.
     #[default]
     CarriesLuggage,
-    /// It was on its way to collect luggage: the healer takes the whole job. Kind 2.
+    /// The robot was on its way to collect luggage. The healer takes over the whole job. Kind 2.
     OnTheWay,
-    /// It had nothing to do: a substitute is awaked. Kind 3.
+    /// The robot had no job. A substitute is woken. Kind 3.
     Idle,
 }
 
-/// What a [`CriticalSituation`] message says.
+/// Stages of a [`CriticalSituation`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub enum CriticalStage {
     /// A robot needs help.
     #[default]
     Request,
-    /// The healer would help, and says from where.
+    /// The healer offers to help and reports its position.
     Intention,
-    /// The healer no longer would: another one is closer.
+    /// The healer takes its offer back: another robot is closer.
     Release,
     /// The healer helps.
     Taken,
-    /// The healer was awaked in place of the robot.
+    /// The healer was woken as a substitute for the robot.
     StandsIn,
 }
 
-/// A robot that cannot go on asks for a healer, or a healer responds.
+/// A request for help by a robot that cannot go on, or the response of a healer.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct CriticalSituation {
-    /// The number of the robot that needs help.
+    /// Number of the robot that needs help.
     pub critical: u32,
-    /// Where it is.
+    /// Position of that robot.
     pub block: Block,
-    /// The number of its luggage; 0 where it has none.
+    /// Number of its luggage; 0 if it has none.
     pub luggage: u32,
-    /// Where its luggage was to be collected.
+    /// Block where its luggage was to be collected.
     pub from: Block,
-    /// Where its luggage has to go.
+    /// Destination of its luggage.
     pub to: Block,
-    /// What it was doing.
+    /// Activity of that robot.
     pub kind: CriticalKind,
-    /// Request or kind of response.
+    /// Request, or kind of response.
     pub stage: CriticalStage,
-    /// The number of the robot that responds; 0 in a request.
+    /// Number of the robot that responds; 0 in a request.
     pub healer: u32,
-    /// Where the healer is; without meaning in a request.
+    /// Position of the healer; without meaning in a request.
     pub healer_block: Block,
 }
 
 impl CriticalSituation {
-    /// What a healer has to bring: what the robot carries, from where it is, or what it was to collect.
+    /// The job that the healer takes over: the luggage that the robot carries, from its block, or the luggage that it
+    /// was to collect.
     pub fn job(&self) -> Option<Job> {
         let from = match self.kind {
             CriticalKind::CarriesLuggage => self.block,

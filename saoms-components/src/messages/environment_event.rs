@@ -2,14 +2,14 @@ use saoms_api::Message;
 
 use super::{EventLuggage, ExceptionalEvent, Fault};
 
-/// Something that happened outside the fleet: new luggage, an exceptional event, or several of both at once.
+/// Events outside the fleet: new luggage, exceptional events and faults, one or several at once.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct EnvironmentEvent {
-    /// Luggage to bring from one block to another; each is a request.
+    /// Requests to bring luggage.
     pub luggage: Vec<EventLuggage>,
     /// Landings and take-offs.
     pub exceptional: Vec<ExceptionalEvent>,
-    /// Robots that break.
+    /// Faults of robots.
     pub faults: Vec<Fault>,
 }
 

@@ -4,40 +4,40 @@ use saoms_api::{Field, Message};
 
 use crate::grid::Block;
 
-/// What an [`EventLuggage`] message says about its luggage.
+/// Stages of an [`EventLuggage`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub enum LuggageStage {
-    /// It waits for a robot.
+    /// The luggage waits for a robot.
     #[default]
     Request,
-    /// The robot would take it, and says from where.
+    /// The robot is interested and reports its position.
     Interest,
-    /// The robot no longer would: another one is closer.
+    /// The robot takes its interest back: another robot is closer.
     Release,
-    /// The robot goes and brings it; nobody else has to.
+    /// The robot brings the luggage; no other robot has to.
     Taken,
-    /// The robot brought it to its destination.
+    /// The robot has brought the luggage to its destination.
     Delivered,
-    /// The robot can never bring it.
+    /// The robot can never bring the luggage.
     Refused,
-    /// Nobody can: it is no open work any more.
+    /// No robot can bring the luggage; it is no open work any more.
     GivenUp,
 }
 
-/// Luggage to bring from one block to another, or a robot's response.
+/// A request to bring luggage from one block to another, or the response of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct EventLuggage {
-    /// The number of the robot that responds; 0 for a request.
+    /// Number of the robot that responds; 0 in a request.
     pub robot: u32,
-    /// The luggage's own number.
+    /// Number of the luggage.
     pub luggage: u32,
-    /// Request or kind of response.
+    /// Request, or kind of response.
     pub stage: LuggageStage,
-    /// Where to collect it.
+    /// Block where the luggage is collected.
     pub from: Block,
-    /// Where to deposit it.
+    /// Block where the luggage is deposited.
     pub to: Block,
-    /// Where the robot is that responds; without meaning in a request.
+    /// Position of the robot that responds; without meaning in a request.
     pub block: Block,
 }
 
@@ -47,14 +47,14 @@ impl EventLuggage {
         EventLuggage { robot: 0, luggage, stage: LuggageStage::Request, from, to, block: from }
     }
 
-    /// That nobody can bring the luggage of a request.
+    /// A report that no robot can bring the luggage of a request.
     pub const fn given_up(luggage: u32, from: Block, to: Block) -> EventLuggage {
         EventLuggage { stage: LuggageStage::GivenUp, ..EventLuggage::request(luggage, from, to) }
     }
 }
 
 impl fmt::Display for EventLuggage {
-    /// As the console of the manual's figures shows it.
+    /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Luggage to bring from {} to {}", self.from, self.to)
     }

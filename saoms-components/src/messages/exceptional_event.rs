@@ -2,7 +2,7 @@ use std::fmt;
 
 use saoms_api::{Field, Message};
 
-/// What happened.
+/// Kinds of exceptional events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub enum ExceptionalKind {
     /// An airplane landed.
@@ -17,12 +17,12 @@ pub enum ExceptionalKind {
 pub struct ExceptionalEvent {
     /// Landing or take-off.
     pub kind: ExceptionalKind,
-    /// How many pieces of luggage are expected.
+    /// Number of pieces of luggage that are expected.
     pub pieces: u32,
 }
 
 impl fmt::Display for ExceptionalEvent {
-    /// As the console of the manual's figures shows it.
+    /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = match self.kind {
             ExceptionalKind::Landing => "LANDING",

@@ -2,25 +2,25 @@ use std::fmt;
 
 use saoms_api::{Field, Message};
 
-/// What happened to a robot.
+/// Kinds of faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub enum FaultKind {
-    /// It can neither move nor handle luggage any more.
+    /// The robot can neither move nor handle luggage any more.
     #[default]
     Breakdown,
 }
 
-/// Something in a robot broke.
+/// A fault of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct Fault {
-    /// The robot's number.
+    /// Number of the robot.
     pub robot: u32,
-    /// What happened to it.
+    /// Kind of the fault.
     pub kind: FaultKind,
 }
 
 impl Fault {
-    /// That a robot breaks down.
+    /// The breakdown of a robot.
     pub const fn breakdown(robot: u32) -> Fault {
         Fault { robot, kind: FaultKind::Breakdown }
     }

@@ -1,4 +1,4 @@
-//! What the components of the fleet tell each other, and on which topics.
+//! Messages and topics of the fleet.
 //!
 //! | topic | message | published by | read by |
 //! | --- | --- | --- | --- |
@@ -10,8 +10,8 @@
 //! | [`CRITICAL_SITUATION`] | [`CriticalSituation`] | robots | robots |
 //! | [`ROBOT_LIST`] | [`RobotList`] | robots | robots, the master of the robots |
 //! | [`POSITION`] | [`Position`] | robots | robots |
-//! | [`AREA`] | [`Area`] | world | the master of the environment, environment, whoever watches the fleet |
-//! | [`COLLISION`] | [`Collision`] | world, or robots without one | whoever watches the fleet |
+//! | [`AREA`] | [`Area`] | world | the master of the environment, environment, observers of the fleet |
+//! | [`COLLISION`] | [`Collision`] | world, or robots without one | observers of the fleet |
 
 mod collision;
 mod critical_situation;
@@ -37,32 +37,32 @@ pub use position::{IMMOVABLE, Position, Priority};
 pub use robot_list::RobotList;
 pub use robot_state::RobotState;
 
-/// Events of any kind, as they come in from the environment.
+/// Events of any kind from the environment.
 pub const ENVIRONMENT: Topic<EnvironmentEvent> = Topic::event("ETOPIC");
 
-/// Luggage that waits to be brought somewhere, and the robots' responses.
+/// Requests to bring luggage, and the robots' responses.
 pub const EVENT_LUGGAGE: Topic<EventLuggage> = Topic::event("ELMSTOPIC");
 
-/// Events that change how many robots are needed.
+/// Events that change the number of robots that are needed.
 pub const EXCEPTIONAL_EVENT: Topic<ExceptionalEvent> = Topic::event("EETOPIC").optional();
 
-/// Which robots there are, the newest of each.
+/// State of each robot, the newest message of each.
 pub const ROBOT_LIST: Topic<RobotList> = Topic::state("RLMSTOPIC");
 
-/// Where the robots are and where they go next, the newest of each.
+/// Position and next blocks of each robot, the newest message of each.
 pub const POSITION: Topic<Position> = Topic::state("POSTOPIC");
 
-/// The area that the robots share, said when the world begins.
+/// The map that the robots share, published when the world starts.
 pub const AREA: Topic<Area> = Topic::state("AREATOPIC");
 
-/// Robots that were in each other's way.
+/// Collisions of robots.
 pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC").optional();
 
-/// What breaks in robots.
+/// Faults of robots.
 pub const FAULT: Topic<Fault> = Topic::event("FAULTTOPIC");
 
-/// Who has to be awake.
+/// Commands to robots to wake or to sleep.
 pub const ROBOT_STATE: Topic<RobotState> = Topic::event("RMSTOPIC");
 
-/// Robots that need help, and the responses of their healers.
+/// Requests for help, and the responses of healers.
 pub const CRITICAL_SITUATION: Topic<CriticalSituation> = Topic::event("CSMSTOPIC");

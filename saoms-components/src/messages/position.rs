@@ -4,15 +4,15 @@ use saoms_api::{Field, Message};
 
 use crate::grid::Block;
 
-/// The priority of a robot that stays where it is whoever wants its block: it handles luggage, has to charge, or cannot move.
+/// Priority of a robot that never makes way: it handles luggage, has to charge, or cannot move.
 pub const IMMOVABLE: Priority = Priority { rank: u64::MAX, robot: 0 };
 
-/// Who goes first where robots meet. A robot lends its own to those that have to make way for it.
+/// Right of way where robots meet. A robot lends its priority to robots that have to make way for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub struct Priority {
-    /// The higher goes first.
+    /// The higher rank goes first.
     pub rank: u64,
-    /// The robot that it comes from; with equal ranks the lower number goes first.
+    /// Number of the robot that the priority comes from; with equal ranks the lower number goes first.
     pub robot: u32,
 }
 
@@ -28,27 +28,27 @@ impl PartialOrd for Priority {
     }
 }
 
-/// Which blocks a robot holds and which it wants.
+/// Blocks that a robot holds and wants.
 ///
-/// It holds the block where it is, and its next block from the announcement until it has left it again. What it wants it does not hold yet:
-/// it goes there once nobody holds the block or wants it with more right.
+/// A robot holds its block, and its next block from the announcement until it has left that block again. It does not
+/// hold the block that it wants: it goes there once no other robot holds it or wants it with a higher priority.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(key = "robot")]
 pub struct Position {
-    /// The robot's number.
+    /// Number of the robot.
     pub robot: u32,
-    /// Where it is.
+    /// Position of the robot.
     pub block: Block,
-    /// Where it moves; the same as `block` while it does not.
+    /// Block that the robot moves to; the same as `block` if it does not move.
     pub next: Block,
-    /// Where it wants to go after that; the same as `next` when it wants to stay.
+    /// Block that the robot wants to enter after that; the same as `next` if it wants to stay.
     pub wanted: Block,
-    /// With which right.
+    /// Priority of the robot.
     pub priority: Priority,
 }
 
 impl fmt::Display for Position {
-    /// As the console of the manual's figures shows it.
+    /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Position of Robot{} will be: {}", self.robot, self.next)
     }

@@ -4,43 +4,44 @@ use saoms_api::Message;
 
 use crate::grid::Block;
 
-/// Below so many percent a robot that is awaked would soon have to charge again, as the manual's robots do.
+/// Battery level in percent below which a robot is not woken, since it would soon have to charge again; the same as for
+/// the manual's robots.
 const LOW: f64 = 35.0;
 
-/// That a robot is there, or no longer is.
+/// State of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(key = "robot")]
 pub struct RobotList {
-    /// The robot's number.
+    /// Number of the robot.
     pub robot: u32,
-    /// Whether it works; `false` when it ends.
+    /// True if the robot works; `false` when it ends.
     pub active: bool,
-    /// Its battery in percent.
+    /// Battery level in percent.
     pub battery: f64,
-    /// Whether it is at its charger and in charge.
+    /// True if the robot is charging.
     pub in_charge: bool,
-    /// Whether it takes no jobs until somebody awakes it.
+    /// True if the robot takes no jobs until it is woken.
     pub asleep: bool,
-    /// Where its charger is: a block that others keep off.
+    /// Block of the robot's charger, which other robots avoid.
     pub charger: Block,
-    /// How often it acts: the time from one execution to the next, in microseconds.
+    /// Period of the robot in microseconds.
     pub period: u64,
 }
 
 impl RobotList {
-    /// Whether it is asleep, and charged so far that it can work when it is awaked.
+    /// True if the robot is asleep, and charged enough to work when it is woken.
     pub fn can_be_awaked(&self) -> bool {
         self.active && self.asleep && self.battery > LOW
     }
 
-    /// Whether its battery is empty, with no charger there.
+    /// True if the battery is empty and the robot is not at a charger.
     pub fn is_out_of_battery(&self) -> bool {
         self.battery <= 0.0 && !self.in_charge
     }
 }
 
 impl fmt::Display for RobotList {
-    /// As the console of the manual's figures shows it.
+    /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Robot{} is active", self.robot)
     }

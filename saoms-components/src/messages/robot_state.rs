@@ -1,12 +1,12 @@
 use saoms_api::Message;
 
-/// Wakes a robot, or sends it to sleep.
+/// A command to a robot to wake or to sleep.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct RobotState {
-    /// The number of the robot that it is for.
+    /// Number of the robot.
     pub robot: u32,
-    /// Whether it has to be awake, or to go under charge and sleep.
+    /// True if the robot has to wake, `false` if it has to charge and sleep.
     pub awake: bool,
-    /// In an emergency, the number of the robot to stand in for; 0 otherwise.
+    /// In an emergency, number of the robot that it substitutes; 0 otherwise.
     pub emulate: u32,
 }

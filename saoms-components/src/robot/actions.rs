@@ -4,42 +4,42 @@ use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
 use crate::messages::{Collision, LuggageStage};
 
-use super::hooks::Reply;
+use super::hardware_client::Reply;
 use super::{RobotKnowledge, Trouble};
 
-/// Hardware that fails so often one after the other to move or to deposit is broken.
+/// Number of consecutive failures to move or to deposit after which the hardware counts as broken.
 const MOST_FAILURES: u32 = 5;
 
-/// A robot tries so often to collect luggage.
+/// Maximum number of attempts to collect luggage.
 const MOST_ATTEMPTS: u32 = 3;
 
-/// How an action of the hardware stands after this execution's call.
+/// Outcome of the hardware call in this execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// The hardware could not be reached, so nothing began.
+    /// The hardware could not be reached, so the action did not start.
     NotBegun,
-    /// It goes on.
+    /// The action is running.
     Running,
-    /// It is done, and the robot's knowledge says so.
+    /// The action is done, and the robot's knowledge is updated.
     Done,
-    /// It failed.
+    /// The action failed.
     Failed,
 }
 
 impl Outcome {
-    /// Whether the action is not over, or has yet to begin.
+    /// True if the action is running or still has to start.
     pub(crate) const fn is_open(self) -> bool {
         matches!(self, Outcome::Running | Outcome::NotBegun)
     }
 }
 
 impl RobotKnowledge {
-    /// Starts an action and, where it is done at once, takes in what it changed.
+    /// Starts an action; if it is done at once, updates the robot's knowledge.
     pub(crate) fn begin(&mut self, context: &mut Context<'_>, action: Action) -> Result<Outcome, Failure> {
         if action.kind != ActionKind::Move {
             self.show_ready(context, action);
         }
-        match self.hooks.begin(context, self.number, action)? {
+        match self.hardware.begin(context, self.number, action)? {
             Reply::Later => Ok(Outcome::NotBegun),
             Reply::Answer(progress) => {
                 if action.kind == ActionKind::Move {
@@ -50,19 +50,20 @@ impl RobotKnowledge {
         }
     }
 
-    /// Asks how the running action goes and, where it is over, takes in what it changed. `None` when none is running.
+    /// Polls the running action; if it is over, updates the robot's knowledge. `None` if no action is running.
     pub(crate) fn poll(&mut self, context: &mut Context<'_>) -> Result<Option<(Action, Outcome)>, Failure> {
-        let Some(action) = self.hooks.running() else { return Ok(None) };
-        let outcome = match self.hooks.poll(context, self.number)? {
+        let Some(action) = self.hardware.running() else { return Ok(None) };
+        let outcome = match self.hardware.poll(context, self.number)? {
             Reply::Later => Outcome::Running,
             Reply::Answer(progress) => self.take_in(context, action, progress)?,
         };
         Ok(Some((action, outcome)))
     }
 
-    /// Ends the work of the hardware for good, and learns where the robot stays; `false` while it cannot be reached.
+    /// Takes the hardware out of service and learns where the robot stays; `false` while the hardware cannot be
+    /// reached.
     pub(crate) fn retire(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
-        let Reply::Answer(block) = self.hooks.retire(context, self.number)? else { return Ok(false) };
+        let Reply::Answer(block) = self.hardware.retire(context, self.number)? else { return Ok(false) };
         self.block = block.unwrap_or(self.block);
         Ok(true)
     }
@@ -103,7 +104,7 @@ impl RobotKnowledge {
                 context.console(format_args!("{name} says: Luggage deposited."));
                 context.info(format_args!("deposited luggage {luggage} at {block}"));
                 self.untold = self.job.map(|job| (job, LuggageStage::Delivered));
-                if self.job.is_some() && !self.hooks.is_wired() {
+                if self.job.is_some() && !self.hardware.is_wired() {
                     context.count("luggage.delivered", 1);
                 }
                 self.drop_job();
@@ -140,7 +141,7 @@ impl RobotKnowledge {
         }
     }
 
-    /// The robot is free again.
+    /// Ends the job, so that the robot is free again.
     pub(super) fn drop_job(&mut self) {
         let variables = &mut self.variables;
         (variables.busy, variables.transporter, variables.has_luggage) = (false, false, false);
@@ -148,9 +149,10 @@ impl RobotKnowledge {
         self.job = None;
     }
 
-    /// Without a world nobody else counts collisions: who enters a block that another robot announced to be on does.
+    /// Reports a collision if no world does: the robot that enters a block which another robot announced as its own
+    /// reports it.
     fn judge(&self, context: &mut Context<'_>, block: Block) -> Result<(), Failure> {
-        let other = self.lists.peers.on(block).filter(|_| !self.hooks.is_wired());
+        let other = self.lists.peers.on(block).filter(|_| !self.hardware.is_wired());
         let Some(other) = other.map(|peer| peer.robot) else { return Ok(()) };
         let collision = Collision { robot: self.number, other, block, swap: false };
         context.count("collisions.vertex", 1);

@@ -2,7 +2,7 @@ use std::fmt;
 
 /// A robot's battery.
 ///
-/// It counts thousandths of a percent, so that many small discharges add up exactly.
+/// It counts in thousandths of a percent, so that many small discharges add up exactly.
 ///
 /// ```
 /// use saoms_components::robot::Battery;
@@ -21,16 +21,16 @@ pub struct Battery {
 /// 100 %.
 const FULL: u32 = 100_000;
 
-/// In charge a battery gains so many times what an execution takes.
+/// Charge of one execution, as a multiple of its discharge.
 const CHARGE_FACTOR: u32 = 5;
 
 impl Battery {
-    /// A battery at this level that loses `discharge` with each execution, both in percent; values beyond 0 to 100 are cut.
+    /// A battery with this level and discharge per execution, both in percent; values outside 0 to 100 are clamped.
     pub fn new(percent: f64, discharge: f64) -> Battery {
         Battery { level: thousandths(percent), discharge: thousandths(discharge) }
     }
 
-    /// The level in percent.
+    /// Level in percent.
     pub fn percent(&self) -> f64 {
         f64::from(self.level) / 1000.0
     }
@@ -40,37 +40,37 @@ impl Battery {
         self.level = thousandths(percent);
     }
 
-    /// Takes what one execution needs.
+    /// Discharges the battery by one execution.
     pub fn drain(&mut self) {
         self.level = self.level.saturating_sub(self.discharge);
     }
 
-    /// Gives what one execution in charge gains.
+    /// Charges the battery by one execution.
     pub fn charge(&mut self) {
         self.level = (self.level + self.discharge * CHARGE_FACTOR).min(FULL);
     }
 
-    /// Whether it is charged as far as it goes. One that nothing drains always is.
+    /// True if the battery is full. A battery without discharge always is.
     pub fn is_full(&self) -> bool {
         self.level == FULL || self.discharge == 0
     }
 
-    /// Whether nothing is left.
+    /// True if the battery is empty.
     pub fn is_empty(&self) -> bool {
         self.level == 0 && self.discharge > 0
     }
 
-    /// Whether at most so many percent are left.
+    /// True if at most `percent` percent are left.
     pub fn is_at_most(&self, percent: u32) -> bool {
         self.level <= percent.saturating_mul(1000)
     }
 
-    /// How many executions it lasts; `u32::MAX` where nothing drains it.
+    /// Number of executions that the battery lasts; `u32::MAX` without discharge.
     pub fn executions_left(&self) -> u32 {
         self.level.checked_div(self.discharge).unwrap_or(u32::MAX)
     }
 
-    /// How many executions it lasts when it is full.
+    /// Number of executions that the full battery lasts.
     pub fn executions_when_full(&self) -> u32 {
         FULL.checked_div(self.discharge).unwrap_or(u32::MAX)
     }
@@ -82,7 +82,7 @@ fn thousandths(percent: f64) -> u32 {
 }
 
 impl fmt::Display for Battery {
-    /// With one decimal, as the console of the manual's figures shows it.
+    /// Format with one decimal, as on the console of the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{:.1}", self.percent())
     }

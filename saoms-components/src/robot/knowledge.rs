@@ -2,92 +2,93 @@ use saoms_api::{Context, Entries, Extras, Failure, Knowledge, Publisher};
 
 use crate::grid::Block;
 use crate::hardware::Action;
-use crate::intake::Intake;
 use crate::messages::{
     Collision, CriticalKind, CriticalSituation, EventLuggage, LuggageStage, Position, Priority, RobotList,
 };
+use crate::validation::MessageValidator;
 
 use super::actions::Outcome;
-use super::hooks::Hooks;
+use super::hardware_client::HardwareClient;
 use super::safe::{Energy, Leg, Traffic};
 use super::{Battery, Job, Lists, Routes};
 
-/// What a robot knows: about itself, its job, the others, and the area. Its loops share it.
+/// Knowledge of a robot about itself, its job, the other robots, and the area. Its loops share it.
 #[derive(Debug, Knowledge)]
 #[knowledge(name = "saoms.Robot")]
 pub struct RobotKnowledge {
-    /// Its name.
+    /// Name of the robot.
     #[entry]
     pub name: String,
-    /// Its number.
+    /// Number of the robot.
     #[entry]
     pub number: u32,
-    /// The time from one of its executions to the next, in microseconds.
+    /// Period of the robot, in microseconds.
     #[entry(unit = "us")]
     pub period: u64,
-    /// Where it is.
+    /// Position of the robot.
     #[entry]
     pub block: Block,
-    /// Where it moves next; the same as `block` while it does not.
+    /// Block that the robot moves to next; the same as `block` if it does not move.
     #[entry(effector)]
     pub next: Block,
-    /// Where its charger is.
+    /// Block of its charger.
     #[entry]
     pub charge_block: Block,
-    /// Its battery.
+    /// Battery of the robot.
     pub battery: Battery,
-    /// What is left in its battery.
+    /// Battery level of the robot.
     #[entry(name = "battery", unit = "%")]
     pub(super) charge: f64,
-    /// It goes under charge after its job when so much or less is left, also where it would last longer. No loop that ships changes it.
+    /// Battery level at which the robot charges after its job, even if the battery would last longer. No loop that
+    /// ships changes it.
     #[entry(effector, unit = "%")]
     pub charge_at: f64,
-    /// What it brings, or would.
+    /// Luggage that the robot brings, or is interested in.
     #[entry]
     pub job: Option<Job>,
-    /// Its state.
+    /// State of the robot.
     #[entry(flatten)]
     pub variables: Variables,
-    /// Whether it broke and does nothing any more.
+    /// True if the robot broke and does nothing any more.
     pub shut_down: bool,
-    /// The robot for which it has to stand in, where somebody awaked it for that.
+    /// Robot that it substitutes, if it was woken for that.
     pub stands_in_for: Option<u32>,
-    /// Whether it was sent under charge, so that nobody has to stand in for it.
+    /// True if it was sent to charge, so that it needs no substitute.
     pub relieved: bool,
-    /// What it lets in of what others say.
-    pub(super) intake: Intake,
-    /// What it heard from others.
+    /// Validator of messages from other robots.
+    pub(super) validator: MessageValidator,
+    /// State of other robots, as they reported it.
     pub lists: Lists,
     /// The area and the ways through it.
     pub routes: Routes,
-    /// Its hardware.
-    pub(super) hooks: Hooks,
-    /// Where it tells of collisions that no world sees.
+    /// Client of its hardware.
+    pub(super) hardware: HardwareClient,
+    /// Publisher of collisions, for fleets without a world.
     pub(super) collisions: Publisher<Collision>,
-    /// The hardware's action that was running when this execution started, and what became of it.
+    /// The hardware's action that was running when this execution started, and its outcome.
     pub(super) polled: Option<(Action, Outcome)>,
-    /// Whether it said that it would help another robot.
+    /// True if it offered to help another robot.
     pub(super) offers_help: bool,
-    /// What is broken.
+    /// Reason why the robot cannot go on.
     pub(super) trouble: Option<Trouble>,
-    /// How often the hardware failed one after the other.
+    /// Number of consecutive failures of the hardware.
     pub(super) failures: u32,
-    /// What it delivered, or could not collect, and did not tell yet.
+    /// Luggage that it delivered, or could not collect, and has not reported yet.
     pub(super) untold: Option<(Job, LuggageStage)>,
-    /// Whether it still holds luggage that it gave up, so that it cannot take any other.
+    /// True if it still holds luggage that it gave up, so that it cannot take any other.
     pub(super) is_loaded: bool,
-    /// How long its battery lasts.
+    /// State of the energy management.
     pub(super) energy: Energy,
-    /// Who is around it.
+    /// The robots around it.
     pub(super) traffic: Traffic,
-    /// Where it goes.
+    /// The way to its current goal.
     pub(super) leg: Leg,
     #[extras]
     extras: Extras,
 }
 
 impl RobotKnowledge {
-    /// What a robot knows that starts at its charger.
+    /// Initial knowledge of a robot at its charger.
     pub fn new(name: String, number: u32, charge_block: Block, battery: Battery) -> RobotKnowledge {
         RobotKnowledge {
             name,
@@ -104,10 +105,10 @@ impl RobotKnowledge {
             shut_down: false,
             stands_in_for: None,
             relieved: false,
-            intake: Intake::default(),
+            validator: MessageValidator::default(),
             lists: Lists::new(number),
             routes: Routes::default(),
-            hooks: Hooks::default(),
+            hardware: HardwareClient::default(),
             collisions: Publisher::default(),
             polled: None,
             offers_help: false,
@@ -122,31 +123,31 @@ impl RobotKnowledge {
         }
     }
 
-    /// Whether it stands at its charger.
+    /// True if it is at its charger.
     pub fn is_at_charger(&self) -> bool {
         self.block == self.charge_block && self.next == self.charge_block
     }
 
-    /// Where its job leads next: first to where to collect, then to where to deposit.
+    /// Next destination of its job: the block where it collects, then the block where it deposits.
     pub fn destination(&self) -> Option<Block> {
         let job = self.job.as_ref().filter(|_| self.variables.busy)?;
         Some(if self.variables.has_luggage { job.to } else { job.from })
     }
 
-    /// Takes from the battery what an execution needs.
+    /// Discharges the battery by one execution.
     pub(super) fn use_battery(&mut self) {
         self.battery.drain();
         self.charge = self.battery.percent();
     }
 
-    /// Gives to the battery what an execution in charge gains.
+    /// Charges the battery by one execution.
     pub(super) fn charge_battery(&mut self) {
         self.battery.charge();
         self.charge = self.battery.percent();
     }
 
-    /// Tells what became of luggage. What this robot could not collect waits again for the others.
-    pub(super) fn tell(
+    /// Reports the outcome of a job. Luggage that this robot could not collect waits again for the others.
+    pub(super) fn report_outcome(
         &mut self,
         luggage: Publisher<EventLuggage>,
         context: &mut Context<'_>,
@@ -160,7 +161,7 @@ impl RobotKnowledge {
         Ok(())
     }
 
-    /// What it says about its position when it wants nothing but what it holds.
+    /// Its position message if it wants no block beyond those that it holds.
     pub fn position(&self) -> Position {
         Position {
             robot: self.number,
@@ -171,7 +172,7 @@ impl RobotKnowledge {
         }
     }
 
-    /// What it is doing, in the terms of a critical situation.
+    /// Kind of its critical situation.
     pub fn critical_kind(&self) -> CriticalKind {
         match self.job {
             Some(_) if self.variables.has_luggage => CriticalKind::CarriesLuggage,
@@ -195,7 +196,7 @@ impl RobotKnowledge {
         }
     }
 
-    /// What it says about itself.
+    /// Its state message.
     pub fn robot(&self, active: bool) -> RobotList {
         RobotList {
             robot: self.number,
@@ -209,48 +210,48 @@ impl RobotKnowledge {
     }
 }
 
-/// Why a robot cannot go on.
+/// Reasons why a robot cannot go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
-    /// It broke down.
+    /// The robot broke down.
     Breakdown,
-    /// Its hardware fails again and again.
+    /// The hardware fails repeatedly.
     Hardware,
-    /// Its battery is empty, with no charger there.
+    /// The battery is empty, away from a charger.
     Battery,
 }
 
-/// The state of a robot, in the terms of the manual's table 6.27.
+/// State of a robot, in the terms of the manual's table 6.27.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Entries)]
 pub struct Variables {
-    /// It has a job, or may not take one.
+    /// True if the robot has a job, or may not take one.
     #[entry]
     pub busy: bool,
-    /// It took an interest in luggage.
+    /// True if it took an interest in luggage.
     #[entry]
     pub transporter: bool,
-    /// It carries luggage.
+    /// True if it carries luggage.
     #[entry]
     pub has_luggage: bool,
-    /// It stops for this period.
+    /// True if it stops for this period.
     #[entry(effector)]
     pub stop_a_period: bool,
-    /// It goes to its charger after its present job.
+    /// True if it goes to its charger after its current job.
     #[entry]
     pub ready_to_go_under_charge: bool,
-    /// It is on the way to its charger.
+    /// True if it is on the way to its charger.
     #[entry]
     pub reaching_charge: bool,
-    /// It is at its charger, in charge.
+    /// True if it is at its charger and charges.
     #[entry]
     pub in_charge: bool,
-    /// It helps another robot, or would.
+    /// True if it helps another robot, or offered that.
     #[entry]
     pub healer: bool,
-    /// It takes no jobs until it awakes.
+    /// True if it takes no jobs until it is woken.
     #[entry]
     pub asleep: bool,
-    /// It is broken, and shuts down.
+    /// True if it is broken and shuts down.
     #[entry]
     pub critical: bool,
 }

@@ -1,4 +1,4 @@
-//! What a robot goes on with when a new build of it, or of one of its loops, takes its place.
+//! State that a robot keeps when it, or one of its loops, is replaced by a new build.
 
 use saoms_api::{Failure, Header, Message, Saved, Time};
 
@@ -6,7 +6,7 @@ use super::RobotKnowledge;
 use crate::grid::Block;
 use crate::messages::{CriticalSituation, EventLuggage};
 
-/// What a robot without a job knows that nobody tells it again.
+/// Knowledge of a robot without a job that no message repeats.
 #[derive(Clone, Debug, Message)]
 struct Memory {
     battery: f64,
@@ -19,7 +19,7 @@ struct Memory {
 }
 
 impl RobotKnowledge {
-    /// Writes down what it goes on with. A robot in the middle of something cannot: its loops know more than is in here.
+    /// Saves the state. A robot in the middle of a job cannot be saved: its loops know more than this.
     pub(super) fn save(&self) -> Result<Saved, Failure> {
         if self.variables.critical {
             return Err("it is out of order".into());
@@ -28,7 +28,7 @@ impl RobotKnowledge {
             return Err(Failure::new(format!("it brings luggage {}", job.luggage)));
         }
         let claims = self.variables.transporter || self.offers_help || self.untold.is_some();
-        if claims || self.hooks.running().is_some() {
+        if claims || self.hardware.running().is_some() {
             return Err("it is in the middle of something".into());
         }
         let requests = self.lists.requests.open().iter().map(|request| request.job);
@@ -45,7 +45,7 @@ impl RobotKnowledge {
         }))
     }
 
-    /// Goes on with that.
+    /// Restores a saved state.
     pub(super) fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         let Some(memory) = saved.read::<Memory>()? else { return Ok(()) };
         self.battery.set_percent(memory.battery);
@@ -55,7 +55,7 @@ impl RobotKnowledge {
         if memory.charge_block != self.charge_block {
             self.use_charger(memory.charge_block);
         }
-        // They have waited for some time; how long does not matter.
+        // They have waited for an unknown time, which does not matter.
         let header = Header { sender: u32::MAX, sent: Time::START, cause: saoms_api::Cause::default() };
         for request in &memory.luggage {
             self.lists.requests.hear(request, header);

@@ -1,23 +1,24 @@
-//! The robots: what they know, and the loops by which they act.
+//! The robots: their knowledge, and the loops by which they act.
 //!
-//! A robot is [`RobotKnowledge`] and an ordered list of MAPE-K loops that share it, one for each concern. The policy tells which: those of
-//! [`safe`] (jobs, energy, right of way) or those of [`classic`] (the rules of the manual). Both drive the same hooks.
+//! A robot is [`RobotKnowledge`] and an ordered list of MAPE-K loops that share it, one for each concern. The policy
+//! selects the loops: those of [`safe`] (jobs, energy, right of way) or those of [`classic`] (the rules of the manual).
+//! Both use the same hardware.
 //!
-//! A component that is a robot and something more [extends](Class#extending-a-class) [`Robot`].
+//! A component that is a robot and more [extends](Class#extending-a-class) [`Robot`].
 
 mod actions;
 mod battery;
 pub mod classic;
-mod heard;
-mod hooks;
+mod console;
+mod hardware_client;
 mod job;
 mod knowledge;
 mod lists;
 mod memory;
 mod properties;
+mod receive;
 mod routes;
 pub mod safe;
-mod show;
 
 use saoms_api::{Class, Component, Context, Failure, Loops, Saved};
 
@@ -32,12 +33,12 @@ pub use lists::{Help, Helps, Lists, Peers, Request, Requests, Rival};
 pub use properties::{Policy, RobotProperties};
 pub use routes::Routes;
 
-use hooks::{Hooks, Reply};
+use hardware_client::{HardwareClient, Reply};
 
 /// Brings luggage from one block to another, together with other robots.
 ///
-/// It starts at its charger, takes an interest in luggage that waits, goes when no other robot is closer, collects, brings and deposits it,
-/// and charges its battery there where it started.
+/// The robot starts at its charger. It takes an interest in luggage that waits, goes if no other robot is closer,
+/// collects the luggage, brings it to its destination and deposits it, and charges its battery at its charger.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.Robot",
@@ -46,23 +47,23 @@ use hooks::{Hooks, Reply};
     loops(
         property = "policy",
         safe(
-            safe::RobotMS,
-            safe::BatteryMS,
-            safe::RobotListMS,
-            safe::CriticalSituationMS,
-            safe::GripperMS,
-            safe::EventLuggageMS,
-            safe::CollisionMS,
-            safe::PathFollowerMS
+            safe::SafeRobotState,
+            safe::SafeBattery,
+            safe::SafeRobotList,
+            safe::SafeCriticalSituation,
+            safe::SafeGripper,
+            safe::SafeEventLuggage,
+            safe::SafeCollision,
+            safe::SafePathFollower
         ),
         classic(
-            classic::RobotMS,
-            classic::RobotListMS,
-            classic::BatteryMS,
-            classic::CriticalSituationMS,
-            classic::EventLuggageMS,
-            classic::CollisionMS,
-            classic::PathFollowerMS
+            classic::ClassicRobotState,
+            classic::ClassicRobotList,
+            classic::ClassicBattery,
+            classic::ClassicCriticalSituation,
+            classic::ClassicEventLuggage,
+            classic::ClassicCollision,
+            classic::ClassicPathFollower
         )
     ),
     publishes(COLLISION),
@@ -80,7 +81,7 @@ use hooks::{Hooks, Reply};
     also("robot.Robot010", number = 10)
 )]
 pub struct Robot {
-    // It is large, and a robot is moved on its way to where it stays.
+    // Boxed, since it is large and a robot is moved while it is built.
     knowledge: Box<RobotKnowledge>,
     loops: Loops,
 }
@@ -101,8 +102,8 @@ impl Component for Robot {
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.loops = context.loops()?;
-        self.knowledge.hooks = Hooks::new(context)?;
-        self.knowledge.intake.note_speaker(self.knowledge.number, context.sender());
+        self.knowledge.hardware = HardwareClient::new(context)?;
+        self.knowledge.validator.note_speaker(self.knowledge.number, context.sender());
         self.knowledge.collisions = context.publish(&COLLISION)?;
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
@@ -129,7 +130,7 @@ impl Component for Robot {
             self.knowledge.show_lists(context);
             let in_charge = self.knowledge.variables.in_charge;
             self.loops.adapt(&mut *self.knowledge, context)?;
-            // As in figures 8.6 and 8.15, a robot that arrives at its charger says that alone.
+            // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
             if in_charge || !self.knowledge.variables.in_charge {
                 self.knowledge.show_battery(context);
             }
@@ -152,18 +153,18 @@ impl Component for Robot {
 }
 
 impl Robot {
-    /// What it knows: for components that extend it.
+    /// Knowledge of the robot, for components that extend it.
     pub fn knowledge(&self) -> &RobotKnowledge {
         &self.knowledge
     }
 
-    /// Says to the world that the robot is there, and learns the map; `false` while the world cannot be reached.
+    /// Registers the robot with the world and learns the map; `false` while the world cannot be reached.
     fn enter(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
         let knowledge = &mut self.knowledge;
-        if knowledge.hooks.has_entered() {
+        if knowledge.hardware.has_entered() {
             return Ok(true);
         }
-        match knowledge.hooks.enter(context, knowledge.number, &knowledge.name, knowledge.block)? {
+        match knowledge.hardware.enter(context, knowledge.number, &knowledge.name, knowledge.block)? {
             Reply::Later => Ok(false),
             Reply::Answer((block, map)) => {
                 (knowledge.block, knowledge.next) = (block, block);

@@ -3,7 +3,7 @@ use saoms_api::{Failure, Finding, Place, Properties, PropertyField};
 
 use crate::grid::Block;
 
-/// By which rules a robot acts.
+/// Rules by which a robot acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
 pub enum Policy {
     /// Never enters a block that another robot holds, and never takes a job for which the battery does not last.
@@ -12,31 +12,33 @@ pub enum Policy {
     Classic,
 }
 
-/// What a composite says about a robot.
+/// Properties of a robot.
 #[derive(Clone, Debug, Properties)]
 pub struct RobotProperties {
-    /// The robot's name.
+    /// Name of the robot.
     #[property(name = "ID", required_text, unique = "robot")]
     pub(crate) id: SmolStr,
-    /// The robot's number; by default the digits at the end of its ID. Where robots are equal, the lower number goes first.
+    /// Number of the robot; by default the digits at the end of its ID. Between equal robots the lower number goes
+    /// first.
     #[property(range = 1.., unique = "robot number")]
     pub(crate) number: Option<u32>,
-    /// The column of the block with its charger, where it starts.
+    /// Column of the block with its charger, where it starts.
     #[property(default = 0, range = 0..)]
     pub(crate) charge_x: i32,
-    /// The row of that block; by default the robot's number.
+    /// Row of that block; by default the robot's number.
     #[property(range = 0..)]
     pub(crate) charge_y: Option<i32>,
-    /// The charge of the battery at the start.
+    /// Battery level at the start.
     #[property(default = 100.0, range = 0.0..=100.0, unit = "%")]
     pub(crate) battery: f64,
-    /// What an execution takes from the battery; in charge it gains five times as much.
+    /// Discharge of the battery in an execution; while the robot charges, it gains five times as much.
     #[property(default = 2.0, range = 0.0..=100.0, unit = "% per execution")]
     pub(crate) discharge: f64,
-    /// Whether the robot starts asleep, in charge, and takes no jobs until somebody awakes it.
+    /// True if the robot starts asleep at its charger and takes no jobs until it is woken.
     #[property(default = false)]
     pub(crate) asleep: bool,
-    /// By which rules the robot acts: `safe`, which neither collides nor runs out of battery, or `classic`, the manual's.
+    /// Rules by which the robot acts: `safe`, which neither collides nor runs out of battery, or `classic`, the
+    /// manual's.
     #[property(default = "safe")]
     pub(crate) policy: Policy,
 }

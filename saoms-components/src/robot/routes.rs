@@ -1,60 +1,60 @@
 use crate::grid::{Block, Distances, MOVE, Map, UNREACHABLE};
 
-/// The area as a robot knows it, and the ways through it.
+/// A robot's view of the area, and the ways through it.
 ///
-/// Ways keep off the chargers of other robots, where somebody may stay for long, and lead around robots that do not move any more. A way to
-/// the block of such a robot ends beside it. Without a map the area is open and as large as its coordinates; so is a very large map without
-/// blocked blocks, where a search would take longer than it saves.
+/// Ways avoid the chargers of other robots, where a robot may stay for long, and lead around robots that do not move
+/// any more. A way to the block of such a robot ends beside it. Without a map the area is open and as large as its
+/// coordinates; so is a very large map without blocked blocks, where a search would take longer than it saves.
 #[derive(Debug, Default)]
 pub struct Routes {
     area: Option<Area>,
-    /// Robots that do not move any more, and where they are.
+    /// Robots that do not move any more, and their blocks.
     obstacles: Vec<(u32, Block)>,
-    /// As many as [`WAYS`], once one was asked for.
+    /// Cached searches: [`WAYS`] of them, once one was needed.
     ways: Vec<Way>,
-    /// Counts the questions.
+    /// Counter of lookups, for the age of cached searches.
     clock: u32,
-    /// The place in `ways` of the one to the present goal.
+    /// Index in `ways` of the search for the current goal.
     heading: usize,
-    /// Counts what made other ways possible or necessary.
+    /// Number of changes of the map that make other ways possible or necessary.
     changes: u32,
 }
 
-/// How many blocks a robot knows the ways to: its charger, the two ends of its job, and one to think about.
+/// Number of cached searches: for the charger, the two ends of the job, and a goal under consideration.
 const WAYS: usize = 4;
 
-/// The ways to one block.
+/// Ways to one block.
 #[derive(Debug, Default)]
 struct Way {
     distances: Distances,
-    /// When it was asked for last.
+    /// Value of the clock at the last use.
     asked: u32,
 }
 
 #[derive(Debug)]
 struct Area {
-    /// The map, on which obstacles are blocked.
+    /// The map, with obstacles as blocked blocks.
     map: Map,
-    /// The map without obstacles, where there are any.
+    /// The map without obstacles, if there are any.
     empty: Option<Map>,
-    /// The chargers of other robots, as blocked blocks of a map.
+    /// Chargers of other robots, as blocked blocks of a map.
     chargers: Map,
     charge_block: Block,
     searched: bool,
 }
 
-/// Up to so many blocks an open map is searched.
+/// Maximum number of blocks of an open map that is searched.
 const SEARCHED: usize = 16_384;
 
 impl Routes {
-    /// Learns the map, and the ways to the charger.
+    /// Sets the map and the block of the charger.
     pub fn learn(&mut self, map: Map, charge_block: Block) {
         let searched = !map.is_open() || map.size() <= SEARCHED;
         let chargers = Map::new(map.width(), map.height());
         self.area = Some(Area { map, empty: None, chargers, charge_block, searched });
     }
 
-    /// Learns where another robot's charger is.
+    /// Adds the charger of another robot.
     pub fn learn_charger(&mut self, charger: Block) {
         if let Some(area) = &mut self.area
             && area.chargers.is_free(charger)
@@ -65,7 +65,7 @@ impl Routes {
         }
     }
 
-    /// Learns that the robot has another charger, and where those of others are.
+    /// Replaces the robot's charger, and the chargers of the others.
     pub fn use_charger(&mut self, charge_block: Block, others: impl Iterator<Item = Block>) {
         if let Some(area) = &mut self.area {
             area.charge_block = charge_block;
@@ -77,7 +77,7 @@ impl Routes {
         }
     }
 
-    /// Learns that nobody gets past a robot any more.
+    /// Adds a robot that does not move any more as an obstacle.
     pub fn learn_obstacle(&mut self, robot: u32, block: Block) {
         if self.obstacles.contains(&(robot, block)) {
             return;
@@ -91,7 +91,7 @@ impl Routes {
         self.forget_searches();
     }
 
-    /// Learns that a robot moves again.
+    /// Removes an obstacle: the robot moves again.
     pub fn forget_obstacle(&mut self, robot: u32) {
         let known = self.obstacles.len();
         self.obstacles.retain(|(other, _)| *other != robot);
@@ -109,17 +109,17 @@ impl Routes {
         self.forget_searches();
     }
 
-    /// Whether a robot that does not move any more is on the block.
+    /// True if a robot that does not move any more is on the block.
     pub fn is_obstacle(&self, block: Block) -> bool {
         self.obstacles.iter().any(|(_, obstacle)| *obstacle == block)
     }
 
-    /// Whether another robot charges on the block.
+    /// True if the block is the charger of another robot.
     pub fn is_charger(&self, block: Block) -> bool {
         self.area.as_ref().is_some_and(|area| area.chargers.contains(block) && !area.chargers.is_free(block))
     }
 
-    /// How often other ways became possible or necessary.
+    /// Number of changes that made other ways possible or necessary.
     pub fn changes(&self) -> u32 {
         self.changes
     }
@@ -131,12 +131,12 @@ impl Routes {
         }
     }
 
-    /// The area without the robots that do not move any more, as far as it is known.
+    /// The map without obstacles, if it is known.
     pub(super) fn map(&self) -> Option<&Map> {
         self.area.as_ref().map(|area| area.empty.as_ref().unwrap_or(&area.map))
     }
 
-    /// Whether a robot can stand on the block.
+    /// True if a robot can be on the block.
     #[inline]
     pub fn is_free(&self, block: Block) -> bool {
         match &self.area {
@@ -145,11 +145,11 @@ impl Routes {
         }
     }
 
-    /// How many moves lead from one block to another.
+    /// Number of moves from one block to another.
     pub fn between(&mut self, from: Block, to: Block) -> u32 {
         let place = self.way_to(to);
         let cost = if from != to && self.is_obstacle(from) {
-            // From beside it.
+            // The way starts at a neighbour.
             let beside = from.neighbours().into_iter().filter(|block| self.is_free(*block));
             beside.map(|block| self.cost(place, block, to)).min().unwrap_or(UNREACHABLE)
         } else {
@@ -158,12 +158,12 @@ impl Routes {
         if cost == UNREACHABLE { UNREACHABLE } else { cost.div_ceil(MOVE) }
     }
 
-    /// Makes sure that [`to_goal`](Routes::to_goal) leads to this block.
+    /// Prepares [`to_goal`](Routes::to_goal) for this block.
     pub fn head_for(&mut self, goal: Block) {
         self.heading = self.way_to(goal);
     }
 
-    /// What the way to the goal that was headed for costs, in parts of [`MOVE`].
+    /// Cost of the way to the goal of [`head_for`](Routes::head_for), in parts of [`MOVE`].
     #[inline]
     pub fn to_goal(&self, from: Block, goal: Block) -> u32 {
         self.cost(self.heading, from, goal)
@@ -182,7 +182,7 @@ impl Routes {
         }
     }
 
-    /// The place in `ways` of the ways to a block. They are searched where they are not known, in place of those that were not asked for the
+    /// Index in `ways` of the ways to a block. Unknown ways are searched and replace those that were not used for the
     /// longest time.
     fn way_to(&mut self, to: Block) -> usize {
         let Some(area) = self.area.as_ref().filter(|area| area.searched) else { return 0 };

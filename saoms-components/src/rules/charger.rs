@@ -1,4 +1,4 @@
-//! Chargers where no robot can be.
+//! Rule: a charger is on a block that no robot can enter.
 
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};

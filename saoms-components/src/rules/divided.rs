@@ -1,4 +1,4 @@
-//! Maps whose parts are not connected.
+//! Rule: the parts of a map are not connected.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -6,10 +6,10 @@ use std::ops::Range;
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
-use super::looks::Looks;
-use super::map::{Area, Luggage, area, luggage, rows};
-use super::robots::{Known, may_be_others, robots};
-use crate::environment::{Spot, Written};
+use super::budget::Budget;
+use super::map::{LuggageLine, WorldMap, area, luggage, rows};
+use super::robots::{FleetRobot, may_be_others, robots};
+use crate::environment::{Spanned, Spot};
 use crate::grid::{Block, Map};
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -27,28 +27,28 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
-    let robots: Vec<&Known> = robots.iter().filter(|robot| robot.world == Some(area.index)).collect();
+    let robots: Vec<&FleetRobot> = robots.iter().filter(|robot| robot.world == Some(area.index)).collect();
     if area.map.is_open() || robots.is_empty() || may_be_others(fleet) {
         return Vec::new();
     }
     let parts = Parts::of(&area.map);
-    // A charger where no robot can be is reported: nobody knows which part it is meant to be in.
+    // A charger on a block that no robot can enter is reported by another rule; its part is unknown.
     let chargers: Option<HashSet<u32>> = robots.iter().map(|robot| parts.part(robot.charger)).collect();
     let Some(chargers) = chargers else { return Vec::new() };
-    let mut reached = Reached { area: &area, parts: &parts, chargers: &chargers, looks: Looks::default() };
-    luggage(fleet).iter().flat_map(|piece| judge(&mut reached, piece)).collect()
+    let mut reached = Reached { area: &area, parts: &parts, chargers: &chargers, budget: Budget::default() };
+    luggage(fleet).iter().flat_map(|piece| check_piece(&mut reached, piece)).collect()
 }
 
-/// What robots get to.
+/// Parts of the map that robots reach.
 struct Reached<'a> {
-    area: &'a Area,
+    area: &'a WorldMap,
     parts: &'a Parts,
-    /// The parts in which there are chargers.
+    /// Parts with chargers.
     chargers: &'a HashSet<u32>,
-    looks: Looks,
+    budget: Budget,
 }
 
-fn judge(reached: &mut Reached<'_>, piece: &Luggage) -> Vec<Finding> {
+fn check_piece(reached: &mut Reached<'_>, piece: &LuggageLine) -> Vec<Finding> {
     let mut findings: Vec<Finding> =
         [&piece.from, &piece.to].into_iter().filter_map(|spot| cut_off(reached, piece, spot)).collect();
     let parts = reached.parts;
@@ -67,10 +67,10 @@ fn judge(reached: &mut Reached<'_>, piece: &Luggage) -> Vec<Finding> {
     findings
 }
 
-/// What is wrong with a spot that no robot can reach from its charger.
-fn cut_off(reached: &mut Reached<'_>, piece: &Luggage, spot: &Written<Spot>) -> Option<Finding> {
+/// A finding if no robot can reach this spot from its charger.
+fn cut_off(reached: &mut Reached<'_>, piece: &LuggageLine, spot: &Spanned<Spot>) -> Option<Finding> {
     const HELP: &str = "open a way through the blocked blocks, or put a robot with its charger there";
-    let Reached { area, parts, chargers, looks } = reached;
+    let Reached { area, parts, chargers, budget } = reached;
     if let Some(block) = spot.value.block() {
         let message = format!("no way on the map leads to {block} from the charger of any robot");
         let is_cut = parts.part(block).is_some_and(|part| !chargers.contains(&part));
@@ -84,11 +84,11 @@ fn cut_off(reached: &mut Reached<'_>, piece: &Luggage, spot: &Written<Spot>) -> 
             let free = part.end.min(columns.end) - part.start.max(columns.start);
             all += free;
             cut += if chargers.contains(&part.part) { 0 } else { free };
-            if !looks.admit(1) {
+            if !budget.admit(1) {
                 return None;
             }
         }
-        if !looks.admit(1) {
+        if !budget.admit(1) {
             return None;
         }
     }
@@ -99,25 +99,26 @@ fn cut_off(reached: &mut Reached<'_>, piece: &Luggage, spot: &Written<Spot>) -> 
     (cut > 0).then(|| Finding::new(piece.place(spot), message).severity(severity).help(HELP))
 }
 
-/// The parts of a map between which no way leads.
+/// Connected parts of a map.
 struct Parts {
-    /// The free blocks beside one another in a row, row by row.
+    /// Ranges of adjacent free blocks, row by row.
     ranges: Vec<FreeRange>,
-    /// Where each row starts in the ranges, and where the last ends.
+    /// Index of each row's first range, and of the end of the last row.
     rows: Vec<usize>,
 }
 
-/// Columns of a row in which free blocks are beside one another.
+/// A range of adjacent free blocks in a row.
 #[derive(Clone, Copy, Debug)]
 struct FreeRange {
     start: u32,
     end: u32,
-    /// The first range of the part that it belongs to.
+    /// Index of a range of the same part (union-find parent).
     part: u32,
 }
 
 impl Parts {
-    /// Joins ranges that touch from row to row. What it takes follows from the blocked blocks and the rows, not from how many blocks are free.
+    /// Joins ranges that touch from row to row. The time depends on the number of blocked blocks and rows, not on the
+    /// number of free blocks.
     fn of(map: &Map) -> Parts {
         let (mut ranges, mut rows): (Vec<FreeRange>, Vec<usize>) = (Vec::new(), vec![0]);
         for row in 0..map.height() {
@@ -125,7 +126,7 @@ impl Parts {
             for Range { start, end: own_end } in map.free_ranges(row, 0..map.width()) {
                 let own = ranges.len();
                 ranges.push(FreeRange { start, end: own_end, part: own as u32 });
-                // What ends before this one touches none that comes later.
+                // A range that ends before this one touches none that comes later.
                 while above < end && ranges[above].end <= start {
                     above += 1;
                 }
@@ -144,7 +145,7 @@ impl Parts {
         Parts { ranges, rows }
     }
 
-    /// The ranges with blocks in these columns of a row.
+    /// The ranges of a row with blocks in these columns.
     fn between(&self, row: u32, columns: &Range<u32>) -> &[FreeRange] {
         let row = row as usize;
         let (Some(start), Some(end)) = (self.rows.get(row), self.rows.get(row + 1)) else { return &[] };
@@ -154,15 +155,15 @@ impl Parts {
         &all[from..to.max(from)]
     }
 
-    /// The part that a block is in; `None` where it is blocked, or outside the map.
+    /// The part of a block; `None` if it is blocked, or outside the map.
     fn part(&self, block: Block) -> Option<u32> {
         let (column, row) = (u32::try_from(block.x).ok()?, u32::try_from(block.y).ok()?);
         self.between(row, &(column..column + 1)).first().map(|range| range.part)
     }
 }
 
-/// The first range of a part as far as it is known, with shorter ways there for the next time (Tarjan and van Leeuwen, "Worst-case Analysis
-/// of Set Union Algorithms", 1984: path halving).
+/// Root of a range's part, with path halving (Tarjan and van Leeuwen, "Worst-case Analysis of Set Union Algorithms",
+/// 1984).
 fn root(ranges: &mut [FreeRange], mut range: usize) -> usize {
     while ranges[range].part as usize != range {
         let above = ranges[range].part as usize;
@@ -180,7 +181,7 @@ mod tests {
 
     use super::*;
 
-    /// The blocks of each part, found block by block.
+    /// The part of each block, found by flood fill.
     fn flooded(map: &Map) -> HashMap<Block, Block> {
         let mut parts = HashMap::new();
         for start in (0..map.size()).map(|place| map.block(place)) {

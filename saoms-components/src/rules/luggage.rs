@@ -1,11 +1,11 @@
-//! Luggage from or to a block where no robot can be.
+//! Rule: luggage starts or ends on a block that no robot can enter.
 
 use saoms_api::Finding;
 use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 
-use super::looks::Looks;
-use super::map::{Area, Luggage, area, luggage, rows};
-use crate::environment::{Spot, Written};
+use super::budget::Budget;
+use super::map::{LuggageLine, WorldMap, area, luggage, rows};
+use crate::environment::{Spanned, Spot};
 use crate::messages::AREA;
 use crate::world::World;
 
@@ -28,11 +28,11 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         component.has_broker || component.class.publishes.contains(&AREA.name())
     };
     let is_said = fleet.misses::<World>() || fleet.components().iter().any(says);
-    let (mut findings, mut looks) = (Vec::new(), Looks::default());
+    let (mut findings, mut budget) = (Vec::new(), Budget::default());
     for piece in luggage(fleet) {
         for spot in [&piece.from, &piece.to] {
             match &area {
-                Some(area) => findings.extend(judge(area, &piece, spot, &mut looks)),
+                Some(area) => findings.extend(check_spot(area, &piece, spot, &mut budget)),
                 None if spot.value == Spot::Anywhere && !is_said => {
                     let message = "`random` needs an area to draw from, and nothing in the fleet says one";
                     let help = "add a `saoms.World`, or write two corners such as `(1,0)..(10,10)`";
@@ -45,7 +45,12 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     findings
 }
 
-fn judge(area: &Area, piece: &Luggage, spot: &Written<Spot>, looks: &mut Looks) -> Option<Finding> {
+fn check_spot(
+    area: &WorldMap,
+    piece: &LuggageLine,
+    spot: &Spanned<Spot>,
+    budget: &mut Budget,
+) -> Option<Finding> {
     let place = piece.place(spot);
     if let Some(block) = spot.value.block() {
         let problem = area.problem(block)?;
@@ -54,9 +59,9 @@ fn judge(area: &Area, piece: &Luggage, spot: &Written<Spot>, looks: &mut Looks) 
     }
     let (first, last) = spot.value.corners(Some(&area.map))?;
     let (mut rows, columns) = rows(first, last, &area.map);
-    // Most often the first row says it.
+    // Mostly the first row already has a free block.
     let is_free = rows.any(|row| {
-        !looks.admit(1 + columns.len() / 64) || area.map.free_ranges(row, columns.clone()).next().is_some()
+        !budget.admit(1 + columns.len() / 64) || area.map.free_ranges(row, columns.clone()).next().is_some()
     });
     if !is_free {
         let message = format!("there is no free block from {first} to {last}, so no luggage can be there");

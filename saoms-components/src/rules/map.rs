@@ -1,4 +1,4 @@
-//! The map of a fleet, as rules look at it.
+//! Map and luggage of a fleet, as rules use them.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -8,35 +8,35 @@ use std::time::Duration;
 use saoms_api::rule::FleetView;
 use saoms_api::{Finding, Place};
 
-use crate::environment::{Drawn, Environment, Happening, Scenario, Spot, Written};
+use crate::environment::{Environment, EventSpec, RandomRange, Scenario, Spanned, Spot};
 use crate::grid::{Block, Map};
 use crate::world::{World, WorldProperties};
 
-/// A world with a right map.
-pub(super) struct Area {
+/// A world with a valid map.
+pub(super) struct WorldMap {
     pub(super) index: usize,
     pub(super) map: Map,
     pub(super) properties: WorldProperties,
-    /// Which value says first that a block is blocked.
+    /// Index of the first value that blocks each block.
     blocked: OnceCell<HashMap<Block, usize>>,
 }
 
-/// All worlds whose maps are right. Each is made when it is asked for, as a map may take megabytes.
-pub(super) fn areas<'f>(fleet: &'f FleetView<'_>) -> impl Iterator<Item = Area> + use<'f> {
+/// Worlds with valid maps. Each map is built when it is needed, as it may take megabytes.
+pub(super) fn areas<'f>(fleet: &'f FleetView<'_>) -> impl Iterator<Item = WorldMap> + use<'f> {
     let worlds = fleet.all::<World>();
     worlds.filter_map(|(index, properties)| {
-        Some(Area { index, map: properties.map().ok()?, properties, blocked: OnceCell::new() })
+        Some(WorldMap { index, map: properties.map().ok()?, properties, blocked: OnceCell::new() })
     })
 }
 
-/// The map of the fleet; `None` where there is no world, or where several, or one with a fault, leave open which one is meant.
-pub(super) fn area(fleet: &FleetView<'_>) -> Option<Area> {
+/// The map of the fleet; `None` if there is no world, or if several worlds, or one with a fault, make it ambiguous.
+pub(super) fn area(fleet: &FleetView<'_>) -> Option<WorldMap> {
     let is_one = fleet.indices::<World>().take(2).count() == 1 && !fleet.misses::<World>();
     is_one.then(|| areas(fleet).next()).flatten()
 }
 
-impl Area {
-    /// Why no robot can stand on a block: it is outside, or blocked.
+impl WorldMap {
+    /// Reason why no robot can be on a block: it is outside, or blocked.
     pub(super) fn problem(&self, block: Block) -> Option<String> {
         if !self.map.contains(block) {
             let (x, y) = (self.map.width() - 1, self.map.height() - 1);
@@ -52,7 +52,7 @@ impl Area {
         })
     }
 
-    /// Adds where the block is blocked, or where the map's size is said.
+    /// Adds the place that blocks the block, or that sets the size of the map.
     pub(super) fn explain(&self, finding: Finding, block: Block) -> Finding {
         if let Some(&value) = self.blocked().get(&block) {
             let all = 0..self.properties.blocked[value].len();
@@ -69,23 +69,23 @@ impl Area {
 }
 
 /// A luggage line of a scenario.
-pub(super) struct Luggage {
-    /// The environment that it is in.
+pub(super) struct LuggageLine {
+    /// Index of its environment.
     pub(super) index: usize,
-    /// Which of its texts.
+    /// Index of its text.
     text: usize,
-    /// The time from one piece to the next, where they never end.
-    pub(super) endless: Option<Drawn<Duration>>,
-    pub(super) from: Written<Spot>,
-    pub(super) to: Written<Spot>,
+    /// Time from one piece to the next, if they never end.
+    pub(super) endless: Option<RandomRange<Duration>>,
+    pub(super) from: Spanned<Spot>,
+    pub(super) to: Spanned<Spot>,
 }
 
-impl Luggage {
-    pub(super) fn place(&self, spot: &Written<Spot>) -> Place {
+impl LuggageLine {
+    pub(super) fn place(&self, spot: &Spanned<Spot>) -> Place {
         self.part(spot.bytes.clone())
     }
 
-    /// Where both ends are written.
+    /// Place of both ends.
     pub(super) fn whole(&self) -> Place {
         self.part(self.from.bytes.start..self.to.bytes.end)
     }
@@ -95,22 +95,22 @@ impl Luggage {
     }
 }
 
-/// The luggage of all scenarios, wrong lines left out.
-pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<Luggage> {
+/// Luggage of all scenarios, without wrong lines.
+pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<LuggageLine> {
     let mut all = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
         for line in scenario.lines() {
-            if let Happening::Luggage { from, to } = &line.happening {
+            if let EventSpec::Luggage { from, to } = &line.event {
                 let endless = (line.times.is_none() && line.until.is_none()).then_some(line.every);
-                all.push(Luggage { index, text: line.text, endless, from: from.clone(), to: to.clone() });
+                all.push(LuggageLine { index, text: line.text, endless, from: from.clone(), to: to.clone() });
             }
         }
     }
     all
 }
 
-/// The rows of an area between two corners, and its columns, as far as they are on the map.
+/// Rows and columns between two corners, as far as they are on the map.
 pub(super) fn rows(first: Block, last: Block, map: &Map) -> (Range<u32>, Range<u32>) {
     let side = |first: i32, last: i32, length: u32| {
         let end = u32::try_from(last).map_or(0, |last| length.min(last + 1));

@@ -1,11 +1,11 @@
-//! What the checker finds in a whole fleet that no component can see alone.
+//! Rules over a whole fleet, for mistakes that no single component can see.
 //!
-//! Each rule has a file and a code of its own. A rule finds what is certainly wrong: where robots of other classes, or a message broker,
-//! may make right what looks wrong, it warns or says nothing.
+//! Each rule has a file and a code of its own. A rule reports an error only if it is certain. If robots of other
+//! classes, or a message broker, may make up for the mistake, it warns or reports nothing.
 
+mod budget;
 mod charger;
 mod divided;
-mod looks;
 mod luggage;
 mod map;
 mod number;

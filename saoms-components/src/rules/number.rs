@@ -1,9 +1,9 @@
-//! Two robots of one number.
+//! Rule: two robots have the same number.
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::robots::{Known, robots, sharing};
+use super::robots::{FleetRobot, robots, sharing};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -22,10 +22,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let mut findings = Vec::new();
     for (robot, other) in sharing(&robots, |robot| robot.number) {
-        let name = |robot: &Known| fleet.components()[robot.index].path;
+        let name = |robot: &FleetRobot| fleet.components()[robot.index].path;
         let message =
             format!("robots `{}` and `{}` both have the number {}", name(other), name(robot), robot.number);
-        // Of two with one ID that is what to change; the checker says so by itself unless it is told not to.
+        // If both have the same ID, the ID has to change. The checker reports that itself, unless it is told not to.
         let is_same_id = robot.properties.id.trim() == other.properties.id.trim();
         let place = match is_same_id {
             true => Place::property("ID").in_component(robot.index),

@@ -1,4 +1,4 @@
-//! The robots of a fleet, as rules look at them.
+//! Robots of a fleet, as rules use them.
 
 use std::ops::Deref;
 use std::rc::Rc;
@@ -10,13 +10,13 @@ use crate::grid::Block;
 use crate::messages::ROBOT_LIST;
 use crate::robot::{Robot, RobotProperties};
 
-/// A robot of the fleet whose own values are right.
-pub(super) struct Known {
+/// A robot of the fleet with valid properties.
+pub(super) struct FleetRobot {
     pub(super) index: usize,
     pub(super) number: u32,
-    /// Where its charger is, and where it starts.
+    /// Block of its charger, where it starts.
     pub(super) charger: Block,
-    /// The index of the world that it is in.
+    /// Index of its world.
     pub(super) world: Option<usize>,
     pub(super) properties: RobotProperties,
 }
@@ -26,34 +26,34 @@ pub(super) fn robots(fleet: &FleetView<'_>) -> Rc<Robots> {
     fleet.fact()
 }
 
-/// Whether there are robots of other classes, or may be some in other programs.
+/// True if there are robots of other classes, or may be some in other programs.
 pub(super) fn may_be_others(fleet: &FleetView<'_>) -> bool {
     robots(fleet).may_be_others
 }
 
-/// What rules know about all robots.
+/// Facts about all robots, computed once.
 pub(super) struct Robots {
-    known: Vec<Known>,
+    known: Vec<FleetRobot>,
     may_be_others: bool,
 }
 
 impl Deref for Robots {
-    type Target = [Known];
+    type Target = [FleetRobot];
 
-    fn deref(&self) -> &[Known] {
+    fn deref(&self) -> &[FleetRobot] {
         &self.known
     }
 }
 
 impl Fact for Robots {
     fn of(fleet: &FleetView<'_>) -> Robots {
-        // Of a large fleet most components are robots, and a list that grows is moved again and again.
+        // In large fleets most components are robots; reserving their number avoids moving the list as it grows.
         let mut known = Vec::with_capacity(fleet.indices::<Robot>().count());
         known.extend(fleet.all::<Robot>().filter_map(|(index, properties)| {
             let number = properties.number().ok()?;
             let charger = properties.charge_block(number).ok()?;
             let world = fleet.components()[index].target("world");
-            Some(Known { index, number, charger, world, properties })
+            Some(FleetRobot { index, number, charger, world, properties })
         }));
         Robots {
             known,
@@ -63,7 +63,7 @@ impl Fact for Robots {
     }
 }
 
-/// Whether somebody else than a robot publishes on a topic.
+/// True if a component other than a robot publishes on a topic.
 pub(super) fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> bool {
     let mut robots = fleet.indices::<Robot>().peekable();
     let mut components = fleet.components().iter().enumerate();
@@ -72,9 +72,12 @@ pub(super) fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> boo
     })
 }
 
-/// The robots, in their order, that share a key with one before them, each with the first that has it.
-pub(super) fn sharing<K: Ord>(robots: &[Known], key: impl Fn(&Known) -> K) -> Vec<(&Known, &Known)> {
-    // In most fleets the keys rise with the places, and are nearly sorted as they are.
+/// The robots that share a key with an earlier one, each with the first that has the key, in document order.
+pub(super) fn sharing<K: Ord>(
+    robots: &[FleetRobot],
+    key: impl Fn(&FleetRobot) -> K,
+) -> Vec<(&FleetRobot, &FleetRobot)> {
+    // In most fleets the keys are nearly sorted already.
     let mut keys: Vec<(K, usize)> = robots.iter().map(key).zip(0..).collect();
     keys.sort_unstable();
     let of_one_key = keys.chunk_by(|(one, _), (other, _)| one == other);
@@ -86,26 +89,26 @@ pub(super) fn sharing<K: Ord>(robots: &[Known], key: impl Fn(&Known) -> K) -> Ve
     sharing.into_iter().map(|(later, first)| (&robots[later], &robots[first])).collect()
 }
 
-/// The robots that are wired to a world, with that: by their worlds, and in their order.
-pub(super) fn by_world(robots: &[Known]) -> Vec<(usize, &Known)> {
-    let mut wired: Vec<(usize, &Known)> =
+/// Robots that are wired to a world, with the index of the world, sorted by world and then in document order.
+pub(super) fn by_world(robots: &[FleetRobot]) -> Vec<(usize, &FleetRobot)> {
+    let mut wired: Vec<(usize, &FleetRobot)> =
         robots.iter().filter_map(|robot| Some((robot.world?, robot))).collect();
     wired.sort_by_key(|(world, _)| *world);
     wired
 }
 
-impl Known {
-    /// Where the composite says where its charger is, as far as it does.
+impl FleetRobot {
+    /// Place of the robot's charger in the composite, as far as it is given.
     pub(super) fn charger_place(&self, fleet: &FleetView<'_>) -> Place {
         self.first_given(fleet, &["chargeY", "chargeX", "ID"])
     }
 
-    /// Where the composite says in which column its charger is, as far as it does.
+    /// Place of the column of the robot's charger in the composite, as far as it is given.
     pub(super) fn column_place(&self, fleet: &FleetView<'_>) -> Place {
         self.first_given(fleet, &["chargeX", "chargeY", "ID"])
     }
 
-    /// Where the composite says its number.
+    /// Place of the robot's number in the composite.
     pub(super) fn number_place(&self, fleet: &FleetView<'_>) -> Place {
         let name = if self.properties.number.is_some() { "number" } else { "ID" };
         self.first_given(fleet, &[name])

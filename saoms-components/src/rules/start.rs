@@ -1,4 +1,4 @@
-//! Two robots on one block at the start.
+//! Rule: two robots start on the same block.
 
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
@@ -20,14 +20,14 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    // Two robots may be in two worlds, of which nothing is known.
+    // A robot whose reference to a world is missing may be in another world.
     if fleet.misses::<World>() {
         return Vec::new();
     }
     let robots = robots(fleet);
     let mut findings = Vec::new();
     for (robot, other) in sharing(&robots, |robot| (robot.world, robot.charger.y, robot.charger.x)) {
-        // Two of one number are told that.
+        // Robots with the same number are reported by another rule.
         if other.number != robot.number {
             let message = format!(
                 "robots {} and {} both start at {}, where their chargers are",

@@ -1,4 +1,4 @@
-//! Breakdowns of robots that do not exist.
+//! Rule: a breakdown names a robot that does not exist.
 
 use std::cell::LazyCell;
 use std::collections::HashMap;
@@ -6,9 +6,9 @@ use std::collections::HashMap;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
 use saoms_api::{Finding, Place};
 
-use super::looks::Looks;
-use super::robots::{Known, may_be_others, robots};
-use crate::environment::{Drawn, Environment, Happening, Scenario};
+use super::budget::Budget;
+use super::robots::{FleetRobot, may_be_others, robots};
+use crate::environment::{Environment, EventSpec, RandomRange, Scenario};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -23,39 +23,39 @@ pub(super) static RULE: FleetRule = FleetRule {
     check,
 };
 
-/// What it costs to compare a name with another one, in looks.
+/// Cost of comparing two names, in comparisons of the budget.
 const NAME: usize = 50;
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let severity = if may_be_others(fleet) { Severity::Warning } else { Severity::Error };
-    // Most fleets have no breakdowns.
+    // Built on demand, since most fleets have no breakdowns.
     let names = LazyCell::new(|| Names::of(fleet, &robots));
-    let mut looks = Looks::default();
+    let mut budget = Budget::default();
     let mut findings = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
         for line in scenario.lines() {
-            let Happening::Breakdown(robot) = &line.happening else { continue };
+            let EventSpec::Breakdown(robot) = &line.event else { continue };
             let text = &properties.scenario[line.text][robot.bytes.clone()];
             let place = Place::property("scenario").part(line.text, robot.bytes.clone()).in_component(index);
-            let finding = judge(&robots, &names, robot.value, text, place, &mut looks);
+            let finding = check_name(&robots, &names, robot.value, text, place, &mut budget);
             findings.extend(finding.map(|finding| finding.severity(severity)));
         }
     }
     findings
 }
 
-/// What robots are called by.
+/// Names and numbers of robots.
 struct Names<'r> {
-    /// The number of the first robot with an ID or a path.
+    /// Number of the first robot with this ID or path.
     by_name: HashMap<&'r str, u32>,
-    /// In order.
+    /// All numbers, sorted.
     numbers: Vec<u32>,
 }
 
 impl<'r> Names<'r> {
-    fn of(fleet: &FleetView<'r>, robots: &'r [Known]) -> Names<'r> {
+    fn of(fleet: &FleetView<'r>, robots: &'r [FleetRobot]) -> Names<'r> {
         let mut by_name = HashMap::with_capacity(robots.len());
         for robot in robots {
             by_name.entry(robot.properties.id.as_str()).or_insert(robot.number);
@@ -66,20 +66,20 @@ impl<'r> Names<'r> {
         Names { by_name, numbers }
     }
 
-    /// How many robots have numbers from the one to the other.
+    /// Number of robots with numbers in this range.
     fn between(&self, least: u32, most: u32) -> usize {
         let up_to = |most: u32| self.numbers.partition_point(|number| *number <= most);
         up_to(most).saturating_sub(self.numbers.partition_point(|number| *number < least))
     }
 }
 
-fn judge(
-    robots: &[Known],
+fn check_name(
+    robots: &[FleetRobot],
     names: &Names<'_>,
-    Drawn { least, most }: Drawn<u32>,
+    RandomRange { least, most }: RandomRange<u32>,
     text: &str,
     place: Place,
-    looks: &mut Looks,
+    budget: &mut Budget,
 ) -> Option<Finding> {
     if let Some(number) = names.by_name.get(text).filter(|number| **number != least) {
         let message =
@@ -98,7 +98,7 @@ fn judge(
     let ids = robots.iter().map(|robot| robot.properties.id.as_str());
     let finding = Finding::new(place, message);
     let is_name = !text.starts_with(|sign: char| sign.is_ascii_digit());
-    let near = (is_name && looks.admit(NAME * robots.len())).then(|| nearest(text, ids.clone())).flatten();
+    let near = (is_name && budget.admit(NAME * robots.len())).then(|| nearest(text, ids.clone())).flatten();
     Some(match near {
         Some(near) => finding.instead(near),
         None if robots.is_empty() => finding.help("add it to the composite, or leave the event out"),

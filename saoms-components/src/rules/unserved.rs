@@ -1,12 +1,12 @@
-//! Scenarios of which nothing comes, so that a run would wait for ever.
+//! Rule: a scenario has events that no component handles, so that a run would wait for ever.
 
 use std::ops::Range;
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::robots::{Known, may_be_others, publishes_beside_robots, robots};
-use crate::environment::{Environment, Happening, Scenario};
+use super::robots::{FleetRobot, may_be_others, publishes_beside_robots, robots};
+use crate::environment::{Environment, EventSpec, Scenario};
 use crate::master::MasterRobot;
 use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
 use crate::robot::{Policy, Robot};
@@ -29,47 +29,47 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let scenarios = fleet.all::<Environment>();
-    let scenarios: Vec<(usize, Happenings)> =
-        scenarios.map(|(index, properties)| (index, Happenings::of(&properties.scenario))).collect();
+    let scenarios: Vec<(usize, FirstEvents)> =
+        scenarios.map(|(index, properties)| (index, FirstEvents::of(&properties.scenario))).collect();
     let is_awaked = scenarios.iter().any(|(_, has)| has.airplanes.is_some());
     let judged = scenarios.iter().filter_map(|(index, has)| {
-        let (first, message, help) = judge(fleet, has, is_awaked).or_else(|| airplanes(fleet, has))?;
+        let (first, message, help) = find_mistake(fleet, has, is_awaked).or_else(|| airplanes(fleet, has))?;
         let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
         Some(Finding::new(place, message).help(help))
     });
     judged.collect()
 }
 
-/// Where a scenario says first that something happens: which of its texts, and the bytes of the word.
+/// Index of the text and byte range of the word at which a scenario first has a kind of event.
 type First = (usize, Range<usize>);
 
-/// What happens in a scenario.
-struct Happenings {
+/// First event of each kind in a scenario.
+struct FirstEvents {
     events: Option<First>,
     luggage: Option<First>,
     airplanes: Option<First>,
 }
 
-/// What is wrong, where, and what to do.
-type Judged<'h> = (&'h First, &'static str, &'static str);
+/// Place of the mistake, message, and help.
+type Mistake<'h> = (&'h First, &'static str, &'static str);
 
-impl Happenings {
-    fn of(texts: &[String]) -> Happenings {
+impl FirstEvents {
+    fn of(texts: &[String]) -> FirstEvents {
         let (scenario, _) = Scenario::read_partly(texts);
-        let first = |is: fn(&Happening) -> bool| {
-            let line = scenario.lines().iter().find(|line| is(&line.happening))?;
+        let first = |is: fn(&EventSpec) -> bool| {
+            let line = scenario.lines().iter().find(|line| is(&line.event))?;
             Some((line.text, line.bytes.clone()))
         };
-        Happenings {
-            events: first(|one| *one != Happening::End),
-            luggage: first(|one| matches!(one, Happening::Luggage { .. })),
-            airplanes: first(|one| matches!(one, Happening::Landing(_) | Happening::Takeoff(_))),
+        FirstEvents {
+            events: first(|one| *one != EventSpec::End),
+            luggage: first(|one| matches!(one, EventSpec::Luggage { .. })),
+            airplanes: first(|one| matches!(one, EventSpec::Landing(_) | EventSpec::Takeoff(_))),
         }
     }
 }
 
-/// Why nothing comes of a scenario, and what to do.
-fn judge<'h>(fleet: &FleetView<'_>, has: &'h Happenings, is_awaked: bool) -> Option<Judged<'h>> {
+/// Reason why no component handles the events of a scenario, and help.
+fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_awaked: bool) -> Option<Mistake<'h>> {
     if let Some(first) = &has.events
         && !publishes_beside_robots(fleet, EVENT_LUGGAGE.name())
     {
@@ -80,14 +80,14 @@ fn judge<'h>(fleet: &FleetView<'_>, has: &'h Happenings, is_awaked: bool) -> Opt
         ));
     }
     let robots = robots(fleet);
-    // Safe robots awake for luggage by themselves, classic ones do not.
-    let comes = |robot: &Known| !robot.properties.asleep || robot.properties.policy == Policy::Safe;
+    // Safe robots wake for luggage by themselves, classic robots do not.
+    let comes = |robot: &FleetRobot| !robot.properties.asleep || robot.properties.policy == Policy::Safe;
     let first = has.luggage.as_ref()?;
     if robots.iter().any(comes) {
         return None;
     }
     if robots.is_empty() {
-        // One with a fault of its own is there, too.
+        // A robot with a fault of its own counts as well.
         let is_none = fleet.indices::<Robot>().next().is_none();
         return is_none.then_some((
             first,
@@ -105,8 +105,8 @@ fn judge<'h>(fleet: &FleetView<'_>, has: &'h Happenings, is_awaked: bool) -> Opt
     (!is_awaked).then_some((first, message, help))
 }
 
-/// Airplanes for which nobody does anything.
-fn airplanes<'h>(fleet: &FleetView<'_>, has: &'h Happenings) -> Option<Judged<'h>> {
+/// Landings and take-offs that no component handles.
+fn airplanes<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents) -> Option<Mistake<'h>> {
     let first = has.airplanes.as_ref()?;
     fleet.all::<MasterRobot>().next().is_none().then_some((
         first,

@@ -1,12 +1,12 @@
-//! Worlds that no robot is in.
+//! Rule: a world has no robots.
 
 use std::collections::HashMap;
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::map::{Area, areas};
-use super::robots::{Known, by_world, may_be_others, robots};
+use super::map::{WorldMap, areas};
+use super::robots::{FleetRobot, by_world, may_be_others, robots};
 use crate::robot::Robot;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -24,19 +24,19 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
-    // A wire with a fault may be one to a world.
+    // A wire with a fault may lead to a world.
     if robots.is_empty() || may_be_others(fleet) || fleet.misses::<Robot>() {
         return Vec::new();
     }
-    // The robot that is wired first to each world, and what else is wired to.
+    // The first robot of each world; below, other components that are wired to a world.
     let mut first = by_world(&robots);
     first.dedup_by_key(|(world, _)| *world);
     let wires = fleet.components().iter().flat_map(|one| one.wires.iter().map(|(_, target)| *target));
     let mut used: Vec<usize> = wires.collect();
     used.sort_unstable();
     let mut findings = Vec::new();
-    // The last world that robots are wired to in each composite, by what paths there start with.
-    let mut around: HashMap<&str, (usize, &Known)> = HashMap::new();
+    // The last world to which robots of each composite are wired, by the common prefix of their paths.
+    let mut around: HashMap<&str, (usize, &FleetRobot)> = HashMap::new();
     for area in areas(fleet) {
         let index = area.index;
         if used.binary_search(&index).is_err() {
@@ -51,12 +51,12 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     findings
 }
 
-/// The path of the composite that a component is in, with the slash behind it.
+/// Path of a component's composite, with the slash at its end.
 fn composite(path: &str) -> &str {
     path.rfind('/').map_or("", |at| &path[..=at])
 }
 
-fn without_robots(fleet: &FleetView<'_>, area: &Area) -> Finding {
+fn without_robots(fleet: &FleetView<'_>, area: &WorldMap) -> Finding {
     let message = match area.map.is_open() {
         true => "no robot is wired to this world, so it sees neither robots nor what they deliver",
         false => "no robot is wired to this world, so robots move through its blocked blocks",
@@ -66,8 +66,12 @@ fn without_robots(fleet: &FleetView<'_>, area: &Area) -> Finding {
     Finding::new(Place::component(area.index), message).help(help)
 }
 
-/// Says that a robot is in no world, where others around it are in one: the innermost one counts.
-fn beside(fleet: &FleetView<'_>, robot: &Known, around: &HashMap<&str, (usize, &Known)>) -> Option<Finding> {
+/// A finding for a robot without a world if other robots in its composite have one; the innermost composite counts.
+fn beside(
+    fleet: &FleetView<'_>,
+    robot: &FleetRobot,
+    around: &HashMap<&str, (usize, &FleetRobot)>,
+) -> Option<Finding> {
     let own = composite(fleet.components()[robot.index].path);
     let mut outer = std::iter::successors(Some(own), |path| Some(composite(path.strip_suffix('/')?)));
     let (world, other) = outer.find_map(|path| around.get(path))?;

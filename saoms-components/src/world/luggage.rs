@@ -3,59 +3,59 @@ use std::collections::hash_map::Entry;
 
 use crate::grid::Block;
 
-/// All luggage, and where it really is.
+/// Pieces of luggage and their real positions.
 #[derive(Debug, Default)]
 pub(super) struct Stock {
     pieces: HashMap<u32, Piece>,
-    /// How many are neither delivered nor given up.
+    /// Number of pieces that are neither delivered nor given up.
     open: usize,
-    /// Luggage that a robot asked for before the world heard of it.
+    /// Pieces that a robot asked for before their request arrived.
     awaited: Vec<(u32, bool)>,
 }
 
 #[derive(Debug)]
 struct Piece {
     to: Block,
-    place: Place,
-    /// Whether nobody can bring it, as somebody said.
+    place: PiecePosition,
+    /// True if a message gave the piece up.
     given_up: bool,
 }
 
 impl Piece {
     fn is_open(&self) -> bool {
-        !self.given_up && self.place != Place::Delivered
+        !self.given_up && self.place != PiecePosition::Delivered
     }
 }
 
-/// Where a piece is.
+/// Position of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
+enum PiecePosition {
     At(Block),
     On(u32),
     Delivered,
 }
 
-/// What became of a robot's attempt.
+/// Outcome of a robot's attempt to collect or deposit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Luggage {
-    /// It is on the robot, or on a block that is not its destination.
+pub(super) enum HandlingOutcome {
+    /// The piece is on the robot, or on a block that is not its destination.
     Handled,
-    /// It is where it was to be brought.
+    /// The piece is at its destination.
     Delivered,
-    /// The world did not hear of it yet.
+    /// No request for the piece has arrived yet.
     Unknown,
 }
 
 impl Stock {
-    /// Takes in a request; `false` for a number that is known already.
+    /// Adds a request; `false` if its number is known already.
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) -> bool {
         let Entry::Vacant(free) = self.pieces.entry(luggage) else { return false };
-        free.insert(Piece { to, place: Place::At(from), given_up: false });
+        free.insert(Piece { to, place: PiecePosition::At(from), given_up: false });
         self.open += 1;
         true
     }
 
-    /// Nobody can bring it.
+    /// Gives up a piece.
     pub(super) fn give_up(&mut self, luggage: u32) {
         if let Some(piece) = self.pieces.get_mut(&luggage)
             && piece.is_open()
@@ -65,7 +65,7 @@ impl Stock {
         }
     }
 
-    /// After all that was said is heard: what is unknown for a whole period stays unknown.
+    /// Called after all messages of a period are handled: pieces that stay unknown for a whole period do not exist.
     pub(super) fn settle(&mut self) {
         for (_, settled) in &mut self.awaited {
             *settled = true;
@@ -76,68 +76,74 @@ impl Stock {
         self.pieces.is_empty()
     }
 
-    /// Whether nothing is left to bring.
+    /// True if no piece is left to bring.
     pub(super) fn is_settled(&self) -> bool {
         self.open == 0
     }
 
-    /// A robot collects a piece from a block. It may also be on another robot, if that lies on the block like luggage.
+    /// A robot collects a piece from a block. The piece may also be on another robot that is out of service on the
+    /// block.
     pub(super) fn collect(
         &mut self,
         luggage: u32,
         robot: u32,
         block: Block,
         lies_here: impl Fn(u32) -> bool,
-    ) -> Result<Luggage, String> {
+    ) -> Result<HandlingOutcome, String> {
         let Some(piece) = self.pieces.get_mut(&luggage) else { return self.unknown(luggage) };
         self.awaited.retain(|(awaited, _)| *awaited != luggage);
         match piece.place {
-            Place::At(place) if place == block => {
-                piece.place = Place::On(robot);
-                Ok(Luggage::Handled)
+            PiecePosition::At(place) if place == block => {
+                piece.place = PiecePosition::On(robot);
+                Ok(HandlingOutcome::Handled)
             }
-            Place::On(other) if lies_here(other) => {
-                piece.place = Place::On(robot);
-                Ok(Luggage::Handled)
+            PiecePosition::On(other) if lies_here(other) => {
+                piece.place = PiecePosition::On(robot);
+                Ok(HandlingOutcome::Handled)
             }
-            Place::At(place) => Err(format!("luggage {luggage} is not here but at {place}")),
-            Place::On(other) => Err(format!("luggage {luggage} is on robot {other}")),
-            Place::Delivered => Err(format!("luggage {luggage} is delivered already")),
+            PiecePosition::At(place) => Err(format!("luggage {luggage} is not here but at {place}")),
+            PiecePosition::On(other) => Err(format!("luggage {luggage} is on robot {other}")),
+            PiecePosition::Delivered => Err(format!("luggage {luggage} is delivered already")),
         }
     }
 
-    pub(super) fn deposit(&mut self, luggage: u32, robot: u32, block: Block) -> Result<Luggage, String> {
-        let piece = self.pieces.get_mut(&luggage).filter(|piece| piece.place == Place::On(robot));
+    pub(super) fn deposit(
+        &mut self,
+        luggage: u32,
+        robot: u32,
+        block: Block,
+    ) -> Result<HandlingOutcome, String> {
+        let piece = self.pieces.get_mut(&luggage).filter(|piece| piece.place == PiecePosition::On(robot));
         let Some(piece) = piece else { return Err(format!("it does not carry luggage {luggage}")) };
         if block != piece.to {
-            piece.place = Place::At(block);
-            return Ok(Luggage::Handled);
+            piece.place = PiecePosition::At(block);
+            return Ok(HandlingOutcome::Handled);
         }
         if piece.is_open() {
             self.open -= 1;
         }
-        piece.place = Place::Delivered;
-        Ok(Luggage::Delivered)
+        piece.place = PiecePosition::Delivered;
+        Ok(HandlingOutcome::Delivered)
     }
 
-    /// What a robot has on board lies on a block from now on.
+    /// Puts all pieces that a robot carries on a block.
     pub(super) fn unload(&mut self, robot: u32, block: Block) {
-        for piece in self.pieces.values_mut().filter(|piece| piece.place == Place::On(robot)) {
-            piece.place = Place::At(block);
+        for piece in self.pieces.values_mut().filter(|piece| piece.place == PiecePosition::On(robot)) {
+            piece.place = PiecePosition::At(block);
         }
     }
 
-    fn unknown(&mut self, luggage: u32) -> Result<Luggage, String> {
+    fn unknown(&mut self, luggage: u32) -> Result<HandlingOutcome, String> {
         match self.awaited.iter().position(|(awaited, _)| *awaited == luggage) {
             None => {
                 self.awaited.push((luggage, false));
-                Ok(Luggage::Unknown)
+                Ok(HandlingOutcome::Unknown)
             }
             Some(place) if self.awaited[place].1 => {
                 self.awaited.remove(place);
                 Err(format!("there is no luggage {luggage}"))
             }
-            Some(_) => Ok(Luggage::Unknown),
+            Some(_) => Ok(HandlingOutcome::Unknown),
         }
     }
 }

@@ -1,6 +1,7 @@
-//! What is physically true: the map, where robots and luggage really are, and the simulated hardware of the robots.
+//! The physical state of the fleet: the map, the real positions of robots and luggage, and the simulated hardware of
+//! the robots.
 
-mod hooks;
+mod hardware;
 mod luggage;
 mod properties;
 mod referee;
@@ -10,11 +11,11 @@ mod tests;
 use saoms_api::{Class, Component, Context, Failure, Publisher, Subscription, Work};
 
 use crate::hardware::Hardware;
-use crate::intake::{Intake, Problem};
 use crate::messages::{
     AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault,
     LuggageStage, ROBOT_LIST, RobotList,
 };
+use crate::validation::{MessageValidator, Problem};
 
 pub use properties::WorldProperties;
 
@@ -23,9 +24,10 @@ use referee::Referee;
 
 /// The physical world of a fleet.
 ///
-/// Robots whose reference `world` leads here drive simulated hardware: what they do takes the time that the properties say, and happens
-/// only where it can. The world counts what is delivered and who collides. A robot that breaks down stays where it is, with its luggage,
-/// which another robot beside it can take over. The run is done when all luggage is delivered or given up.
+/// Robots whose reference `world` leads here drive simulated hardware: their actions take the time that the properties
+/// set, and succeed only where they are possible. The world counts deliveries and collisions. A robot that breaks down
+/// stays where it is, with its luggage, which another robot beside it can take over. The run is done when all luggage
+/// is delivered or given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.World",
@@ -38,7 +40,7 @@ pub struct World {
     properties: WorldProperties,
     referee: Referee,
     stock: Stock,
-    intake: Intake,
+    validator: MessageValidator,
     events: Subscription<EnvironmentEvent>,
     robots: Subscription<RobotList>,
     responses: Subscription<EventLuggage>,
@@ -55,7 +57,7 @@ impl Component for World {
             properties,
             referee: Referee::new(map),
             stock: Stock::default(),
-            intake: Intake::default(),
+            validator: MessageValidator::default(),
             events: Subscription::default(),
             robots: Subscription::default(),
             responses: Subscription::default(),
@@ -81,7 +83,7 @@ impl Component for World {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         for event in context.receive(&self.events) {
-            // What is impossible is reported by the master of the environment, which lets it get no further.
+            // Impossible luggage is reported by the master of the environment, which does not forward it.
             let map = self.referee.map();
             let can_be = |request: &&EventLuggage| Problem::of_request(request, Some(map)).is_ok();
             for request in event.luggage.iter().filter(can_be) {
@@ -93,12 +95,12 @@ impl Component for World {
                 self.break_down(context, fault);
             }
         }
-        // Who speaks for which robot.
+        // The components that speak for each robot.
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            self.intake.lets_in(robot, header, Some(self.referee.map()), context);
+            self.validator.accepts(robot, header, Some(self.referee.map()), context);
         }
         for (header, response) in context.receive(&self.responses).with_headers() {
-            if !self.intake.lets_in(response, header, Some(self.referee.map()), context) {
+            if !self.validator.accepts(response, header, Some(self.referee.map()), context) {
                 continue;
             }
             if response.stage == LuggageStage::GivenUp {
@@ -113,7 +115,7 @@ impl Component for World {
 }
 
 impl World {
-    /// Nothing is voted before there is luggage, so that a fleet without a scenario runs until it is stopped.
+    /// The world does not vote before there is luggage, so that a fleet without a scenario runs until it is stopped.
     fn vote(&mut self, context: &mut Context<'_>) {
         let vote = match self.stock.is_settled() {
             _ if self.stock.is_empty() => return,

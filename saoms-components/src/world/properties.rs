@@ -5,35 +5,36 @@ use saoms_api::{Finding, Properties};
 use crate::grid::{Block, Map};
 use crate::text::TextFault;
 
-/// What a composite says about the world.
+/// Properties of a world.
 #[derive(Clone, Debug, Properties)]
 pub struct WorldProperties {
-    /// How many blocks wide the area is, unless there is a `map`.
+    /// Number of columns of the area, unless `map` is set.
     #[property(default = 11, range = 1..=8192, unit = "blocks")]
     pub(super) width: u32,
-    /// How many blocks high the area is, unless there is a `map`.
+    /// Number of rows of the area, unless `map` is set.
     #[property(default = 11, range = 1..=8192, unit = "blocks")]
     pub(super) height: u32,
-    /// The map as text: one line a row, `.` for a free block, `@` for a blocked one. The header of a MovingAI map may stand before the rows.
+    /// The map as text: one line for each row, `.` for a free block, `@` for a blocked one. The header of a MovingAI
+    /// map may stand before the rows.
     pub(crate) map: Option<String>,
-    /// Blocks where no robot can go, such as `(3,4)`, in addition to those of the map.
+    /// Blocks that no robot can enter, such as `(3,4)`, in addition to those of the map.
     pub(crate) blocked: Vec<String>,
-    /// How long a robot moves from one block to the next.
+    /// Time that a robot needs to move from one block to the next.
     #[property(default = "0ms", range = "0ms"..="1h")]
     pub(crate) move_time: Duration,
-    /// How long a robot collects or deposits luggage.
+    /// Time that a robot needs to collect or deposit luggage.
     #[property(default = "0ms", range = "0ms"..="1h")]
     pub(crate) handling_time: Duration,
 }
 
-/// What to do with several blocks in one text.
+/// Help for several blocks in one text.
 const SEVERAL: &str = "write several blocks as `many=\"true\"` and a `<value>` for each: `<value>(3,1)</value><value>(0,2)</value>`";
 
-/// How many wrong blocks are told.
+/// Maximum number of wrong blocks that are reported.
 const MOST_WRONG: usize = 1000;
 
 impl WorldProperties {
-    /// The map with all blocked blocks, or what is wrong with it.
+    /// The map with all blocked blocks, or findings about it.
     pub(crate) fn map(&self) -> Result<Map, Vec<Finding>> {
         let (mut map, mut findings) =
             match self.map.as_deref().map_or(Ok(Map::new(self.width, self.height)), Map::read) {

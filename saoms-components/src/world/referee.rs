@@ -6,19 +6,20 @@ use crate::grid::{Block, Map};
 use crate::hardware::{Action, Progress};
 use crate::messages::Collision;
 
-/// Where the robots really are, and who collided.
+/// The real positions of the robots, and their collisions.
 ///
-/// A robot holds its block and, while it moves, the block where it moves to. Two robots that hold one block collide; two that exchange their
-/// blocks collide as well, and are counted as that alone.
+/// A robot holds its block and, while it moves, the block that it moves to. Two robots that hold the same block
+/// collide. Two robots that exchange their blocks collide as well, which counts as one collision.
 #[derive(Debug)]
 pub(super) struct Referee {
     map: Map,
     bodies: BTreeMap<u32, Body>,
-    /// How many robots hold each block of the map; empty before the first one enters, since worlds are also made to be checked.
+    /// Number of robots that hold each block of the map. Empty until the first robot enters, since a world is also
+    /// built by checks.
     holders: Vec<u16>,
-    /// Robots that meet in a block at present.
+    /// Robots that currently meet in a block.
     meetings: Vec<Meeting>,
-    /// How many robots are moving.
+    /// Number of moving robots.
     moving: usize,
 }
 
@@ -26,15 +27,15 @@ pub(super) struct Referee {
 struct Body {
     name: String,
     block: Block,
-    /// Where it moves, and when it will be there.
+    /// Target of its move, and the time at which it arrives.
     moving: Option<(Block, Time)>,
-    /// What it does with luggage, and when it will be done.
+    /// Action of its gripper, and the time at which it ends.
     handling: Option<(Action, Time)>,
-    /// Whether it is out of order.
+    /// True if it is out of service.
     retired: bool,
 }
 
-/// A robot entered a block where another one was.
+/// A robot that entered a block where another one was.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
     entered: u32,
@@ -52,7 +53,7 @@ impl Referee {
         &self.map
     }
 
-    /// Lets a robot start at a block. A robot that was there before, as before a restart, is where it was.
+    /// Registers a robot at a block. A robot that was registered before, as before a restart, stays where it was.
     pub(super) fn enter(&mut self, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
         if let Some(body) = self.bodies.get(&robot) {
             if body.name != name {
@@ -116,7 +117,7 @@ impl Referee {
         }
     }
 
-    /// Starts a move that lasts until then. The inner error says why there is no way.
+    /// Starts a move that lasts until `until`. The inner error is the reason why the move is impossible.
     pub(super) fn begin_move(
         &mut self,
         robot: u32,
@@ -139,7 +140,7 @@ impl Referee {
         Ok(Ok(collision))
     }
 
-    /// How the robot's move goes.
+    /// Progress of the robot's move.
     pub(super) fn progress(&mut self, robot: u32, now: Time) -> Progress {
         let Some(body) = self.bodies.get_mut(&robot) else { return Progress::Failed };
         match body.moving {
@@ -155,7 +156,7 @@ impl Referee {
         }
     }
 
-    /// Ends the moves that are over, also of robots that did not ask.
+    /// Ends the moves that are over, including those of robots that did not ask.
     pub(super) fn settle(&mut self, now: Time) {
         if self.moving == 0 {
             return;
@@ -168,7 +169,7 @@ impl Referee {
         }
     }
 
-    /// Stops a robot: a move that is not over leaves it where it was.
+    /// Stops a robot; an unfinished move leaves it where it was.
     pub(super) fn cancel(&mut self, robot: u32) -> Result<(), Failure> {
         let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
         body.handling = None;
@@ -179,7 +180,7 @@ impl Referee {
         Ok(())
     }
 
-    /// Stops a robot for good, until it starts again, and says where it is.
+    /// Takes a robot out of service until it starts again, and returns its position.
     pub(super) fn retire(&mut self, robot: u32) -> Result<Block, Failure> {
         self.cancel(robot)?;
         let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
@@ -191,7 +192,7 @@ impl Referee {
         self.bodies.get(&robot).is_some_and(|body| body.retired)
     }
 
-    /// Whether a robot that is out of order stands on the block.
+    /// True if a robot that is out of service is on the block.
     pub(super) fn is_retired_at(&self, block: Block) -> bool {
         self.bodies.values().any(|body| body.retired && body.block == block)
     }

@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use saoms_api::Time;
 
-use super::luggage::{Luggage, Stock};
+use super::luggage::{HandlingOutcome, Stock};
 use super::referee::Referee;
 use crate::grid::{Block, Map};
 use crate::hardware::Progress;
@@ -16,7 +16,7 @@ fn name(robot: u32) -> String {
     format!("Robot{robot}")
 }
 
-/// A referee with robots 1, 2, ... at these blocks of a map of 4 x 3, of which (3,2) is blocked.
+/// A referee with robots 1, 2, ... on these blocks of a map of 4 x 3, of which (3,2) is blocked.
 fn referee(starts: &[Block]) -> Referee {
     let mut referee = Referee::new(Map::read("....\n....\n...@").unwrap());
     for (robot, start) in (1..).zip(starts) {
@@ -120,12 +120,12 @@ fn luggage_is_delivered_once_and_only_by_who_carries_it() {
     stock.add(7, to, from);
     assert!(!stock.is_settled());
     assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is not here but at (1,0)".into()));
-    assert_eq!(stock.collect(7, 1, from, |_| false), Ok(Luggage::Handled));
+    assert_eq!(stock.collect(7, 1, from, |_| false), Ok(HandlingOutcome::Handled));
     assert_eq!(stock.collect(7, 2, from, |_| false), Err("luggage 7 is on robot 1".into()));
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
-    assert_eq!(stock.deposit(7, 1, block(0, 0)), Ok(Luggage::Handled), "it lies on the way");
-    assert_eq!(stock.collect(7, 2, block(0, 0), |_| false), Ok(Luggage::Handled));
-    assert_eq!(stock.deposit(7, 2, to), Ok(Luggage::Delivered));
+    assert_eq!(stock.deposit(7, 1, block(0, 0)), Ok(HandlingOutcome::Handled), "it lies on the way");
+    assert_eq!(stock.collect(7, 2, block(0, 0), |_| false), Ok(HandlingOutcome::Handled));
+    assert_eq!(stock.deposit(7, 2, to), Ok(HandlingOutcome::Delivered));
     assert!(stock.is_settled());
     assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is delivered already".into()));
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
@@ -137,9 +137,9 @@ fn luggage_on_a_robot_that_is_out_of_order_is_collected_where_that_stands() {
     stock.add(7, here, block(2, 0));
     stock.collect(7, 1, here, |_| false).unwrap();
     assert_eq!(stock.collect(7, 2, here, |other| other == 3), Err("luggage 7 is on robot 1".into()));
-    assert_eq!(stock.collect(7, 2, here, |other| other == 1), Ok(Luggage::Handled));
+    assert_eq!(stock.collect(7, 2, here, |other| other == 1), Ok(HandlingOutcome::Handled));
     assert_eq!(stock.deposit(7, 1, block(2, 0)), Err("it does not carry luggage 7".into()));
-    assert_eq!(stock.deposit(7, 2, block(2, 0)), Ok(Luggage::Delivered));
+    assert_eq!(stock.deposit(7, 2, block(2, 0)), Ok(HandlingOutcome::Delivered));
 }
 
 #[test]
@@ -159,11 +159,11 @@ fn a_robot_that_is_out_of_order_stays_until_it_starts_again() {
 #[test]
 fn luggage_that_the_world_has_yet_to_hear_of_is_waited_for() {
     let mut stock = Stock::default();
-    assert_eq!(stock.collect(7, 1, block(1, 0), |_| false), Ok(Luggage::Unknown));
+    assert_eq!(stock.collect(7, 1, block(1, 0), |_| false), Ok(HandlingOutcome::Unknown));
     stock.add(7, block(1, 0), block(2, 0));
     stock.settle();
-    assert_eq!(stock.collect(7, 1, block(1, 0), |_| false), Ok(Luggage::Handled));
-    assert_eq!(stock.collect(8, 1, block(1, 0), |_| false), Ok(Luggage::Unknown));
+    assert_eq!(stock.collect(7, 1, block(1, 0), |_| false), Ok(HandlingOutcome::Handled));
+    assert_eq!(stock.collect(8, 1, block(1, 0), |_| false), Ok(HandlingOutcome::Unknown));
     stock.settle();
     assert_eq!(stock.collect(8, 1, block(1, 0), |_| false), Err("there is no luggage 8".into()));
 }
@@ -194,7 +194,11 @@ fn luggage_that_is_given_up_is_no_open_work() {
     assert!(!stock.is_settled());
     stock.give_up(8);
     assert!(stock.is_settled());
-    assert_eq!(stock.collect(7, 1, from, |_| false), Ok(Luggage::Handled), "it can be brought all the same");
-    assert_eq!(stock.deposit(7, 1, to), Ok(Luggage::Delivered));
+    assert_eq!(
+        stock.collect(7, 1, from, |_| false),
+        Ok(HandlingOutcome::Handled),
+        "it can be brought all the same"
+    );
+    assert_eq!(stock.deposit(7, 1, to), Ok(HandlingOutcome::Delivered));
     assert!(stock.is_settled());
 }

@@ -1,4 +1,4 @@
-//! Robots that break, at every moment of their work: no luggage is lost or delivered twice, and nobody collides.
+//! Robots that break at every moment of their work: no luggage is lost or delivered twice, and no robots collide.
 
 use std::time::Duration;
 
@@ -49,25 +49,25 @@ impl Component for Fate {
     }
 }
 
-/// A small fleet, some of whose robots break.
+/// A small fleet with robots that break.
 struct Emergency<'a> {
     robots: u32,
-    /// Those that start asleep.
+    /// Robots that start asleep.
     asleep: &'a [u32],
     scenario: &'a str,
-    /// When which robot breaks, in milliseconds.
+    /// Time of each breakdown in milliseconds, and number of the robot.
     strokes: Vec<(u64, u32)>,
     lateness: f64,
     move_time: u64,
     handling_time: u64,
     seed: u64,
-    /// After how many periods a master sends robots to sleep again; 0 for no master.
+    /// Number of periods after which a master sends robots to sleep again; 0 for no master.
     counter: u32,
     blocked: &'a str,
     discharge: &'a str,
 }
 
-/// How many fleets with random losses are tried.
+/// Number of fleets with random breakdowns.
 const SEEDS: u64 = 6;
 
 const TWO: &str = "at 500ms luggage (3,1) to (3,6); at 500ms luggage (6,4) to (1,4)";
@@ -130,14 +130,14 @@ impl Emergency<'_> {
         fleet
     }
 
-    /// Runs it, and checks that all is delivered once.
+    /// Runs the fleet, and checks that every piece is delivered once.
     fn check(&self) -> Fleet {
         let fleet = self.check_settled();
         assert_eq!(fleet.count("luggage.open"), 0, "{:?}: {:#?}", self.strokes, fleet.log);
         fleet
     }
 
-    /// Runs it, and checks that all is delivered once or given up.
+    /// Runs the fleet, and checks that every piece is delivered once or given up.
     fn check_settled(&self) -> Fleet {
         let mut fleet = self.fleet();
         let done = fleet.run(Duration::from_secs(300));
@@ -156,7 +156,7 @@ impl Emergency<'_> {
         }
         let open = fleet.count("luggage.open");
         assert_eq!(fleet.count("luggage.delivered") + open, fleet.count("luggage.requested"), "{context}");
-        // By the master, or by the robot that has it on board.
+        // Reported by the master, or by the robot that carries it.
         let is_told = |line: &&String| line.contains("gives up luggage") || line.contains("any more: ");
         let given_up = fleet.log.iter().filter(is_told).count();
         assert_eq!(given_up as i64, open, "{context}");
@@ -164,7 +164,7 @@ impl Emergency<'_> {
     }
 }
 
-/// With messages that arrive at once, and late; with hardware that takes no time, and some.
+/// Fleets with messages that arrive at once or late, and with hardware that takes no time or some.
 fn variants() -> impl Iterator<Item = Emergency<'static>> {
     [(0.0, 0, 0), (0.99, 0, 0), (0.9, 170, 230)].into_iter().zip(0..).map(
         |((lateness, move_time, handling_time), seed)| Emergency {
@@ -241,7 +241,7 @@ fn what_nobody_is_left_for_is_given_up() {
             assert!(fleet.run(Duration::from_secs(60)), "not finished: {:#?}", fleet.log);
             let (delivered, open) = (fleet.count("luggage.delivered"), fleet.count("luggage.open"));
             assert_eq!(delivered + open, 2, "{:#?} {:?}", fleet.log, fleet.counts);
-            // By the master, or by the robot that has it on board.
+            // Reported by the master, or by the robot that carries it.
             let is_told = |line: &&String| line.contains("gives up luggage") || line.contains("any more: ");
             let given_up = fleet.log.iter().filter(is_told).count();
             assert_eq!(given_up as i64, open, "{:#?}", fleet.log);
@@ -252,7 +252,7 @@ fn what_nobody_is_left_for_is_given_up() {
 
 #[test]
 fn a_broken_robot_is_in_nobodys_way() {
-    // Robots 1 and 2 break where the luggage is and where it has to go.
+    // Robots 1 and 2 break at the luggage and at its destination.
     let scenario =
         "at 100ms luggage (0,1) to (5,5); at 100ms luggage (6,6) to (0,2); at 100ms luggage (0,1) to (0,2)";
     let strokes = vec![(50, 1), (50, 2)];
@@ -281,7 +281,7 @@ fn a_robot_that_charges_awakes_a_substitute_and_sleeps() {
 
 #[test]
 fn a_robot_whose_charger_is_cut_off_uses_that_of_another_one() {
-    // Only the robots beside it lead to the charger of robot 2, and they break while it is away.
+    // Only the blocks of the robots beside it lead to the charger of robot 2, and these robots break while it is away.
     let scenario = "at 500ms luggage (2,2) to (6,6); then 5s luggage (7,7) to (6,0); then 5s luggage (7,2) to (1,7);\
         then 5s luggage (7,7) to (6,0); then 5s luggage (7,2) to (1,7)";
     let strokes = vec![(3000, 1), (3000, 3)];

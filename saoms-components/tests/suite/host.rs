@@ -1,4 +1,4 @@
-//! A host that runs components in virtual time, and can keep what they send from the others for a while.
+//! A host that runs components in virtual time, and can delay their messages.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -21,7 +21,7 @@ pub(crate) struct Fleet {
     order: u64,
     now: Time,
     seed: u64,
-    /// Up to which share of its period a component's messages are late.
+    /// Maximum delay of a component's messages, as a share of its period.
     lateness: f64,
     chance: Chance,
     pub(crate) counts: BTreeMap<String, i64>,
@@ -31,7 +31,7 @@ pub(crate) struct Fleet {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Due {
-    /// The messages of a component leave.
+    /// Messages of a component are sent.
     Delivery(usize),
     Execution(usize),
 }
@@ -43,7 +43,7 @@ struct Topic {
     readers: Vec<(usize, usize)>,
 }
 
-/// What the host knows about a component.
+/// State of a component in the host.
 struct Seat {
     loops: &'static [LoopRegistration],
     is_classic: bool,
@@ -55,7 +55,7 @@ struct Seat {
     publishes: Vec<usize>,
     inboxes: Vec<Vec<SharedMessage>>,
     outbox: Vec<(u32, SharedMessage)>,
-    /// What left the component but did not reach the others yet, in order.
+    /// Messages that the component has sent and that did not arrive yet, in order.
     travelling: Vec<(u32, SharedMessage)>,
     vote: Option<Work>,
 }
@@ -128,7 +128,7 @@ impl Fleet {
         self.queue.push(Reverse((at, order, due)));
     }
 
-    /// Initializes all components; what they send reaches the others at once.
+    /// Initializes all components; their messages arrive at once.
     pub(crate) fn initialize(&mut self) -> Result<(), Failure> {
         for index in 0..self.components.len() {
             self.call(index, |component, context| component.initialize(context))?;
@@ -140,7 +140,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// Runs until everybody who voted is done, or that time is over; `true` when they are done.
+    /// Runs until all components that vote are done, or until a time; `true` if they are done.
     pub(crate) fn run(&mut self, until: Duration) -> bool {
         while let Some(Reverse((at, _, due))) = self.queue.pop() {
             if at > Time::START + until {
@@ -214,7 +214,7 @@ impl Fleet {
             inbox.clear();
         }
         let seat = &mut self.seats[index];
-        // Subscribing adds inboxes.
+        // Subscriptions add inboxes.
         inboxes.append(&mut seat.inboxes);
         seat.inboxes = inboxes;
         self.components[index] = Some(component);
@@ -340,7 +340,7 @@ impl Host for View<'_> {
         result
     }
 
-    /// Those of the robots' policy; all others have one list.
+    /// The loops of the robots' policy; all other components have one list.
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
         let seat = self.seat();
         let name = |one: &LoopRegistration| {

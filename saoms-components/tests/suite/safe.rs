@@ -1,4 +1,5 @@
-//! The `safe` policy: no collision, no stranded robot, every piece delivered once, whatever the periods and however late messages are.
+//! The `safe` policy: no collision, no stranded robot, every piece delivered once, whatever the periods and however
+//! late messages are.
 
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -21,10 +22,10 @@ struct Setting {
     luggage: u64,
     /// Periods of the robots in milliseconds.
     periods: RangeInclusive<u64>,
-    /// Up to which share of its period a robot's messages are late.
+    /// Maximum delay of a robot's messages, as a share of its period.
     lateness: f64,
     move_time: Duration,
-    /// What an execution of the slowest robot takes from the battery; the others take as much in the same time.
+    /// Discharge of the slowest robot in an execution; the others discharge at the same rate over time.
     discharge: f64,
 }
 
@@ -44,7 +45,7 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// Runs it with seeds from 0 on, and checks that everything is delivered in time and nothing goes wrong.
+    /// Runs the setting with seeds from 0 on, and checks that everything is delivered in time and nothing goes wrong.
     fn check(&self, seeds: u64) {
         for seed in 0..seeds {
             let mut fleet = self.fleet(seed);
@@ -125,7 +126,7 @@ impl Setting {
     }
 }
 
-/// How many seeds are tried: the usual number, or that of the variable `SAOMS_SEEDS`, such as 200 in a release build.
+/// Number of seeds: the usual number, or the value of the variable `SAOMS_SEEDS`, such as 200 in a release build.
 fn seeds(usual: u64) -> u64 {
     std::env::var("SAOMS_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(usual)
 }

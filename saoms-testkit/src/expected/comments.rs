@@ -2,24 +2,24 @@
 
 use std::ops::Range;
 
-/// How an expectation begins.
+/// Start of an expectation.
 const OPEN: &str = "<!--~";
 const CLOSE: &str = "-->";
 
-/// What a comment expects.
+/// The expectation of a comment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Expectation {
-    /// The line that it is about, from 1.
+    /// Line of the diagnostic, from 1.
     pub(super) line: u32,
-    /// `error` or `warning`; any where it does not say.
+    /// `error` or `warning`; `None` for any.
     pub(super) severity: Option<String>,
-    /// The code of a diagnostic; empty where the comment has none, which no diagnostic meets.
+    /// Code of the diagnostic; empty if the comment has none, which no diagnostic matches.
     pub(super) code: String,
-    /// A part of its message.
+    /// Part of its message.
     pub(super) text: String,
 }
 
-/// An expectation and where its comment is.
+/// An expectation and the place of its comment.
 #[derive(Clone, Debug)]
 pub(super) struct Comment {
     pub(super) at: Range<usize>,
@@ -47,10 +47,10 @@ pub(super) fn lines(text: &str) -> u32 {
     text.bytes().filter(|byte| *byte == b'\n').count() as u32
 }
 
-/// What stands between `<!--~` and `-->` of a comment that begins in this line.
+/// Parses the text between `<!--~` and `-->` of a comment that begins in this line.
 fn expectation(inside: &str, line: u32) -> Expectation {
     let digits = |text: &str| text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
-    // One line where no number is given.
+    // One line, if no number is given.
     let moved = |text: &str| text[..digits(text)].parse().unwrap_or(1);
     let (line, rest) = match inside.as_bytes().first() {
         Some(b'^') => (line.saturating_sub(moved(&inside[1..])), &inside[1 + digits(&inside[1..])..]),
@@ -63,7 +63,7 @@ fn expectation(inside: &str, line: u32) -> Expectation {
     Expectation { line, severity, code, text: words.collect::<Vec<_>>().join(" ") }
 }
 
-/// A message as it is compared: its words, and as much as a comment can hold.
+/// A message in the form that is compared: its words, as far as a comment can contain them.
 pub(super) fn plain(message: &str) -> String {
     let words = message.split_whitespace().collect::<Vec<_>>().join(" ");
     let end = words.find("--").unwrap_or(words.len());

@@ -1,4 +1,4 @@
-//! Composites that say in comments what is wrong with them.
+//! Composites with comments that expect diagnostics.
 
 mod comments;
 #[cfg(test)]
@@ -14,11 +14,11 @@ use write::{Placement, rewritten};
 
 use crate::Fleet;
 
-/// Holds the composite in a file, or each in a folder, to the diagnostics that its comments expect.
+/// Compares the diagnostics of the composite in a file, or of each in a folder, with those that its comments expect.
 ///
-/// A comment that begins with `~` expects a diagnostic: a code, and as much of its message as matters. It is about the line that it stands
-/// in; `~^` is the line above, `~v` the one below, `~^3` the third above. Every diagnostic has to be expected, and every expectation met. With
-/// `UPDATE_EXPECT=1` in the environment the comments are written anew.
+/// A comment that begins with `~` expects a diagnostic: a code, and as much of its message as matters. It is about the
+/// line that it stands in; `~^` is the line above, `~v` the one below, `~^3` the third above. Every diagnostic has to
+/// be expected, and every expectation met. With `UPDATE_EXPECT=1` in the environment the comments are written anew.
 ///
 /// ```xml
 /// <property name="batery">50</property> <!--~ S3004 no property `batery` -->
@@ -92,12 +92,13 @@ impl Found {
 }
 
 impl Checked {
-    /// What is found and not expected, or the reverse: a line each, in the order of the text; empty where there is nothing.
+    /// Diagnostics that were not expected, and expectations without a diagnostic: a line each, in the order of the
+    /// text.
     fn differences(&self) -> String {
         let mut open: Vec<&Found> = self.found.iter().collect();
         let mut expected: Vec<Expectation> =
             comments(&self.text).into_iter().map(|comment| comment.expectation).collect();
-        // Who says most chooses first.
+        // The most specific expectation chooses first.
         expected.sort_by_key(|one| std::cmp::Reverse(one.text.len()));
         let mut lines = Vec::new();
         for one in expected {
@@ -123,7 +124,8 @@ impl Checked {
 }
 
 impl Fleet {
-    /// Holds the fleet to the diagnostics that comments in its composites expect, also in those that it names; see [`expect_diagnostics`].
+    /// Compares the diagnostics of the fleet with those that comments in its composites expect, including the
+    /// composites that it names; see [`expect_diagnostics`].
     ///
     /// # Panics
     /// As there.
@@ -135,7 +137,8 @@ impl Fleet {
         }
     }
 
-    /// As [`expect_diagnostics`](Fleet::expect_diagnostics): writes the comments anew where that is asked for.
+    /// Differences for [`expect_diagnostics`](Fleet::expect_diagnostics), which rewrites the comments if
+    /// `UPDATE_EXPECT` is set.
     fn differences(&self) -> Result<(), String> {
         let texts = self.texts();
         let differences: String = texts.iter().map(Checked::differences).collect();
@@ -148,7 +151,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// Whether the files could be written so that they expect what is found.
+    /// Rewrites the comments; `true` if the files expect exactly the found diagnostics then.
     fn update(&self, texts: &[Checked]) -> bool {
         let files: Vec<&Checked> = texts
             .iter()
@@ -162,7 +165,7 @@ impl Fleet {
                 return true;
             }
         }
-        // What cannot be said in comments stays as it was.
+        // Files whose diagnostics cannot be expressed in comments stay as they were.
         for file in files {
             let _ = fs::write(&file.path, &file.text);
         }

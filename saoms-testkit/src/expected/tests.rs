@@ -11,7 +11,7 @@ fn written(text: &str, found: &[(u32, &str)], placement: Placement) -> String {
     rewritten(text, &found.iter().map(one).collect::<Vec<_>>(), placement)
 }
 
-/// Whether what was written is expected there, and stays as it is when it is written again.
+/// True if the written comments expect these diagnostics, and writing them again changes nothing.
 fn is_met(text: &str, expected: &[(u32, &str)]) -> bool {
     let found: Vec<(u32, String)> =
         comments(text).into_iter().map(|one| (one.expectation.line, one.expectation.text)).collect();
@@ -50,7 +50,7 @@ fn differences_are_told_and_what_is_written_is_met() {
         let fleet = Fleet::of_file(&path);
         let told = fleet.differences().unwrap_err().replace(&format!("{}:", path.display()), "");
         assert!(told.starts_with(expected), "{told}");
-        // Nothing can be expected of an empty file, since it is none with a comment in it.
+        // An empty file cannot expect anything: with a comment in it, it is not empty.
         let can = name != "empty";
         assert_eq!(fleet.update(&fleet.texts()), can, "{name}");
         assert_eq!(fleet.differences().is_ok(), can, "{name}");

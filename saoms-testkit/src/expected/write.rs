@@ -1,14 +1,14 @@
-//! Writing expectations into a composite, in place of those that it has.
+//! Rewriting of the expectations in a composite.
 
 use super::Found;
 use super::comments::{Comment, comments, lines, plain};
 
-/// Where the comments go.
+/// Placement of the comments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Placement {
-    /// Behind what they are about, as soon as a comment can stand there.
+    /// After their diagnostic, at the first place where a comment is allowed.
     Behind,
-    /// Behind everything, and before everything: for texts that are no XML.
+    /// At the end, otherwise at the start of the text: for texts that are not XML.
     End,
     Start,
 }
@@ -17,13 +17,13 @@ impl Placement {
     pub(super) const ALL: [Self; 3] = [Self::Behind, Self::End, Self::Start];
 }
 
-/// The text with a comment for each diagnostic that was found in it, and no others.
+/// The text with a comment for each diagnostic that was found, and no other expectations.
 pub(super) fn rewritten(text: &str, found: &[Found], placement: Placement) -> String {
     let (bare, removed) = without_comments(text);
     let bare_line = |line: u32| line - removed.iter().filter(|gone| **gone < line).count() as u32;
     let last = lines(&bare) + u32::from(!bare.ends_with('\n'));
     let safe = safe_lines(&bare);
-    // Behind which line each comment goes, in that order.
+    // Line after which each comment is written, sorted.
     let mut placed: Vec<(u32, u32, &Found)> = found
         .iter()
         .map(|one| {
@@ -65,7 +65,7 @@ pub(super) fn rewritten(text: &str, found: &[Found], placement: Placement) -> St
     out
 }
 
-/// The text without the comments that expect something, and the lines that are gone with them.
+/// The text without its expectations, and the lines that are removed with them.
 fn without_comments(text: &str) -> (String, Vec<u32>) {
     let (mut bare, mut removed, mut at) = (String::with_capacity(text.len()), Vec::new(), 0);
     for Comment { at: comment, .. } in comments(text) {
@@ -87,7 +87,7 @@ fn without_comments(text: &str) -> (String, Vec<u32>) {
     (bare, removed)
 }
 
-/// The lines behind which a comment can stand: between tags, where there is nothing but blanks.
+/// Lines after which a comment is allowed: between tags, where the text is blank.
 fn safe_lines(text: &str) -> Vec<u32> {
     let (mut safe, mut line, mut rest) = (Vec::new(), 1, text);
     loop {
@@ -114,7 +114,7 @@ fn safe_lines(text: &str) -> Vec<u32> {
     }
 }
 
-/// Behind the `>` that ends a tag, which is none in quotes.
+/// Position after the `>` that ends a tag, outside of quotes.
 fn end_of_tag(tag: &str) -> Option<usize> {
     let mut quote = None;
     for (at, byte) in tag.bytes().enumerate() {

@@ -1,4 +1,4 @@
-//! Every component that ships keeps what every component has to keep.
+//! Every component that ships complies with the rules for components.
 
 use saoms_components::broker::MessageBroker;
 use saoms_components::environment::Environment;

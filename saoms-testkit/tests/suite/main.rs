@@ -1,4 +1,4 @@
-//! What the testkit says of runs and of components.
+//! Tests of the testkit on runs and components.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, and so do its helpers")]
 

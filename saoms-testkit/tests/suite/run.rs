@@ -1,4 +1,4 @@
-//! What tests say of runs, and how they fail.
+//! Expectations about runs, and the messages of their failures.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
@@ -9,7 +9,7 @@ fn hall() -> Run {
     Fleet::of_file("../composites/hall.composite").run(7, Duration::from_secs(60))
 }
 
-/// How a test fails.
+/// Message with which a test fails.
 fn failure(test: impl FnOnce()) -> String {
     let cause = catch_unwind(AssertUnwindSafe(test)).unwrap_err();
     cause.downcast_ref::<String>().unwrap().clone()

@@ -26,15 +26,17 @@ pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
 
-    /// How diagnostics are shown: for people on standard error, or on standard output as one JSON object or as SARIF 2.1.0
+    /// Format of diagnostics: for people on standard error, or on standard output as one JSON object or as SARIF 2.1.0
     #[arg(long, value_enum, default_value_t = CheckFormat::Human)]
     pub(crate) format: CheckFormat,
 
-    /// Take classes that this program does not know as given, and implementations of other kinds: check all that can be checked without them
+    /// Take classes that this program does not know as given, and implementations of other kinds: check all that can be
+    /// checked without them
     #[arg(long)]
     pub(crate) assume_classes: bool,
 
-    /// Report the wiring of the whole fleet: every topic with who publishes and reads it how often, and what is odd about it
+    /// Report the wiring of the whole fleet: every topic with who publishes and reads it how often, and what is odd
+    /// about it
     #[arg(long, conflicts_with = "assume_classes")]
     pub(crate) wiring: bool,
 }
@@ -59,7 +61,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
     }
 }
 
-/// Writes what was found, with the wiring report where there are assemblies.
+/// Writes the diagnostics, with the wiring report if there are assemblies.
 fn tell<T>(
     found: &Compilations<T>,
     components: impl Fn(&T) -> usize,
@@ -107,7 +109,7 @@ struct Properties<'a> {
     wiring: Wired<'a>,
 }
 
-/// The wiring of several fleets, each by its first file; that of one alone.
+/// Wiring of several fleets, each by its first file, or of a single fleet.
 struct Wired<'a> {
     of: &'a [(&'a Path, Wiring<'a>)],
     is_one: bool,

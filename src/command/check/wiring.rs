@@ -9,7 +9,7 @@ use saoms_lang::assembly::{Assembly, End, Topic, Traffic};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-/// Components of one class that use a topic alike.
+/// Components of one class that use a topic in the same way.
 struct Group<'a> {
     class: &'a str,
     period: Option<Duration>,
@@ -77,7 +77,7 @@ impl fmt::Display for Group<'_> {
     }
 }
 
-/// With as many digits as matter.
+/// The rate, with as many digits as are significant.
 fn rate(topic: &Topic) -> String {
     let rate = topic.rate();
     if rate < 10.0 { format!("{}", (rate * 10.0).round() / 10.0) } else { format!("{rate:.0}") }
@@ -85,7 +85,7 @@ fn rate(topic: &Topic) -> String {
 
 impl Serialize for Wiring<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        /// A topic as machines read it.
+        /// A topic in the JSON report.
         #[derive(Serialize)]
         struct Row<'a> {
             kind: &'static str,

@@ -1,4 +1,4 @@
-//! Loops, and what they work on.
+//! Loops and their knowledge.
 
 use std::fmt::Write;
 
@@ -40,7 +40,7 @@ pub(super) fn described(one: &LoopClass) -> String {
     text
 }
 
-/// The loops of a class in their order, and what they work on.
+/// The loops of a class in their order, and their knowledge.
 pub(super) fn of_class(class: &ClassDeclaration, text: &mut String) {
     for (value, names) in class.loops.all() {
         let title = match (&class.loops.property, value) {

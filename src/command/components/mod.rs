@@ -1,4 +1,4 @@
-//! `saoms components`: what a composite can name, from the declarations alone.
+//! `saoms components`: the classes, loops and rules that a composite can name, from their declarations.
 
 mod loops;
 mod rules;
@@ -42,7 +42,7 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
             registry.iter().map(AsRef::as_ref).filter(|class| !class.is_alias()).collect(),
             registry.loops().map(AsRef::as_ref).collect(),
         ),
-        // No class and loop have the same name.
+        // A class and a loop never have the same name.
         Some(name) => match (registry.get(name), registry.get_loop(name)) {
             (Some(class), _) => (vec![class], Vec::new()),
             (None, Some(one)) => (Vec::new(), vec![one]),
@@ -236,7 +236,7 @@ fn plain(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
 }
 
-/// A field type of the contract in short: `int32`, `sequence of Block`.
+/// Short form of a field type of the contract: `int32`, `sequence of Block`.
 fn type_name(value: &Value) -> String {
     match value {
         Value::Object(object) => {
@@ -254,7 +254,7 @@ fn type_name(value: &Value) -> String {
     }
 }
 
-/// The class's declaration, with the task properties of a periodic one beside its own.
+/// The class's declaration; that of a periodic class includes the task properties.
 fn as_json(class: &Class) -> Value {
     let mut declaration: Value = serde_json::from_str(class.declaration_json()).unwrap_or_default();
     if class.declaration().is_periodic() {
@@ -263,7 +263,7 @@ fn as_json(class: &Class) -> Value {
     declaration
 }
 
-/// The text in lines of at most `width` characters, broken between words.
+/// The text, wrapped into lines of at most `width` characters, broken between words.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

@@ -27,7 +27,7 @@ impl Names {
                 Some(signs.next()?.to_ascii_uppercase().to_string() + signs.as_str())
             })
             .collect();
-        // `loop`, `type` and the like can be no library: they are words of Rust, and cannot be named.
+        // Keywords of Rust cannot be names of libraries.
         const WORDS: &[&str] = &[
             "as", "box", "crate", "do", "dyn", "else", "enum", "fn", "for", "if", "impl", "in", "let",
             "loop", "match", "mod", "move", "mut", "pub", "ref", "self", "static", "struct", "super", "test",

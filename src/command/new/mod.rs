@@ -26,11 +26,12 @@ pub(crate) enum NewWhat {
         /// The folder to make; its name becomes that of the package
         path: PathBuf,
 
-        /// What the plugin brings: a component, the hardware of a robot, or a loop of robots
+        /// Kind of plugin: a component, the hardware of a robot, or a loop of robots
         #[arg(long, value_enum, default_value_t = PluginKind::Component)]
         kind: PluginKind,
 
-        /// Where saoms-api comes from: a folder with a checkout, a git URL, or a version; by default the checkout that made this program
+        /// Source of saoms-api: a folder with a checkout, a git URL, or a version; by default the checkout that made
+        /// this program
         #[arg(long, value_name = "SOURCE")]
         api: Option<String>,
     },
@@ -48,7 +49,7 @@ pub(crate) enum PluginKind {
     Loop,
 }
 
-/// Makes what was asked for. Nothing that is there is touched.
+/// Creates the files. Existing files are never changed.
 pub(crate) fn new(arguments: &NewArguments) -> Exit {
     let made = match &arguments.what {
         NewWhat::Plugin { path, kind, api } => plugin(path, *kind, api.as_deref()),

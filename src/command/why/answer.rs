@@ -81,11 +81,11 @@ fn shown_anew(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> usize {
         .collect();
     let all = chain.reasons.len();
     let common = chain.reasons.iter().position(|reason| told.contains(&reason.id()));
-    // The line that says so takes the place of two at least.
+    // The line that replaces the omitted ones has to save at least one line.
     common.map(|common| common + 1).filter(|anew| anew + 1 < all).unwrap_or(all)
 }
 
-/// A chain line by line. What earlier ones told is not told again.
+/// A chain line by line, without the records that earlier chains have shown.
 fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     let mut rows: Vec<Row<'_>> = Vec::new();
     for (place, act) in chain.acts.iter().enumerate() {

@@ -31,7 +31,8 @@ pub(crate) struct WhyArguments {
     #[arg(value_name = "ROBOT")]
     pub(crate) component: String,
 
-    /// Ask what it did last up to this time of the run, and not up to its end (a bare number is milliseconds; units us, ms, s, min, h)
+    /// Ask what it did last up to this time of the run, and not up to its end (a bare number is milliseconds; units us,
+    /// ms, s, min, h)
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) at: Option<Duration>,
 
@@ -64,7 +65,7 @@ pub(crate) fn why(arguments: &WhyArguments) -> Exit {
 
 struct Answer {
     text: String,
-    /// Why it is not the whole answer.
+    /// Reason why the answer is incomplete.
     lost: Option<String>,
 }
 
@@ -125,7 +126,7 @@ fn document(path: &Path) -> Result<JournalDocument, String> {
     })
 }
 
-/// The component that is meant: by its path, its ID, or an ending of its path that no other has.
+/// The component with this path, ID, or unambiguous ending of its path.
 fn find<'a>(components: &'a [ComponentName], component: &str) -> Result<&'a ComponentName, String> {
     let is_id = |one: &ComponentName| one.id.as_deref() == Some(component);
     if let Some(found) = components.iter().find(|one| one.name == component) {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use saoms_battery_saver as _;
 use saoms_testkit::{Fleet, Run};
 
-/// With how much each time a robot turned to its charger, in percent.
+/// Battery levels, in percent, at which a robot returned to its charger.
 fn turned(run: &Run, robot: &str) -> Vec<f64> {
     let percent = |line: &String| line.strip_prefix("has low battery (")?.split_once(' ')?.0.parse().ok();
     run.log_of(robot).iter().filter_map(percent).collect()

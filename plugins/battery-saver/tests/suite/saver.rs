@@ -1,10 +1,10 @@
-//! The loop alone: what it makes of a battery.
+//! The loop alone, with a simulated battery.
 
 use saoms_api::{Extras, Knowledge, Value};
 use saoms_battery_saver::BatterySaver;
 use saoms_testkit::LoopBench;
 
-/// What the loop needs of a robot.
+/// The entries of a robot that the loop needs.
 #[derive(Default, Knowledge)]
 #[knowledge(name = "test.Robot")]
 struct Robot {
@@ -24,7 +24,7 @@ fn bench() -> LoopBench<Robot> {
     bench
 }
 
-/// Off the charger with this battery, then in charge.
+/// A trip with this battery level, then charging.
 fn trip(bench: &mut LoopBench<Robot>, battery: f64) -> Vec<String> {
     for in_charge in [false, true] {
         let mut robot = bench.knowledge();

@@ -4,14 +4,14 @@ use saoms_api::extension::{
     Completion, CompletionKind, DURATION_UNITS, PropertyLanguage, PropertyText, submit,
 };
 
-use super::{Next, next};
+use super::{Continuation, continuations};
 
 submit! { PropertyLanguage { class: "saoms.Environment", property: "scenario", complete } }
 
-/// The class of the components that break down.
+/// Class of the components that can break down.
 const ROBOT: &str = "saoms.Robot";
 
-/// The words that can stand at the cursor.
+/// Completions for the cursor in a scenario.
 fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
     let PropertyText { text, at, components } = *scenario;
     let line = text[..at].rfind(['\n', '\r', ';']).map_or(0, |found| found + 1);
@@ -28,13 +28,13 @@ fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
     let word = line + start..end;
     let value = |label: &str| Completion::new(label, CompletionKind::Value, &word);
     let mut all = Vec::new();
-    for (one, rank) in next(&before[..start]).into_iter().zip(0..) {
+    for (one, rank) in continuations(&before[..start]).into_iter().zip(0..) {
         match one {
-            Next::Word(name) => {
+            Continuation::Word(name) => {
                 let one = Completion::new(name, CompletionKind::Keyword, &word);
                 all.push(one.detail(meaning(name)).rank(rank));
             }
-            Next::Time if is_number(typed) => {
+            Continuation::Time if is_number(typed) => {
                 let units = DURATION_UNITS.iter().zip(1..);
                 all.extend(
                     units.map(|((unit, name), rank)| {
@@ -42,18 +42,20 @@ fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
                     }),
                 );
             }
-            Next::Time => all.push(value("1s").detail("a time: `500ms`, `6s`, or a range `2s..8s`")),
-            Next::Times => {
+            Continuation::Time => all.push(value("1s").detail("a time: `500ms`, `6s`, or a range `2s..8s`")),
+            Continuation::Times => {
                 let number = if is_number(typed) { typed } else { "3" };
                 all.push(value(&format!("{number} times")).detail("how often").rank(6));
             }
-            Next::Pieces => all.push(value("4").detail("how many pieces of luggage, or a range `2..8`")),
-            Next::Place => {
+            Continuation::Pieces => {
+                all.push(value("4").detail("how many pieces of luggage, or a range `2..8`"))
+            }
+            Continuation::Place => {
                 let block = value("(0,0)").snippet("(${1:0},${2:0})");
                 all.push(block.detail("column and row of a block, or a range `(0,0)..(9,9)`"));
                 all.push(value("random").detail("any block of the area"));
             }
-            Next::Robot => {
+            Continuation::Robot => {
                 let robot = |name| Completion::new(name, CompletionKind::Component, &word);
                 all.extend(components(ROBOT).into_iter().map(robot));
             }
@@ -62,9 +64,9 @@ fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
     all
 }
 
-/// The byte at which the last word of a line begins.
+/// Byte position at which the last word of a line begins.
 fn word_start(line: &str) -> usize {
-    // A block is one word, also where it has blanks.
+    // A block is one word, even if it contains blanks.
     match (line.rfind('('), line.rfind(')')) {
         (Some(open), close) if close.is_none_or(|close| close < open) => open,
         _ => {

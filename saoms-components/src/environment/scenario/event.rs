@@ -1,7 +1,7 @@
-use super::draw::Spot;
 use super::line::drawn;
-use super::words::{DOTS, Words};
-use super::{Happening, Written};
+use super::random::Spot;
+use super::tokenizer::{DOTS, Tokenizer};
+use super::{EventSpec, Spanned};
 use crate::grid::Block;
 use crate::text::TextFault;
 
@@ -9,8 +9,8 @@ pub(super) const KINDS: [&str; 5] = ["luggage", "landing", "takeoff", "breakdown
 const BLOCK: &str = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
 const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
 
-/// Reads what happens.
-pub(super) fn read(words: &mut Words<'_>) -> Result<Happening, TextFault> {
+/// Reads an event.
+pub(super) fn read(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
     Ok(match words.one_of(&KINDS, "`luggage`, `landing`, `takeoff`, `breakdown` or `end`")? {
         "luggage" => {
             let from = spot(words)?;
@@ -24,20 +24,20 @@ pub(super) fn read(words: &mut Words<'_>) -> Result<Happening, TextFault> {
                     .fault(words.text(&to.bytes), message)
                     .help("luggage has to be brought from one block to another one"));
             }
-            Happening::Luggage { from, to }
+            EventSpec::Luggage { from, to }
         }
-        "landing" => Happening::Landing(drawn(words, pieces)?),
-        "takeoff" => Happening::Takeoff(drawn(words, pieces)?),
-        "end" => Happening::End,
+        "landing" => EventSpec::Landing(drawn(words, pieces)?),
+        "takeoff" => EventSpec::Takeoff(drawn(words, pieces)?),
+        "end" => EventSpec::End,
         _ => {
             let first = words.peek().unwrap_or_default();
             let value = drawn(words, robot)?;
-            Happening::Breakdown(Written { value, bytes: words.bytes(words.span(first, words.last())) })
+            EventSpec::Breakdown(Spanned { value, bytes: words.bytes(words.span(first, words.last())) })
         }
     })
 }
 
-fn spot(words: &mut Words<'_>) -> Result<Written<Spot>, TextFault> {
+fn spot(words: &mut Tokenizer<'_>) -> Result<Spanned<Spot>, TextFault> {
     let first = words.next(BLOCK)?;
     let value = match first {
         "random" => Spot::Anywhere,
@@ -51,10 +51,10 @@ fn spot(words: &mut Words<'_>) -> Result<Written<Spot>, TextFault> {
             }
         }
     };
-    Ok(Written { value, bytes: words.bytes(words.span(first, words.last())) })
+    Ok(Spanned { value, bytes: words.bytes(words.span(first, words.last())) })
 }
 
-fn block(words: &Words<'_>, word: &str) -> Result<Block, TextFault> {
+fn block(words: &Tokenizer<'_>, word: &str) -> Result<Block, TextFault> {
     let block: Block = word.parse().map_err(|_| words.wrong(word, BLOCK))?;
     if block.x < 0 || block.y < 0 {
         return Err(words.fault(word, format!("found `{word}`, and every area starts at (0,0)")));
@@ -62,14 +62,14 @@ fn block(words: &Words<'_>, word: &str) -> Result<Block, TextFault> {
     Ok(block)
 }
 
-fn pieces(words: &mut Words<'_>) -> Result<u32, TextFault> {
+fn pieces(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
     const EXPECTED: &str = "how many pieces of luggage are expected, such as `4`";
     let word = words.next(EXPECTED)?;
     word.parse().map_err(|_| words.wrong(word, EXPECTED))
 }
 
-/// The number of a robot: robots have the one that their name ends with, unless they say another.
-fn robot(words: &mut Words<'_>) -> Result<u32, TextFault> {
+/// The number of a robot, written as a number or as a name that ends with it.
+fn robot(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
     let word = words.next(ROBOT)?;
     let digits = &word[word.trim_end_matches(|sign: char| sign.is_ascii_digit()).len()..];
     match digits.parse() {

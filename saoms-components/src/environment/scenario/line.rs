@@ -3,32 +3,32 @@ use std::time::Duration;
 use saoms_api::host::parse_duration;
 use saoms_api::rule::nearest;
 
-use super::draw::Drawn;
-use super::words::Words;
+use super::random::RandomRange;
+use super::tokenizer::Tokenizer;
 use super::{Line, event};
 use crate::text::TextFault;
 
 pub(super) const STARTS: [&str; 3] = ["at", "from", "then"];
 pub(super) const UNITS: [&str; 6] = ["ns", "us", "ms", "s", "min", "h"];
 const TIME: &str = "a time such as `6s` or `500ms`";
-/// The most events of a line that says how many.
+/// Maximum number of events of a line with `times`.
 const MOST: u64 = 1_000_000;
-/// The least time from one event to the next: a line must not flood the fleet.
+/// Minimum time between two events of a line: a line must not flood the fleet.
 const LEAST: Duration = Duration::from_millis(1);
 
-/// What happens again and again.
+/// Events that a line can repeat.
 const REPEATED: &str =
     "as in `from 10s every 5s until 60s luggage (3,1) to (3,10)`, or `from 10s every 5s 100 times landing 2`";
 
-/// The lines of a text with something in them: they end with the text's lines or `;`, comments are left out.
+/// The non-empty lines of a text, without comments. Lines end at a line end or `;`.
 pub(in crate::environment) fn split(text: &str) -> impl Iterator<Item = &str> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
     lines.flat_map(|line| line.split(';')).filter(|line| !line.trim().is_empty())
 }
 
-/// Reads a line that may begin with its event: then it happens now, and the flag says so.
+/// Reads a line that may start with its event: the event happens now then, and the flag is true.
 pub(in crate::environment) fn read_outside(line: &str, endless: bool) -> Result<(Line, bool), TextFault> {
-    let mut words = Words::of(line, line);
+    let mut words = Tokenizer::of(line, line);
     let first = words.peek().unwrap_or_default();
     if STARTS.contains(&first) {
         return read(line, line, endless).map(|line| (line, false));
@@ -39,18 +39,18 @@ pub(in crate::environment) fn read_outside(line: &str, endless: bool) -> Result<
         return Err(words.wrong(first, expected).instead(near));
     }
     let bytes = words.bytes(first);
-    let happening = event::read(&mut words)?;
+    let event = event::read(&mut words)?;
     if let Some(more) = words.peek() {
         return Err(words.wrong(more, "the end of the line, or `;` before the next event"));
     }
-    let (time, every) = (Drawn::fixed(Duration::ZERO), Drawn::fixed(Duration::ZERO));
-    let line = Line { text: 0, time, follows: false, every, times: Some(1), until: None, happening, bytes };
+    let (time, every) = (RandomRange::fixed(Duration::ZERO), RandomRange::fixed(Duration::ZERO));
+    let line = Line { text: 0, time, follows: false, every, times: Some(1), until: None, event, bytes };
     Ok((line, true))
 }
 
-/// Reads a line of the text. `endless` says that the line before has no last event.
+/// Reads a line of the text. `endless`: true if the line before has no last event.
 pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
-    let mut words = Words::of(text, line);
+    let mut words = Tokenizer::of(text, line);
     let start = words.next("`at`, `from` or `then`")?;
     if !STARTS.contains(&start) {
         let near = nearest(start, STARTS);
@@ -83,16 +83,16 @@ pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFa
     let until =
         if words.take("until") { Some(until(&mut words, every.is_some(), start, time)?) } else { None };
     let bytes = words.bytes(words.peek().unwrap_or_default());
-    let happening = event::read(&mut words)?;
+    let event = event::read(&mut words)?;
     if let Some(more) = words.peek() {
         return Err(words.wrong(more, "the end of the line, or `;` before the next event"));
     }
     let times = if every.is_none() { Some(given.unwrap_or(1)) } else { given };
-    let every = every.unwrap_or(Drawn::fixed(Duration::ZERO));
-    Ok(Line { text: 0, time, follows: start == "then", every, times, until, happening, bytes })
+    let every = every.unwrap_or(RandomRange::fixed(Duration::ZERO));
+    Ok(Line { text: 0, time, follows: start == "then", every, times, until, event, bytes })
 }
 
-fn every(words: &mut Words<'_>) -> Result<Drawn<Duration>, TextFault> {
+fn every(words: &mut Tokenizer<'_>) -> Result<RandomRange<Duration>, TextFault> {
     let first = words.peek().unwrap_or_default();
     let every = drawn(words, time)?;
     if every.least < LEAST {
@@ -102,7 +102,7 @@ fn every(words: &mut Words<'_>) -> Result<Drawn<Duration>, TextFault> {
     Ok(every)
 }
 
-fn times(words: &mut Words<'_>) -> Result<u64, TextFault> {
+fn times(words: &mut Tokenizer<'_>) -> Result<u64, TextFault> {
     let number = words.next("a number")?;
     words.take("times");
     match number.parse() {
@@ -112,10 +112,10 @@ fn times(words: &mut Words<'_>) -> Result<u64, TextFault> {
 }
 
 fn until(
-    words: &mut Words<'_>,
+    words: &mut Tokenizer<'_>,
     repeats: bool,
     start: &str,
-    first: Drawn<Duration>,
+    first: RandomRange<Duration>,
 ) -> Result<Duration, TextFault> {
     let until = words.last();
     if !repeats {
@@ -130,8 +130,8 @@ fn until(
     Ok(end)
 }
 
-/// A time; a unit may stand apart from its number.
-fn time(words: &mut Words<'_>) -> Result<Duration, TextFault> {
+/// Reads a time; a blank may separate the number from its unit.
+fn time(words: &mut Tokenizer<'_>) -> Result<Duration, TextFault> {
     let first = words.next(TIME)?;
     if words.peek().is_some_and(|unit| UNITS.contains(&unit)) {
         words.next(TIME)?;
@@ -148,7 +148,7 @@ fn time(words: &mut Words<'_>) -> Result<Duration, TextFault> {
     parse_duration(span).map_err(|message| words.fault(span, message).instead(short(span)))
 }
 
-/// A time whose unit is written out.
+/// The short form of a time whose unit is a word.
 fn short(span: &str) -> Option<String> {
     let number = span.trim_end_matches(|letter: char| letter.is_ascii_alphabetic());
     let unit = match &span[number.len()..] {
@@ -162,16 +162,16 @@ fn short(span: &str) -> Option<String> {
     parse_duration(&short).is_ok().then_some(short)
 }
 
-/// One value, or two with `..` between them, from which one is drawn.
+/// Reads one value, or two with `..` between them.
 pub(super) fn drawn<'a, T: Copy + PartialOrd>(
-    words: &mut Words<'a>,
-    one: impl Fn(&mut Words<'a>) -> Result<T, TextFault>,
-) -> Result<Drawn<T>, TextFault> {
+    words: &mut Tokenizer<'a>,
+    one: impl Fn(&mut Tokenizer<'a>) -> Result<T, TextFault>,
+) -> Result<RandomRange<T>, TextFault> {
     let start = words.peek().unwrap_or_default();
     let least = one(words)?;
     let first = words.span(start, words.last());
-    if !words.take(super::words::DOTS) {
-        return Ok(Drawn::fixed(least));
+    if !words.take(super::tokenizer::DOTS) {
+        return Ok(RandomRange::fixed(least));
     }
     let start = words.peek().unwrap_or_default();
     let most = one(words)?;
@@ -181,5 +181,5 @@ pub(super) fn drawn<'a, T: Copy + PartialOrd>(
         let message = format!("found `{span}`, expected the lesser one first");
         return Err(words.fault(span, message).instead(Some(format!("{second}..{first}"))));
     }
-    Ok(Drawn { least, most })
+    Ok(RandomRange { least, most })
 }

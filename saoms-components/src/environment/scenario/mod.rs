@@ -1,21 +1,21 @@
-//! What a scenario says: lines of events, as `docs/scenarios.md` describes them.
+//! Scenarios: lines of events, as `docs/scenarios.md` describes them.
 
 mod complete;
-mod draw;
+mod continuation;
 mod event;
 pub(super) mod line;
-mod next;
-mod words;
+mod random;
+mod tokenizer;
 
 use std::ops::Range;
 use std::time::Duration;
 
 use saoms_api::Finding;
 
-pub use draw::{Drawn, Spot};
-pub use next::{Next, next};
+pub use continuation::{Continuation, continuations};
+pub use random::{RandomRange, Spot};
 
-/// What happens, and when.
+/// A scenario: events and their times.
 ///
 /// ```
 /// use saoms_components::environment::Scenario;
@@ -31,57 +31,57 @@ pub struct Scenario {
     lines: Vec<Line>,
 }
 
-/// A line of a scenario: something that happens once or several times.
+/// A line of a scenario: an event that happens once or several times.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Which of the texts it is in.
+    /// Index of the text that contains the line.
     pub text: usize,
-    /// From the start, or after the last event of the line before.
-    pub time: Drawn<Duration>,
-    /// Whether the time counts from the line before.
+    /// Time since the start, or since the last event of the line before.
+    pub time: RandomRange<Duration>,
+    /// True if the time counts from the line before.
     pub follows: bool,
-    /// From one event to the next.
-    pub every: Drawn<Duration>,
-    /// How many events there are; `None` where the line has no such end.
+    /// Time from one event to the next.
+    pub every: RandomRange<Duration>,
+    /// Number of events; `None` if it is not limited.
     pub times: Option<u64>,
-    /// The time after which there are no more.
+    /// Time after which there are no more events.
     pub until: Option<Duration>,
-    /// What happens.
-    pub happening: Happening,
-    /// The bytes of the word that says so.
+    /// The event.
+    pub event: EventSpec,
+    /// Byte range of the word that names the event.
     pub bytes: Range<usize>,
 }
 
-/// Something that can happen.
+/// An event as a scenario describes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Happening {
-    /// Luggage waits to be brought somewhere.
+pub enum EventSpec {
+    /// New luggage that waits for a robot.
     Luggage {
-        /// Where it is.
-        from: Written<Spot>,
-        /// Where it has to go.
-        to: Written<Spot>,
+        /// Block where the luggage is.
+        from: Spanned<Spot>,
+        /// Destination of the luggage.
+        to: Spanned<Spot>,
     },
-    /// An airplane lands, and so many pieces of luggage are expected.
-    Landing(Drawn<u32>),
-    /// An airplane is about to take off, and so many pieces are expected.
-    Takeoff(Drawn<u32>),
-    /// A robot breaks down: its number, or the name whose last digits are its number.
-    Breakdown(Written<Drawn<u32>>),
-    /// Nothing, but the run goes on until then.
+    /// A landing with the number of pieces of luggage that are expected.
+    Landing(RandomRange<u32>),
+    /// A take-off with the number of pieces of luggage that are expected.
+    Takeoff(RandomRange<u32>),
+    /// A breakdown of the robot with this number, given as a number or as a name that ends with it.
+    Breakdown(Spanned<RandomRange<u32>>),
+    /// No event: the run lasts until this time.
     End,
 }
 
-/// What a scenario says, and the bytes of the text that say it.
+/// A value of a scenario with its place in the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written<T> {
-    /// What is said.
+pub struct Spanned<T> {
+    /// The value.
     pub value: T,
-    /// Where.
+    /// Byte range of the value in the text.
     pub bytes: Range<usize>,
 }
 
-/// Wrong lines of a scenario that are told: of one kind nobody is told more.
+/// Maximum number of wrong lines that are reported.
 const MOST_WRONG: usize = 1000;
 
 impl Scenario {
@@ -94,10 +94,11 @@ impl Scenario {
         if findings.is_empty() { Ok(scenario) } else { Err(findings) }
     }
 
-    /// The lines that are right, and what is wrong with the others. Behind [`MOST_WRONG`] wrong ones nothing is read.
+    /// The correct lines, and findings about the wrong ones. After [`MOST_WRONG`] wrong lines reading stops.
     pub(crate) fn read_partly<S: AsRef<str>>(texts: &[S]) -> (Scenario, Vec<Finding>) {
         let (mut lines, mut findings): (Vec<Line>, Vec<Finding>) = (Vec::new(), Vec::new());
-        // Whether `then` has something to count from; a wrong line before is taken for one.
+        // True if the line before has no last event, so that `then` has nothing to count from. A wrong line counts as
+        // one with a last event.
         let mut endless = false;
         for (place, text) in texts.iter().enumerate() {
             for part in line::split(text.as_ref()) {
@@ -113,15 +114,15 @@ impl Scenario {
         (Scenario { lines }, findings)
     }
 
-    /// Its lines in order.
+    /// The lines, in their order.
     pub fn lines(&self) -> &[Line] {
         &self.lines
     }
 
-    /// Whether blocks of the whole area are drawn, so that it has to be known.
+    /// True if the scenario draws blocks from the whole area, so that the map is needed.
     pub fn needs_area(&self) -> bool {
-        let spots = self.lines.iter().filter_map(|line| match &line.happening {
-            Happening::Luggage { from, to } => Some([from.value, to.value]),
+        let spots = self.lines.iter().filter_map(|line| match &line.event {
+            EventSpec::Luggage { from, to } => Some([from.value, to.value]),
             _ => None,
         });
         spots.flatten().any(|spot| spot == Spot::Anywhere)

@@ -7,10 +7,10 @@ use crate::messages::{EXCEPTIONAL_EVENT, ExceptionalEvent, ROBOT_STATE, RobotSta
 
 use super::MasterRobotKnowledge;
 
-/// Awakes a robot for some of the pieces of luggage that are expected, and sends as many under charge again when its counter comes to an
-/// end (listing 6.12).
+/// Wakes robots in proportion to the expected pieces of luggage, and sends as many to charge again when the counter of
+/// their shift ends (listing 6.12).
 ///
-/// Where one shift ends as another begins, its robots stay for that.
+/// If one shift ends as another begins, its robots stay for the new one.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.master.AwakeAsleepMS",
@@ -20,37 +20,37 @@ use super::MasterRobotKnowledge;
     subscribes(EXCEPTIONAL_EVENT),
     publishes(ROBOT_STATE)
 )]
-pub struct AwakeAsleepMS {
+pub struct MasterAwakeAsleep {
     events: Subscription<ExceptionalEvent>,
     states: Publisher<RobotState>,
 }
 
-/// How the work changes: how many pieces of luggage are expected from now on, and how many robots are not needed any more.
+/// Change of the workload: newly expected pieces of luggage, and robots that are not needed any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Workload {
     /// Newly expected pieces.
     pub pieces: u32,
-    /// One robot for so many pieces each.
+    /// Number of robots that they need.
     pub needed: u32,
     /// Robots whose shift is over.
     pub released: u32,
 }
 
-/// Who has to be awaked, and who has to sleep.
+/// Robots to wake or to send to charge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AwakeAsleepDecision {
-    /// Awake so many, beside so many that stay.
+    /// Wake robots.
     Awake {
-        /// Those to awake.
+        /// Number of robots to wake.
         robots: u32,
-        /// Those of a shift that is over, which stay for the next.
+        /// Number of robots of an ended shift that stay for the next.
         stay: u32,
     },
-    /// Send so many under charge; so many stay.
+    /// Send robots to charge.
     Asleep {
-        /// Those to send under charge.
+        /// Number of robots to send.
         robots: u32,
-        /// Those that stay for the next shift.
+        /// Number of robots that stay for the next shift.
         stay: u32,
     },
 }
@@ -92,14 +92,14 @@ impl Recordable for AwakeAsleepDecision {
     }
 }
 
-impl Loop for AwakeAsleepMS {
+impl Loop for MasterAwakeAsleep {
     type Properties = ();
     type Knowledge = MasterRobotKnowledge;
     type Symptom = Workload;
     type Decision = AwakeAsleepDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(AwakeAsleepMS::default())
+        Ok(MasterAwakeAsleep::default())
     }
 
     fn initialize(
@@ -124,8 +124,8 @@ impl Loop for AwakeAsleepMS {
             context.because(header.cause);
             pieces = pieces.saturating_add(event.pieces);
             needed = needed.saturating_add(event.pieces.div_ceil(knowledge.pieces_per_robot));
-            let crew = JavaList(knowledge.crew());
-            context.console(format_args!("MasterRobotManagingSystem updated active robot list: {crew}"));
+            let active = JavaList(knowledge.active());
+            context.console(format_args!("MasterRobotManagingSystem updated active robot list: {active}"));
         }
         Ok((needed > 0 || released > 0).then_some(Workload { pieces, needed, released }))
     }
@@ -165,8 +165,8 @@ impl Loop for AwakeAsleepMS {
     }
 }
 
-impl AwakeAsleepMS {
-    /// Calls as many robots as there are, up to this number; how many those are.
+impl MasterAwakeAsleep {
+    /// Calls up to `count` robots; returns the number of those called.
     fn call(
         &self,
         count: u32,
@@ -201,12 +201,12 @@ impl AwakeAsleepMS {
     }
 }
 
-/// The noun after so many.
+/// The noun for a number of robots.
 const fn robots(count: u32) -> &'static str {
     if count == 1 { "robot" } else { "robots" }
 }
 
-/// Robots as a sentence lists them.
+/// Robots as a list in a sentence.
 struct Robots<'a>(&'a [u32]);
 
 impl fmt::Display for Robots<'_> {

@@ -1,38 +1,38 @@
-//! The master of the robots: how many of them have to be awake.
+//! The master of the robots, which decides how many of them are awake.
 
 mod awake_asleep;
-mod crew;
+mod knowledge;
 mod robot_list;
 
 use saoms_api::{Class, Component, Context, Failure, Loops, Properties};
 
 use crate::console::Timestamp;
 
-pub use awake_asleep::AwakeAsleepMS;
-pub use crew::{MasterRobotKnowledge, Shift};
-pub use robot_list::RobotListMS;
+pub use awake_asleep::MasterAwakeAsleep;
+pub use knowledge::{MasterRobotKnowledge, Shift};
+pub use robot_list::MasterRobotList;
 
-/// What a composite says about the master of the robots.
+/// Properties of the master of the robots.
 #[derive(Clone, Debug, Properties)]
 pub struct MasterRobotProperties {
-    /// For how many expected pieces of luggage one robot is awaked.
+    /// Number of expected pieces of luggage for which one robot is woken.
     #[property(default = 2, range = 1..)]
     pub(crate) pieces_per_robot: u32,
-    /// After how many of the master's periods as many robots as it awaked are sent under charge again.
+    /// Number of the master's periods after which as many robots as it woke are sent to charge again.
     #[property(default = 50, range = 1..)]
     pub(crate) counter: u32,
 }
 
-/// Awakes robots when luggage is expected, and sends as many under charge again after a while.
+/// Wakes robots when luggage is expected, and sends as many to charge again after a while.
 ///
-/// It knows from what the robots say which of them are asleep. The one with the most charge is awaked first, the one with the least is
-/// sent under charge first; where they are equal, the lower number is the first to be awaked and the last to be sent away.
+/// The robots report which of them are asleep. The one with the highest battery level is woken first, the one with the
+/// lowest is sent to charge first. Of robots with equal levels the lowest number is woken first and sent last.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.MasterRobot",
     periodic,
     knowledge = MasterRobotKnowledge,
-    loops(RobotListMS, AwakeAsleepMS),
+    loops(MasterRobotList, MasterAwakeAsleep),
     also("unibg.saoms.MasterRobotManagingSystem")
 )]
 pub struct MasterRobot {

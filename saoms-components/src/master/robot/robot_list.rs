@@ -1,11 +1,11 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Record, Subscription, record};
 
-use crate::intake::Intake;
 use crate::messages::{ROBOT_LIST, RobotList};
+use crate::validation::MessageValidator;
 
 use super::MasterRobotKnowledge;
 
-/// Knows which robots are active, and which of them are asleep.
+/// Keeps the list of active and sleeping robots.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.master.RobotListMS",
@@ -13,20 +13,20 @@ use super::MasterRobotKnowledge;
     effects("robots", "asleep"),
     subscribes(ROBOT_LIST)
 )]
-pub struct RobotListMS {
-    intake: Intake,
+pub struct MasterRobotList {
+    validator: MessageValidator,
     robots: Subscription<RobotList>,
     known: u32,
 }
 
-impl Loop for RobotListMS {
+impl Loop for MasterRobotList {
     type Properties = ();
     type Knowledge = MasterRobotKnowledge;
     type Symptom = Record;
     type Decision = Record;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(RobotListMS::default())
+        Ok(MasterRobotList::default())
     }
 
     fn initialize(
@@ -44,7 +44,7 @@ impl Loop for RobotListMS {
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            if self.intake.lets_in(robot, header, None, context) {
+            if self.validator.accepts(robot, header, None, context) {
                 knowledge.hear(robot);
             }
         }

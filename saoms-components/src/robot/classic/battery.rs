@@ -2,10 +2,10 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
 
 use crate::robot::RobotKnowledge;
 
-/// The battery level at which a robot has to charge, in percent.
+/// Battery level at which a robot has to charge, in percent.
 const LOW: f64 = 35.0;
 
-/// Uses the battery, and goes under charge when it is low.
+/// Discharges the battery, and sends the robot to charge when it is low.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.BatteryMS",
@@ -13,52 +13,52 @@ const LOW: f64 = 35.0;
     senses("block", "chargeBlock", "chargeAt"),
     effects("battery", "inCharge", "busy", "asleep", "readyToGoUnderCharge")
 )]
-pub struct BatteryMS;
+pub struct ClassicBattery;
 
-/// How the battery stands.
+/// State of the battery.
 #[derive(Clone, Copy, Debug)]
-pub enum BatterySymptom {
-    /// It is low, in percent.
+pub enum ClassicBatterySymptom {
+    /// The battery is low, in percent.
     Low(f64),
-    /// It is charged.
+    /// The battery is full.
     Full,
 }
 
-/// What to do about it.
+/// Reaction to the state of the battery.
 #[derive(Clone, Copy, Debug)]
-pub enum BatteryDecision {
-    /// Go under charge after the present job.
+pub enum ClassicBatteryDecision {
+    /// Charge after the current job.
     Charge,
-    /// Sleep until the robot is awaked or heals another one.
+    /// Sleep until the robot is woken or heals another one.
     Sleep,
 }
 
-impl Recordable for BatterySymptom {
+impl Recordable for ClassicBatterySymptom {
     fn record(&self) -> Record {
         match *self {
-            BatterySymptom::Low(battery) => record!("has low battery: {battery} %", battery),
-            BatterySymptom::Full => record!("is fully charged"),
+            ClassicBatterySymptom::Low(battery) => record!("has low battery: {battery} %", battery),
+            ClassicBatterySymptom::Full => record!("is fully charged"),
         }
     }
 }
 
-impl Recordable for BatteryDecision {
+impl Recordable for ClassicBatteryDecision {
     fn record(&self) -> Record {
         match self {
-            BatteryDecision::Charge => record!("goes under charge after its job"),
-            BatteryDecision::Sleep => record!("sleeps until it is awaked or heals a robot"),
+            ClassicBatteryDecision::Charge => record!("goes under charge after its job"),
+            ClassicBatteryDecision::Sleep => record!("sleeps until it is awaked or heals a robot"),
         }
     }
 }
 
-impl Loop for BatteryMS {
+impl Loop for ClassicBattery {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = BatterySymptom;
-    type Decision = BatteryDecision;
+    type Symptom = ClassicBatterySymptom;
+    type Decision = ClassicBatteryDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(BatteryMS)
+        Ok(ClassicBattery)
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
@@ -75,49 +75,49 @@ impl Loop for BatteryMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<BatterySymptom>, Failure> {
+    ) -> Result<Option<ClassicBatterySymptom>, Failure> {
         let (variables, battery) = (&knowledge.variables, &knowledge.battery);
         if !variables.in_charge {
             let low = battery.percent() <= LOW.max(knowledge.charge_at)
                 && knowledge.block != knowledge.charge_block;
             let news = low && !variables.ready_to_go_under_charge && !variables.healer;
-            return Ok(news.then(|| BatterySymptom::Low(battery.percent())));
+            return Ok(news.then(|| ClassicBatterySymptom::Low(battery.percent())));
         }
         if !battery.is_full() {
             return Ok(None);
         }
-        // As in figures 8.7 and 8.16 in each execution until it is awake.
+        // The figures 8.7 and 8.16 show this line in each execution until the robot is awake.
         let name = &knowledge.name;
         context.console(format_args!("{name} is now fully charged and ready (but still asleep)"));
-        Ok((variables.busy && !variables.healer).then_some(BatterySymptom::Full))
+        Ok((variables.busy && !variables.healer).then_some(ClassicBatterySymptom::Full))
     }
 
     fn plan(
         &mut self,
-        symptom: BatterySymptom,
+        symptom: ClassicBatterySymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<BatteryDecision>, Failure> {
+    ) -> Result<Option<ClassicBatteryDecision>, Failure> {
         Ok(Some(match symptom {
-            BatterySymptom::Low(_) => BatteryDecision::Charge,
-            BatterySymptom::Full => BatteryDecision::Sleep,
+            ClassicBatterySymptom::Low(_) => ClassicBatteryDecision::Charge,
+            ClassicBatterySymptom::Full => ClassicBatteryDecision::Sleep,
         }))
     }
 
     fn execute(
         &mut self,
-        decision: BatteryDecision,
+        decision: ClassicBatteryDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         let variables = &mut knowledge.variables;
         match decision {
-            BatteryDecision::Charge => {
+            ClassicBatteryDecision::Charge => {
                 variables.ready_to_go_under_charge = true;
                 let battery = &knowledge.battery;
                 context.info(format_args!("has low battery ({battery} %): charges after its job"));
             }
-            BatteryDecision::Sleep => variables.busy = false,
+            ClassicBatteryDecision::Sleep => variables.busy = false,
         }
         Ok(())
     }

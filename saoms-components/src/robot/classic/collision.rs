@@ -4,7 +4,7 @@ use crate::grid::Block;
 use crate::messages::{POSITION, Position};
 use crate::robot::RobotKnowledge;
 
-/// Stops for a period when another robot announced the same next block and has the lower number (listing 6.11).
+/// Stops for a period if another robot announced the same next block and has the lower number (listing 6.11).
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.CollisionMS",
@@ -13,71 +13,71 @@ use crate::robot::RobotKnowledge;
     effects("stopAPeriod"),
     subscribes(POSITION)
 )]
-pub struct CollisionMS {
+pub struct ClassicCollision {
     positions: Subscription<Position>,
 }
 
-/// What the announced blocks say.
+/// State of the robot's next block.
 #[derive(Clone, Copy, Debug)]
-pub enum CollisionSymptom {
+pub enum ClassicCollisionSymptom {
     /// Another robot announced the same next block.
     Risk {
-        /// The lowest number of such a robot.
+        /// Lowest number of such a robot.
         robot: u32,
         /// The block.
         block: Block,
     },
-    /// Nobody does any more.
+    /// No other robot announces it any more.
     Over,
 }
 
-/// Who goes first.
+/// Right of way.
 #[derive(Clone, Copy, Debug)]
-pub enum CollisionDecision {
-    /// The other robot.
+pub enum ClassicCollisionDecision {
+    /// The other robot goes first.
     Stop {
-        /// Its number.
+        /// Number of the other robot.
         robot: u32,
-        /// Where it goes.
+        /// Block that it enters.
         block: Block,
     },
-    /// This one.
+    /// This robot goes first.
     GoOn,
-    /// Nobody has to wait any more.
+    /// No robot has to wait any more.
     GoOnAgain,
 }
 
-impl Recordable for CollisionSymptom {
+impl Recordable for ClassicCollisionSymptom {
     fn record(&self) -> Record {
         match *self {
-            CollisionSymptom::Risk { robot, block } => {
+            ClassicCollisionSymptom::Risk { robot, block } => {
                 record!("robot {robot} goes to {block}, too", robot, block)
             }
-            CollisionSymptom::Over => record!("no other robot goes there any more"),
+            ClassicCollisionSymptom::Over => record!("no other robot goes there any more"),
         }
     }
 }
 
-impl Recordable for CollisionDecision {
+impl Recordable for ClassicCollisionDecision {
     fn record(&self) -> Record {
         match *self {
-            CollisionDecision::Stop { robot, .. } => {
+            ClassicCollisionDecision::Stop { robot, .. } => {
                 record!("stops for a period: robot {robot} has the lower number", robot)
             }
-            CollisionDecision::GoOn => record!("goes on: it has the lower number"),
-            CollisionDecision::GoOnAgain => record!("goes on"),
+            ClassicCollisionDecision::GoOn => record!("goes on: it has the lower number"),
+            ClassicCollisionDecision::GoOnAgain => record!("goes on"),
         }
     }
 }
 
-impl Loop for CollisionMS {
+impl Loop for ClassicCollision {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = CollisionSymptom;
-    type Decision = CollisionDecision;
+    type Symptom = ClassicCollisionSymptom;
+    type Decision = ClassicCollisionDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(CollisionMS::default())
+        Ok(ClassicCollision::default())
     }
 
     fn initialize(
@@ -98,41 +98,41 @@ impl Loop for CollisionMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<CollisionSymptom>, Failure> {
+    ) -> Result<Option<ClassicCollisionSymptom>, Failure> {
         let block = knowledge.next;
         let same = knowledge.lists.peers.heard().filter(|peer| peer.next == block);
         let risk = same.map(|peer| peer.robot).min().filter(|_| knowledge.variables.busy);
-        let over = knowledge.variables.stop_a_period.then_some(CollisionSymptom::Over);
-        Ok(risk.map(|robot| CollisionSymptom::Risk { robot, block }).or(over))
+        let over = knowledge.variables.stop_a_period.then_some(ClassicCollisionSymptom::Over);
+        Ok(risk.map(|robot| ClassicCollisionSymptom::Risk { robot, block }).or(over))
     }
 
     fn plan(
         &mut self,
-        symptom: CollisionSymptom,
+        symptom: ClassicCollisionSymptom,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<CollisionDecision>, Failure> {
+    ) -> Result<Option<ClassicCollisionDecision>, Failure> {
         Ok(Some(match symptom {
-            CollisionSymptom::Risk { robot, block } if robot < knowledge.number => {
-                CollisionDecision::Stop { robot, block }
+            ClassicCollisionSymptom::Risk { robot, block } if robot < knowledge.number => {
+                ClassicCollisionDecision::Stop { robot, block }
             }
-            CollisionSymptom::Risk { .. } => CollisionDecision::GoOn,
-            CollisionSymptom::Over => CollisionDecision::GoOnAgain,
+            ClassicCollisionSymptom::Risk { .. } => ClassicCollisionDecision::GoOn,
+            ClassicCollisionSymptom::Over => ClassicCollisionDecision::GoOnAgain,
         }))
     }
 
     fn execute(
         &mut self,
-        decision: CollisionDecision,
+        decision: ClassicCollisionDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        if !matches!(decision, CollisionDecision::GoOnAgain) {
+        if !matches!(decision, ClassicCollisionDecision::GoOnAgain) {
             let name = &knowledge.name;
             context.console(format_args!("{name}: RISK OF COLLISION DETECTED AND AVOIDED!"));
         }
-        knowledge.variables.stop_a_period = matches!(decision, CollisionDecision::Stop { .. });
-        if let CollisionDecision::Stop { robot, block } = decision {
+        knowledge.variables.stop_a_period = matches!(decision, ClassicCollisionDecision::Stop { .. });
+        if let ClassicCollisionDecision::Stop { robot, block } = decision {
             context.info(format_args!("waits: robot {robot} goes to {block} first"));
         }
         Ok(())

@@ -12,8 +12,8 @@ use crate::robot::{Help, RobotKnowledge};
 
 /// Asks for help when the robot cannot go on, and heals other robots (listings 6.7 to 6.10).
 ///
-/// A robot that could heal another one says so; in its next execution, when the others' responses are known, the closest one takes over what
-/// the other robot had to do, and awakes a robot in its own place.
+/// A robot that can heal another one offers that. In its next execution it knows the others' offers: the closest robot
+/// takes over the job of the broken robot and wakes a substitute for itself.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.CriticalSituationMS",
@@ -23,7 +23,7 @@ use crate::robot::{Help, RobotKnowledge};
     publishes(CRITICAL_SITUATION, ROBOT_STATE, ROBOT_LIST, EVENT_LUGGAGE, POSITION),
     subscribes(CRITICAL_SITUATION, FAULT)
 )]
-pub struct CriticalSituationMS {
+pub struct ClassicCriticalSituation {
     faults: Subscription<Fault>,
     situations: Publisher<CriticalSituation>,
     situations_heard: Subscription<CriticalSituation>,
@@ -31,72 +31,76 @@ pub struct CriticalSituationMS {
     robots: Publisher<RobotList>,
     luggage: Publisher<EventLuggage>,
     positions: Publisher<Position>,
-    /// Why something in the robot broke.
+    /// Cause of the robot's breakdown.
     cause: Cause,
-    /// Why it would heal another robot: what it decides about that next follows from this.
+    /// Cause of the robot's last offer; its next decision about that robot follows from it.
     said: Cause,
 }
 
-/// What there is to do about critical situations.
+/// Critical situations that a robot can react to.
 #[derive(Clone, Copy, Debug)]
-pub enum CriticalSymptom {
+pub enum ClassicCriticalSymptom {
     /// The robot itself cannot go on.
     Broken(CriticalKind),
-    /// Another robot, or this one itself, waits for a healer.
+    /// Another robot, or this one, waits for a healer.
     NeedsHelp(u32),
-    /// The robot would heal that one, and no other robot is closer.
+    /// The robot offered to heal that one, and no other robot is closer.
     Closest(u32),
     /// Another robot is closer, or heals it.
     Beaten,
 }
 
-/// What to do.
+/// Reaction to a critical situation.
 #[derive(Clone, Copy, Debug)]
-pub enum CriticalDecision {
+pub enum ClassicCriticalDecision {
     /// Ask for help, and shut down.
     AskForHelp(CriticalKind),
-    /// Say that it would heal that robot.
+    /// Offer to heal that robot.
     Intend(u32),
     /// Heal that robot.
     Heal(u32),
-    /// Be free again.
+    /// Become free again.
     Forget,
 }
 
-impl Recordable for CriticalSymptom {
+impl Recordable for ClassicCriticalSymptom {
     fn record(&self) -> Record {
         match *self {
-            CriticalSymptom::Broken(CriticalKind::CarriesLuggage) => record!("breaks down with luggage"),
-            CriticalSymptom::Broken(CriticalKind::OnTheWay) => record!("breaks down on its way to luggage"),
-            CriticalSymptom::Broken(CriticalKind::Idle) => record!("breaks down without a job"),
-            CriticalSymptom::NeedsHelp(robot) => record!("robot {robot} needs help", robot),
-            CriticalSymptom::Closest(robot) => {
+            ClassicCriticalSymptom::Broken(CriticalKind::CarriesLuggage) => {
+                record!("breaks down with luggage")
+            }
+            ClassicCriticalSymptom::Broken(CriticalKind::OnTheWay) => {
+                record!("breaks down on its way to luggage")
+            }
+            ClassicCriticalSymptom::Broken(CriticalKind::Idle) => record!("breaks down without a job"),
+            ClassicCriticalSymptom::NeedsHelp(robot) => record!("robot {robot} needs help", robot),
+            ClassicCriticalSymptom::Closest(robot) => {
                 record!("no other robot that would heal robot {robot} is closer", robot)
             }
-            CriticalSymptom::Beaten => record!("another robot is closer to the one that needs help"),
+            ClassicCriticalSymptom::Beaten => record!("another robot is closer to the one that needs help"),
         }
     }
 }
 
-impl Recordable for CriticalDecision {
+impl Recordable for ClassicCriticalDecision {
     fn record(&self) -> Record {
         match *self {
-            CriticalDecision::AskForHelp(_) => record!("asks for help and shuts down"),
-            CriticalDecision::Intend(robot) => record!("would heal robot {robot}", robot),
-            CriticalDecision::Heal(robot) => record!("heals robot {robot}", robot),
-            CriticalDecision::Forget => record!("is free again"),
+            ClassicCriticalDecision::AskForHelp(_) => record!("asks for help and shuts down"),
+            ClassicCriticalDecision::Intend(robot) => record!("would heal robot {robot}", robot),
+            ClassicCriticalDecision::Heal(robot) => record!("heals robot {robot}", robot),
+            ClassicCriticalDecision::Forget => record!("is free again"),
         }
     }
 }
 
-impl Loop for CriticalSituationMS {
+impl Loop for ClassicCriticalSituation {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = CriticalSymptom;
-    type Decision = CriticalDecision;
+    type Symptom = ClassicCriticalSymptom;
+    type Decision = ClassicCriticalDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(CriticalSituationMS::default())
+        Ok(ClassicCriticalSituation::default())
     }
 
     fn initialize(
@@ -116,13 +120,13 @@ impl Loop for CriticalSituationMS {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
-            if knowledge.lets_in(situation, header, context) {
+            if knowledge.accepts(situation, header, context) {
                 knowledge.lists.helps.hear(situation, header);
             }
         }
         knowledge.lists.helps.drop_contested();
         for (header, fault) in context.receive(&self.faults).with_headers() {
-            let is_mine = knowledge.lets_in(fault, header, context) && fault.robot == knowledge.number;
+            let is_mine = knowledge.accepts(fault, header, context) && fault.robot == knowledge.number;
             if is_mine && !knowledge.variables.critical {
                 knowledge.variables.critical = true;
                 self.cause = header.cause;
@@ -135,17 +139,17 @@ impl Loop for CriticalSituationMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<CriticalSymptom>, Failure> {
+    ) -> Result<Option<ClassicCriticalSymptom>, Failure> {
         let (variables, helps) = (&knowledge.variables, &knowledge.lists.helps);
         if variables.critical {
             context.because(self.cause);
-            return Ok(Some(CriticalSymptom::Broken(knowledge.critical_kind())));
+            return Ok(Some(ClassicCriticalSymptom::Broken(knowledge.critical_kind())));
         }
         if variables.healer {
             context.because(self.said);
             let closest = helps.claimed().filter(|help| is_closest(knowledge, help));
-            let symptom = closest.map(|help| CriticalSymptom::Closest(help.situation.critical));
-            return Ok(symptom.or(Some(CriticalSymptom::Beaten)));
+            let symptom = closest.map(|help| ClassicCriticalSymptom::Closest(help.situation.critical));
+            return Ok(symptom.or(Some(ClassicCriticalSymptom::Beaten)));
         }
         if variables.busy || variables.transporter || variables.ready_to_go_under_charge {
             return Ok(None);
@@ -154,37 +158,37 @@ impl Loop for CriticalSituationMS {
         let emulated = helps.open().iter().find(|help| Some(help.situation.critical) == emulated);
         let Some(help) = emulated.or(helps.open().first()) else { return Ok(None) };
         context.because(help.cause);
-        Ok(Some(CriticalSymptom::NeedsHelp(help.situation.critical)))
+        Ok(Some(ClassicCriticalSymptom::NeedsHelp(help.situation.critical)))
     }
 
     fn plan(
         &mut self,
-        symptom: CriticalSymptom,
+        symptom: ClassicCriticalSymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<CriticalDecision>, Failure> {
+    ) -> Result<Option<ClassicCriticalDecision>, Failure> {
         Ok(Some(match symptom {
-            CriticalSymptom::Broken(kind) => CriticalDecision::AskForHelp(kind),
-            CriticalSymptom::NeedsHelp(robot) => CriticalDecision::Intend(robot),
-            CriticalSymptom::Closest(robot) => CriticalDecision::Heal(robot),
-            CriticalSymptom::Beaten => CriticalDecision::Forget,
+            ClassicCriticalSymptom::Broken(kind) => ClassicCriticalDecision::AskForHelp(kind),
+            ClassicCriticalSymptom::NeedsHelp(robot) => ClassicCriticalDecision::Intend(robot),
+            ClassicCriticalSymptom::Closest(robot) => ClassicCriticalDecision::Heal(robot),
+            ClassicCriticalSymptom::Beaten => ClassicCriticalDecision::Forget,
         }))
     }
 
     fn execute(
         &mut self,
-        decision: CriticalDecision,
+        decision: ClassicCriticalDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         match decision {
-            CriticalDecision::AskForHelp(kind) => self.ask_for_help(kind, knowledge, context),
-            CriticalDecision::Intend(robot) => self.intend(robot, knowledge, context),
-            CriticalDecision::Heal(_) => self.heal(knowledge, context),
-            CriticalDecision::Forget => {
+            ClassicCriticalDecision::AskForHelp(kind) => self.ask_for_help(kind, knowledge, context),
+            ClassicCriticalDecision::Intend(robot) => self.intend(robot, knowledge, context),
+            ClassicCriticalDecision::Heal(_) => self.heal(knowledge, context),
+            ClassicCriticalDecision::Forget => {
                 knowledge.lists.helps.settle();
                 knowledge.variables.healer = false;
-                // Who is in charge is busy until the battery is full.
+                // A charging robot is busy until its battery is full.
                 knowledge.variables.busy = knowledge.variables.in_charge && !knowledge.battery.is_full();
                 Ok(())
             }
@@ -192,7 +196,7 @@ impl Loop for CriticalSituationMS {
     }
 }
 
-impl CriticalSituationMS {
+impl ClassicCriticalSituation {
     fn ask_for_help(
         &self,
         kind: CriticalKind,
@@ -205,14 +209,14 @@ impl CriticalSituationMS {
             "breaks down at {}: asks for help, and for human assistance",
             knowledge.block
         ));
-        // What it only took an interest in waits again, for those that dropped it because of that.
+        // The luggage that the robot was interested in waits again, for robots that dropped it because of that.
         if let Some(request) = knowledge.lists.requests.settle() {
             let job = request.job;
             let release = job.response(knowledge.number, knowledge.block, LuggageStage::Release);
             context.send(&self.luggage, release)?;
             context.send(&self.luggage, EventLuggage::request(job.luggage, job.from, job.to))?;
         }
-        // So does the robot that it would have healed.
+        // So does the robot that it offered to heal.
         if let Some(help) = knowledge.lists.helps.settle() {
             context.send(&self.situations, help.situation)?;
         }
@@ -280,14 +284,16 @@ impl CriticalSituationMS {
     }
 }
 
-/// By straight-line distance; at the same distance the lower number is the closest.
+/// True if the robot is the closest by straight-line distance; of equally close robots the one with the lowest number
+/// is.
 fn is_closest(knowledge: &RobotKnowledge, help: &Help) -> bool {
     let to = help.situation.block;
     let mine = (knowledge.block.straight_squared(to), knowledge.number);
     help.rivals.iter().all(|rival| mine < (rival.block.straight_squared(to), rival.robot))
 }
 
-/// Of the robots that could be awaked the one with the most charge, then with the lowest number. The one that needs help is none of them.
+/// The sleeping robot with the highest battery level, of equal ones the one with the lowest number, without the robot
+/// that needs help.
 fn best_charged(knowledge: &RobotKnowledge, critical: u32) -> Option<u32> {
     let others =
         knowledge.lists.active.iter().filter(|other| other.can_be_awaked() && other.robot != critical);

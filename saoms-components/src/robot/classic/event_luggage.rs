@@ -9,7 +9,8 @@ use crate::robot::{Job, Request, RobotKnowledge};
 
 /// Decides which robot brings which luggage (listings 6.5 and 6.9).
 ///
-/// A robot takes an interest in the oldest request; in its next execution, when the others' responses are known, the closest robot goes.
+/// A robot takes an interest in the oldest request. In its next execution it knows the others' interest: the closest
+/// robot goes.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.EventLuggageMS",
@@ -19,69 +20,69 @@ use crate::robot::{Job, Request, RobotKnowledge};
     publishes(EVENT_LUGGAGE),
     subscribes(EVENT_LUGGAGE)
 )]
-pub struct EventLuggageMS {
+pub struct ClassicEventLuggage {
     luggage: Publisher<EventLuggage>,
     luggage_heard: Subscription<EventLuggage>,
-    /// Why it took an interest: what it decides about that luggage next follows from this.
+    /// Cause of its interest; its next decision about that luggage follows from it.
     said: Cause,
 }
 
-/// What there is to decide.
+/// Luggage that a robot can decide about.
 #[derive(Clone, Copy, Debug)]
-pub enum EventLuggageSymptom {
-    /// This is the oldest luggage that waits.
+pub enum ClassicLuggageSymptom {
+    /// The oldest luggage that waits.
     Waiting(Job),
     /// The robot is interested, and no other robot is closer.
     Closest(Job),
-    /// Another robot is closer, or took it.
+    /// Another robot is closer, or took the luggage.
     Beaten,
 }
 
-/// What to do.
+/// Reaction to the state of luggage.
 #[derive(Clone, Copy, Debug)]
-pub enum EventLuggageDecision {
-    /// Take an interest.
+pub enum ClassicLuggageDecision {
+    /// Take an interest in it.
     TakeInterest,
     /// Bring it.
     Take(Job),
-    /// Be free again.
+    /// Become free again.
     Forget,
 }
 
-impl Recordable for EventLuggageSymptom {
+impl Recordable for ClassicLuggageSymptom {
     fn record(&self) -> Record {
         match *self {
-            EventLuggageSymptom::Waiting(Job { luggage, from, .. }) => {
+            ClassicLuggageSymptom::Waiting(Job { luggage, from, .. }) => {
                 record!("luggage {luggage} waits at {from}", luggage, from)
             }
-            EventLuggageSymptom::Closest(Job { luggage, .. }) => {
+            ClassicLuggageSymptom::Closest(Job { luggage, .. }) => {
                 record!("no other robot that is interested in luggage {luggage} is closer", luggage)
             }
-            EventLuggageSymptom::Beaten => record!("another robot is closer to the luggage"),
+            ClassicLuggageSymptom::Beaten => record!("another robot is closer to the luggage"),
         }
     }
 }
 
-impl Recordable for EventLuggageDecision {
+impl Recordable for ClassicLuggageDecision {
     fn record(&self) -> Record {
         match *self {
-            EventLuggageDecision::TakeInterest => record!("would bring it"),
-            EventLuggageDecision::Take(Job { luggage, from, to }) => {
+            ClassicLuggageDecision::TakeInterest => record!("would bring it"),
+            ClassicLuggageDecision::Take(Job { luggage, from, to }) => {
                 record!("brings luggage {luggage} from {from} to {to}", luggage, from, to)
             }
-            EventLuggageDecision::Forget => record!("is free again"),
+            ClassicLuggageDecision::Forget => record!("is free again"),
         }
     }
 }
 
-impl Loop for EventLuggageMS {
+impl Loop for ClassicEventLuggage {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = EventLuggageSymptom;
-    type Decision = EventLuggageDecision;
+    type Symptom = ClassicLuggageSymptom;
+    type Decision = ClassicLuggageDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(EventLuggageMS::default())
+        Ok(ClassicEventLuggage::default())
     }
 
     fn initialize(
@@ -96,7 +97,7 @@ impl Loop for EventLuggageMS {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         knowledge.hear_luggage(self.luggage_heard, context);
-        if knowledge.hooks.has_entered() {
+        if knowledge.hardware.has_entered() {
             knowledge.lists.requests.drop_contested();
         }
         Ok(())
@@ -106,48 +107,48 @@ impl Loop for EventLuggageMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<EventLuggageSymptom>, Failure> {
+    ) -> Result<Option<ClassicLuggageSymptom>, Failure> {
         let variables = &knowledge.variables;
         if variables.busy || variables.in_charge || variables.healer || variables.critical {
             return Ok(None);
         }
-        // Others dropped what it took an interest in, so that it decides about that whatever happened since.
+        // Other robots dropped the luggage that this robot is interested in, so it has to decide about it in any case.
         if variables.transporter {
             context.because(self.said);
             let request = knowledge.lists.requests.claimed();
             let closest = request.filter(|request| is_closest(knowledge, request));
-            let symptom = closest.map(|request| EventLuggageSymptom::Closest(request.job));
-            return Ok(symptom.or(Some(EventLuggageSymptom::Beaten)));
+            let symptom = closest.map(|request| ClassicLuggageSymptom::Closest(request.job));
+            return Ok(symptom.or(Some(ClassicLuggageSymptom::Beaten)));
         }
         if variables.ready_to_go_under_charge {
             return Ok(None);
         }
         let Some(request) = knowledge.lists.requests.open().first() else { return Ok(None) };
         context.because(request.cause);
-        Ok(Some(EventLuggageSymptom::Waiting(request.job)))
+        Ok(Some(ClassicLuggageSymptom::Waiting(request.job)))
     }
 
     fn plan(
         &mut self,
-        symptom: EventLuggageSymptom,
+        symptom: ClassicLuggageSymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<EventLuggageDecision>, Failure> {
+    ) -> Result<Option<ClassicLuggageDecision>, Failure> {
         Ok(Some(match symptom {
-            EventLuggageSymptom::Waiting(_) => EventLuggageDecision::TakeInterest,
-            EventLuggageSymptom::Closest(job) => EventLuggageDecision::Take(job),
-            EventLuggageSymptom::Beaten => EventLuggageDecision::Forget,
+            ClassicLuggageSymptom::Waiting(_) => ClassicLuggageDecision::TakeInterest,
+            ClassicLuggageSymptom::Closest(job) => ClassicLuggageDecision::Take(job),
+            ClassicLuggageSymptom::Beaten => ClassicLuggageDecision::Forget,
         }))
     }
 
     fn execute(
         &mut self,
-        decision: EventLuggageDecision,
+        decision: ClassicLuggageDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         let (job, stage) = match decision {
-            EventLuggageDecision::TakeInterest => {
+            ClassicLuggageDecision::TakeInterest => {
                 let Some(request) = knowledge.lists.requests.claim(0) else { return Ok(()) };
                 let job = request.job;
                 knowledge.variables.transporter = true;
@@ -156,14 +157,14 @@ impl Loop for EventLuggageMS {
                 context.console(format_args!("{name} is bringing luggage from {} to {}", job.from, job.to));
                 (job, LuggageStage::Interest)
             }
-            EventLuggageDecision::Take(job) => {
+            ClassicLuggageDecision::Take(job) => {
                 knowledge.lists.requests.settle();
                 knowledge.variables.busy = true;
                 knowledge.job = Some(job);
                 context.info(format_args!("takes luggage {} from {} to {}", job.luggage, job.from, job.to));
                 (job, LuggageStage::Taken)
             }
-            EventLuggageDecision::Forget => {
+            ClassicLuggageDecision::Forget => {
                 knowledge.lists.requests.settle();
                 knowledge.variables.transporter = false;
                 return Ok(());
@@ -173,7 +174,8 @@ impl Loop for EventLuggageMS {
     }
 }
 
-/// By straight-line distance; at the same distance the lower number is the closest.
+/// True if the robot is the closest by straight-line distance; of equally close robots the one with the lowest number
+/// is.
 fn is_closest(knowledge: &RobotKnowledge, request: &Request) -> bool {
     let from = request.job.from;
     let mine = (knowledge.block.straight_squared(from), knowledge.number);

@@ -10,7 +10,7 @@ use crate::robot::actions::Outcome;
 
 /// Follows the path to a destination step by step, and collects and deposits there (listing 6.6).
 ///
-/// What was announced in the last execution is driven now, and the next block is announced.
+/// Each execution enters the block that the last one announced, and announces the next block.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.PathFollowerMS",
@@ -19,96 +19,98 @@ use crate::robot::actions::Outcome;
     effects("block", "next", "job", "busy", "transporter", "hasLuggage", "reachingCharge", "inCharge"),
     publishes(POSITION, EVENT_LUGGAGE, CRITICAL_SITUATION)
 )]
-pub struct PathFollowerMS {
+pub struct ClassicPathFollower {
     luggage: Publisher<EventLuggage>,
     positions: Publisher<Position>,
     situations: Publisher<CriticalSituation>,
 }
 
-/// How the robot stands on its path.
+/// State of the robot on its path.
 #[derive(Clone, Copy, Debug)]
-pub enum PathSymptom {
-    /// It may not go on in this period.
+pub enum ClassicPathSymptom {
+    /// The robot has to stop for this period.
     Stopped,
-    /// The hardware is at work.
+    /// The hardware is running an action.
     Working,
-    /// It is where luggage is, or has to go.
+    /// The robot is at a block where its luggage is, or has to go.
     AtDestination(Block),
-    /// It is on the way to a destination.
+    /// The robot is on the way to a destination.
     OnTheWay {
-        /// Where.
+        /// Destination.
         to: Block,
-        /// Whether a move ended in this execution.
+        /// True if a move ended in this execution.
         moved: bool,
     },
-    /// It is on the way to its charger.
+    /// The robot is on the way to its charger.
     ToCharger {
-        /// Where.
+        /// Block of the charger.
         to: Block,
-        /// Whether a move ended in this execution.
+        /// True if a move ended in this execution.
         moved: bool,
     },
 }
 
-/// What to do.
+/// Reaction to the state on the path.
 #[derive(Clone, Copy, Debug)]
-pub enum PathDecision {
+pub enum ClassicPathDecision {
     /// Stand still for this period.
     Stop,
-    /// Say again where it goes.
+    /// Announce the next block again.
     Announce,
-    /// Work the gripper.
+    /// Use the gripper.
     Handle(Action),
     /// Go on to a destination.
     Go {
-        /// Where.
+        /// Destination.
         to: Block,
-        /// Whether a move ended in this execution.
+        /// True if a move ended in this execution.
         moved: bool,
     },
     /// Go on to the charger.
     GoCharging {
-        /// Where.
+        /// Block of the charger.
         to: Block,
-        /// Whether a move ended in this execution.
+        /// True if a move ended in this execution.
         moved: bool,
     },
 }
 
-impl Recordable for PathSymptom {
+impl Recordable for ClassicPathSymptom {
     fn record(&self) -> Record {
         match *self {
-            PathSymptom::Stopped => record!("has to stop for this period"),
-            PathSymptom::Working => record!("is still at work"),
-            PathSymptom::AtDestination(block) => record!("is at its destination {block}", block),
-            PathSymptom::OnTheWay { to, .. } => record!("is on the way to {to}", to),
-            PathSymptom::ToCharger { to, .. } => record!("is on the way to its charger at {to}", to),
+            ClassicPathSymptom::Stopped => record!("has to stop for this period"),
+            ClassicPathSymptom::Working => record!("is still at work"),
+            ClassicPathSymptom::AtDestination(block) => record!("is at its destination {block}", block),
+            ClassicPathSymptom::OnTheWay { to, .. } => record!("is on the way to {to}", to),
+            ClassicPathSymptom::ToCharger { to, .. } => record!("is on the way to its charger at {to}", to),
         }
     }
 }
 
-impl Recordable for PathDecision {
+impl Recordable for ClassicPathDecision {
     fn record(&self) -> Record {
         match *self {
-            PathDecision::Stop => record!("stands still"),
-            PathDecision::Announce => record!("says again where it goes"),
-            PathDecision::Handle(Action { kind: ActionKind::Collect, luggage, .. }) => {
+            ClassicPathDecision::Stop => record!("stands still"),
+            ClassicPathDecision::Announce => record!("says again where it goes"),
+            ClassicPathDecision::Handle(Action { kind: ActionKind::Collect, luggage, .. }) => {
                 record!("collects luggage {luggage}", luggage)
             }
-            PathDecision::Handle(Action { luggage, .. }) => record!("deposits luggage {luggage}", luggage),
-            PathDecision::Go { .. } | PathDecision::GoCharging { .. } => record!("goes on"),
+            ClassicPathDecision::Handle(Action { luggage, .. }) => {
+                record!("deposits luggage {luggage}", luggage)
+            }
+            ClassicPathDecision::Go { .. } | ClassicPathDecision::GoCharging { .. } => record!("goes on"),
         }
     }
 }
 
-impl Loop for PathFollowerMS {
+impl Loop for ClassicPathFollower {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = PathSymptom;
-    type Decision = PathDecision;
+    type Symptom = ClassicPathSymptom;
+    type Decision = ClassicPathDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(PathFollowerMS::default())
+        Ok(ClassicPathFollower::default())
     }
 
     fn initialize(
@@ -126,27 +128,27 @@ impl Loop for PathFollowerMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<PathSymptom>, Failure> {
+    ) -> Result<Option<ClassicPathSymptom>, Failure> {
         if knowledge.shut_down {
             return Ok(None);
         }
         if knowledge.variables.stop_a_period {
-            return Ok(Some(PathSymptom::Stopped));
+            return Ok(Some(ClassicPathSymptom::Stopped));
         }
         let polled = knowledge.poll(context)?;
-        knowledge.tell(self.luggage, context)?;
+        knowledge.report_outcome(self.luggage, context)?;
         match polled {
-            Some((_, outcome)) if outcome.is_open() => return Ok(Some(PathSymptom::Working)),
+            Some((_, outcome)) if outcome.is_open() => return Ok(Some(ClassicPathSymptom::Working)),
             Some((Action { kind: ActionKind::Collect | ActionKind::Deposit, .. }, _)) => return Ok(None),
             Some(_) | None => {}
         }
         let moved = polled.is_some();
         let stands = knowledge.next == knowledge.block && !moved;
         Ok(match knowledge.destination() {
-            Some(to) if stands && knowledge.block == to => Some(PathSymptom::AtDestination(to)),
-            Some(to) => Some(PathSymptom::OnTheWay { to, moved }),
+            Some(to) if stands && knowledge.block == to => Some(ClassicPathSymptom::AtDestination(to)),
+            Some(to) => Some(ClassicPathSymptom::OnTheWay { to, moved }),
             None if knowledge.variables.ready_to_go_under_charge => {
-                Some(PathSymptom::ToCharger { to: knowledge.charge_block, moved })
+                Some(ClassicPathSymptom::ToCharger { to: knowledge.charge_block, moved })
             }
             None => None,
         })
@@ -154,42 +156,46 @@ impl Loop for PathFollowerMS {
 
     fn plan(
         &mut self,
-        symptom: PathSymptom,
+        symptom: ClassicPathSymptom,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<PathDecision>, Failure> {
+    ) -> Result<Option<ClassicPathDecision>, Failure> {
         Ok(match symptom {
-            PathSymptom::Stopped => Some(PathDecision::Stop),
-            PathSymptom::Working => (knowledge.next != knowledge.block).then_some(PathDecision::Announce),
-            PathSymptom::AtDestination(block) => knowledge.job.map(|job| {
+            ClassicPathSymptom::Stopped => Some(ClassicPathDecision::Stop),
+            ClassicPathSymptom::Working => {
+                (knowledge.next != knowledge.block).then_some(ClassicPathDecision::Announce)
+            }
+            ClassicPathSymptom::AtDestination(block) => knowledge.job.map(|job| {
                 let has_luggage = knowledge.variables.has_luggage;
                 let action = if has_luggage { Action::deposit } else { Action::collect };
-                PathDecision::Handle(action(job.luggage, block))
+                ClassicPathDecision::Handle(action(job.luggage, block))
             }),
-            PathSymptom::OnTheWay { to, moved } => Some(PathDecision::Go { to, moved }),
-            PathSymptom::ToCharger { to, moved } => Some(PathDecision::GoCharging { to, moved }),
+            ClassicPathSymptom::OnTheWay { to, moved } => Some(ClassicPathDecision::Go { to, moved }),
+            ClassicPathSymptom::ToCharger { to, moved } => {
+                Some(ClassicPathDecision::GoCharging { to, moved })
+            }
         })
     }
 
     fn execute(
         &mut self,
-        decision: PathDecision,
+        decision: ClassicPathDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         match decision {
-            PathDecision::Stop | PathDecision::Announce => {}
-            PathDecision::Handle(action) => {
+            ClassicPathDecision::Stop | ClassicPathDecision::Announce => {}
+            ClassicPathDecision::Handle(action) => {
                 knowledge.begin(context, action)?;
-                return knowledge.tell(self.luggage, context);
+                return knowledge.report_outcome(self.luggage, context);
             }
-            PathDecision::Go { to, moved } => {
+            ClassicPathDecision::Go { to, moved } => {
                 if reach(knowledge, context, to, Block::step_x_first, moved)? {
                     let name = &knowledge.name;
                     context.console(format_args!("{name} says: I've arrived to destination."));
                 }
             }
-            PathDecision::GoCharging { to, moved } => {
+            ClassicPathDecision::GoCharging { to, moved } => {
                 if go_charging(knowledge, context, to, moved)? {
                     return self.ask_for_substitute(knowledge, context);
                 }
@@ -199,8 +205,8 @@ impl Loop for PathFollowerMS {
     }
 }
 
-impl PathFollowerMS {
-    /// Somebody has to stand in for a robot in charge, unless it was sent there.
+impl ClassicPathFollower {
+    /// Asks for a substitute for a charging robot, unless it was sent to charge.
     fn ask_for_substitute(
         &self,
         knowledge: &mut RobotKnowledge,
@@ -235,7 +241,7 @@ fn go_charging(
     Ok(true)
 }
 
-/// Drives to the announced block and announces the next one; `true` once the robot is there.
+/// Moves to the announced block and announces the next one; `true` once the robot is at its destination.
 fn reach(
     knowledge: &mut RobotKnowledge,
     context: &mut Context<'_>,

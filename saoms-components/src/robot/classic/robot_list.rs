@@ -3,7 +3,7 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Subscripti
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
 
-/// Knows which robots are active, and says in each execution that this one is.
+/// Keeps the list of active robots, and announces in each execution that this robot is active.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.RobotListMS",
@@ -12,20 +12,20 @@ use crate::robot::RobotKnowledge;
     publishes(ROBOT_LIST),
     subscribes(ROBOT_LIST)
 )]
-pub struct RobotListMS {
+pub struct ClassicRobotList {
     robots: Publisher<RobotList>,
     robots_heard: Subscription<RobotList>,
     known: usize,
 }
 
-impl Loop for RobotListMS {
+impl Loop for ClassicRobotList {
     type Properties = ();
     type Knowledge = RobotKnowledge;
     type Symptom = Record;
     type Decision = Record;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(RobotListMS::default())
+        Ok(ClassicRobotList::default())
     }
 
     fn initialize(

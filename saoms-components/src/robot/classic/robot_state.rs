@@ -3,7 +3,7 @@ use saoms_api::{Context, Failure, Header, Loop, LoopClass, Record, Recordable, S
 use crate::messages::{ROBOT_STATE, RobotState};
 use crate::robot::RobotKnowledge;
 
-/// Obeys whoever awakes the robot or sends it under charge (listing 6.4).
+/// Wakes the robot, or sends it to charge, on request (listing 6.4).
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.RobotMS",
@@ -12,57 +12,57 @@ use crate::robot::RobotKnowledge;
     effects("inCharge", "asleep", "busy", "readyToGoUnderCharge"),
     subscribes(ROBOT_STATE)
 )]
-pub struct RobotMS {
+pub struct ClassicRobotState {
     states: Subscription<RobotState>,
-    /// What arrived for this execution: before it is judged, the robot has to hear who is there.
+    /// Commands that arrived for this execution. They are judged once the robot has heard which robots are active.
     arrived: Vec<(Header, RobotState)>,
 }
 
-/// What the robot has to do.
+/// Commands to a robot.
 #[derive(Clone, Copy, Debug)]
-pub enum RobotSymptom {
-    /// Be awake, and stand in for a robot; for 0 there is none.
+pub enum ClassicRobotSymptom {
+    /// Wake up as a substitute for this robot; for 0 as none.
     Awake(u32),
-    /// Go under charge.
+    /// Go to charge.
     Asleep,
 }
 
-/// What it does.
+/// Reaction to a command.
 #[derive(Clone, Copy, Debug)]
-pub enum RobotDecision {
-    /// Is awake.
+pub enum ClassicRobotDecision {
+    /// Wake up.
     Wake(u32),
-    /// Goes under charge after its present job.
+    /// Charge after the current job.
     Charge,
 }
 
-impl Recordable for RobotSymptom {
+impl Recordable for ClassicRobotSymptom {
     fn record(&self) -> Record {
         match *self {
-            RobotSymptom::Awake(0) => record!("is called to be awake"),
-            RobotSymptom::Awake(robot) => record!("is called to stand in for robot {robot}", robot),
-            RobotSymptom::Asleep => record!("is called to go under charge"),
+            ClassicRobotSymptom::Awake(0) => record!("is called to be awake"),
+            ClassicRobotSymptom::Awake(robot) => record!("is called to stand in for robot {robot}", robot),
+            ClassicRobotSymptom::Asleep => record!("is called to go under charge"),
         }
     }
 }
 
-impl Recordable for RobotDecision {
+impl Recordable for ClassicRobotDecision {
     fn record(&self) -> Record {
         match self {
-            RobotDecision::Wake(_) => record!("is awake"),
-            RobotDecision::Charge => record!("goes under charge after its job"),
+            ClassicRobotDecision::Wake(_) => record!("is awake"),
+            ClassicRobotDecision::Charge => record!("goes under charge after its job"),
         }
     }
 }
 
-impl Loop for RobotMS {
+impl Loop for ClassicRobotState {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = RobotSymptom;
-    type Decision = RobotDecision;
+    type Symptom = ClassicRobotSymptom;
+    type Decision = ClassicRobotDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(RobotMS::default())
+        Ok(ClassicRobotState::default())
     }
 
     fn initialize(
@@ -85,10 +85,10 @@ impl Loop for RobotMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<RobotSymptom>, Failure> {
+    ) -> Result<Option<ClassicRobotSymptom>, Failure> {
         let mut newest = None;
         for (header, state) in self.arrived.drain(..) {
-            if knowledge.lets_in(&state, header, context) && state.robot == knowledge.number {
+            if knowledge.accepts(&state, header, context) && state.robot == knowledge.number {
                 newest = Some((state, header.cause));
             }
         }
@@ -96,42 +96,41 @@ impl Loop for RobotMS {
         context.because(cause);
         let variables = &knowledge.variables;
         Ok(match state.awake {
-            true => variables.in_charge.then_some(RobotSymptom::Awake(state.emulate)),
-            false => {
-                (!variables.in_charge && !variables.ready_to_go_under_charge).then_some(RobotSymptom::Asleep)
-            }
+            true => variables.in_charge.then_some(ClassicRobotSymptom::Awake(state.emulate)),
+            false => (!variables.in_charge && !variables.ready_to_go_under_charge)
+                .then_some(ClassicRobotSymptom::Asleep),
         })
     }
 
     fn plan(
         &mut self,
-        symptom: RobotSymptom,
+        symptom: ClassicRobotSymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<RobotDecision>, Failure> {
+    ) -> Result<Option<ClassicRobotDecision>, Failure> {
         Ok(Some(match symptom {
-            RobotSymptom::Awake(emulate) => RobotDecision::Wake(emulate),
-            RobotSymptom::Asleep => RobotDecision::Charge,
+            ClassicRobotSymptom::Awake(emulate) => ClassicRobotDecision::Wake(emulate),
+            ClassicRobotSymptom::Asleep => ClassicRobotDecision::Charge,
         }))
     }
 
     fn execute(
         &mut self,
-        decision: RobotDecision,
+        decision: ClassicRobotDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         let variables = &mut knowledge.variables;
         match decision {
-            RobotDecision::Wake(emulate) => {
-                // A healer is awake by this, and stays a healer.
+            ClassicRobotDecision::Wake(emulate) => {
+                // This wakes a healer too, which stays a healer.
                 (variables.in_charge, variables.asleep, variables.busy) = (false, false, variables.healer);
                 knowledge.stands_in_for = (emulate != 0).then_some(emulate);
                 context.info(format_args!("is awaked (battery {} %)", knowledge.battery));
             }
-            RobotDecision::Charge => {
+            ClassicRobotDecision::Charge => {
                 variables.ready_to_go_under_charge = true;
-                // Who sent it away knows that one robot is less there.
+                // The component that sent it to charge knows that one robot less is there.
                 knowledge.relieved = true;
                 context.info(format_args!("is sent under charge"));
             }

@@ -9,43 +9,44 @@ use super::Rival;
 /// A robot that waits for a healer.
 #[derive(Clone, Debug)]
 pub struct Help {
-    /// What it asked for.
+    /// The request.
     pub situation: CriticalSituation,
-    /// When.
+    /// Time of the request.
     pub since: Time,
-    /// Why.
+    /// Cause of the request.
     pub cause: Cause,
-    /// The other robots that would heal it and did not take that back.
+    /// Other robots that offered to heal it and did not take that back.
     pub rivals: Vec<Rival>,
-    /// How many executions the battery has to last before this robot thinks about it again; 0 while it did not.
+    /// Number of executions that the battery has to last before this robot considers the request again; 0 if it did not
+    /// consider it yet.
     pub needs: u32,
 }
 
 impl fmt::Display for Help {
-    /// As the console of the manual's figures shows it.
+    /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "New help request from Robot{}", self.situation.critical)
     }
 }
 
-/// The robots that wait for a healer, in the order in which they asked.
+/// Robots that wait for a healer, in the order of their requests.
 #[derive(Debug)]
 pub struct Helps {
     number: u32,
     open: Vec<Help>,
-    /// The one that this robot would heal: no longer on the list.
+    /// The request that this robot offered to answer; it is not on the list.
     claimed: Option<Help>,
-    /// What is settled: the request may arrive later than that.
+    /// Requests that are answered; a request may arrive later than its answer.
     settled: Vec<Settled>,
 }
 
-/// That somebody takes care of a robot.
+/// An answered request.
 #[derive(Clone, Copy, Debug)]
 struct Settled {
     critical: u32,
-    /// Whether somebody only stands in for it. That leaves its job open.
+    /// True if a robot only substitutes the broken one, which leaves its job open.
     stands_in: bool,
-    /// When he said so.
+    /// Time of the answer.
     time: Time,
 }
 
@@ -57,12 +58,12 @@ impl Settled {
 }
 
 impl Helps {
-    /// None, for the robot of this number.
+    /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Helps {
         Helps { number, open: Vec::new(), claimed: None, settled: Vec::new() }
     }
 
-    /// Takes in a request, the own ones too, or a response of another robot.
+    /// Handles a request, including the robot's own, or a response of another robot.
     pub fn hear(&mut self, message: &CriticalSituation, header: Header) {
         let critical = message.critical;
         if message.stage == CriticalStage::Request {
@@ -90,7 +91,7 @@ impl Helps {
         }
     }
 
-    /// A robot that asks again has another reason: what was known of the last one does not count any more.
+    /// Handles a request. A robot that asks again has another reason: its last request does not count any more.
     fn hear_request(&mut self, message: &CriticalSituation, header: Header) {
         if self.settled.iter().any(|settled| settled.settles(message) && settled.time > header.sent) {
             return;
@@ -111,7 +112,7 @@ impl Helps {
         }
     }
 
-    /// Takes in that a robot is active, or no longer is. One that works again needs no substitute, one that ended heals nobody.
+    /// Handles the state of a robot. A robot that works again needs no substitute; a robot that ended heals no other.
     pub fn hear_robot(&mut self, robot: &RobotList) {
         if robot.active && !robot.in_charge {
             self.open.retain(|help| !help.is_of(robot.robot) || help.situation.kind != CriticalKind::Idle);
@@ -122,22 +123,22 @@ impl Helps {
         }
     }
 
-    /// Takes those that others would heal off the list.
+    /// Removes requests that other robots offered to answer.
     pub fn drop_contested(&mut self) {
         self.open.retain(|help| help.rivals.is_empty());
     }
 
-    /// Those on the list, oldest first.
+    /// Requests on the list, oldest first.
     pub fn open(&self) -> &[Help] {
         &self.open
     }
 
-    /// The one that this robot would heal, unless another robot does.
+    /// The request that this robot offered to answer, unless another robot answers it.
     pub fn claimed(&self) -> Option<&Help> {
         self.claimed.as_ref()
     }
 
-    /// Would heal the robot of this number, if it waits.
+    /// Offers to heal the robot with this number, if it waits.
     pub fn claim(&mut self, critical: u32) -> Option<&Help> {
         if self.claimed.is_none() {
             let place = self.open.iter().position(|help| help.is_of(critical))?;
@@ -146,12 +147,12 @@ impl Helps {
         self.claimed.as_ref()
     }
 
-    /// Ends that: this robot heals the other one, or somebody else does.
+    /// Ends the offer: this robot heals the other one, or another robot does.
     pub fn settle(&mut self) -> Option<Help> {
         self.claimed.take()
     }
 
-    /// Would not heal it any more: it waits again where it was on the list.
+    /// Takes the offer back: the request returns to its place on the list.
     pub fn put_back(&mut self) {
         if let Some(help) = self.claimed.take() {
             let place = self.open.partition_point(|open| open.since <= help.since);
@@ -159,19 +160,19 @@ impl Helps {
         }
     }
 
-    /// The request of a robot, unless this robot would heal it.
+    /// The request of a robot, unless this robot offered to answer it.
     pub fn get(&self, critical: u32) -> Option<&Help> {
         self.open.iter().find(|help| help.is_of(critical))
     }
 
-    /// Thinks about a request again when the battery lasts for so many executions.
+    /// Defers a request until the battery lasts for `needs` executions.
     pub fn postpone(&mut self, critical: u32, needs: u32) {
         if let Some(help) = self.open.iter_mut().find(|help| help.is_of(critical)) {
             help.needs = needs;
         }
     }
 
-    /// Leaves a request to others for good.
+    /// Leaves a request to other robots for good.
     pub fn refuse(&mut self, critical: u32) {
         self.open.retain(|help| !help.is_of(critical));
     }

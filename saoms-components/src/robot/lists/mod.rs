@@ -1,4 +1,4 @@
-//! What a robot heard from others.
+//! State of the other robots and of open work, as messages reported it.
 
 mod helps;
 mod peers;
@@ -17,24 +17,24 @@ pub use requests::{Request, Requests, Rival};
 #[derive(Debug)]
 pub struct Lists {
     number: u32,
-    /// The other robots that are active, by number.
+    /// Other robots that are active, by number.
     pub active: Vec<RobotList>,
-    /// The luggage that waits, oldest first.
+    /// Luggage that waits, oldest first.
     pub requests: Requests,
-    /// The robots that wait for a healer, oldest first.
+    /// Robots that wait for a healer, oldest first.
     pub helps: Helps,
-    /// Where the other robots are and go.
+    /// Positions and next blocks of the other robots.
     pub peers: Peers,
-    /// The chargers of the other robots, also of those that are not active any more, by number.
+    /// Chargers of the other robots, including those that are not active any more, by number.
     pub chargers: Vec<(u32, Block)>,
-    /// Where there are chargers, also where nobody charges any more.
+    /// Blocks of chargers, including those that no robot uses any more.
     pub charging_places: Vec<Block>,
-    /// Robots that cannot move any more, until it is known where they are.
+    /// Robots that cannot move any more and whose position is not known yet.
     pub lost: Vec<u32>,
 }
 
 impl Lists {
-    /// The empty lists of the robot with this number.
+    /// Empty lists of the robot with this number.
     pub fn new(number: u32) -> Lists {
         Lists {
             number,
@@ -48,34 +48,34 @@ impl Lists {
         }
     }
 
-    /// The longest time from one execution to the next of the other robots, in microseconds.
+    /// Longest period of the other robots, in microseconds.
     pub fn slowest_period(&self) -> u64 {
         self.active.iter().map(|robot| robot.period).max().unwrap_or(0)
     }
 
-    /// Whether another robot is active.
+    /// True if the other robot is active.
     pub fn is_active(&self, robot: u32) -> bool {
         self.active.binary_search_by_key(&robot, |known| known.robot).is_ok()
     }
 
-    /// The other robots that sleep.
+    /// Other robots that sleep.
     pub fn sleepers(&self) -> impl Iterator<Item = &RobotList> {
         self.active.iter().filter(|robot| robot.asleep)
     }
 
-    /// Whether another robot is awake.
+    /// True if another robot is awake.
     pub fn anybody_awake(&self) -> bool {
         self.active.iter().any(|robot| !robot.asleep)
     }
 
-    /// Takes in that there is a charger.
+    /// Adds the block of a charger.
     pub fn learn_charger(&mut self, charger: Block) {
         if !self.charging_places.contains(&charger) {
             self.charging_places.push(charger);
         }
     }
 
-    /// Takes in that a robot is active, or no longer is.
+    /// Handles the state of a robot.
     pub fn hear_robot(&mut self, robot: &RobotList) {
         self.helps.hear_robot(robot);
         self.learn_charger(robot.charger);

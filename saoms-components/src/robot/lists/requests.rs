@@ -7,34 +7,35 @@ use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage};
 use crate::robot::Job;
 
-/// Another robot that took an interest in the same luggage.
+/// Another robot that took an interest in the same luggage, or offered the same help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rival {
-    /// Its number.
+    /// Number of the robot.
     pub robot: u32,
-    /// Where it was then.
+    /// Its position at that time.
     pub block: Block,
 }
 
 /// Luggage that waits for a robot.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// What there is to bring.
+    /// The job.
     pub job: Job,
-    /// When it was asked for.
+    /// Time of the request.
     pub since: Time,
-    /// Why.
+    /// Cause of the request.
     pub cause: Cause,
-    /// The other robots that took an interest and did not take it back.
+    /// Other robots that took an interest and did not take it back.
     pub rivals: Vec<Rival>,
-    /// How many executions the battery has to last before this robot thinks about it again; 0 while it did not.
+    /// Number of executions that the battery has to last before this robot considers the request again; 0 if it did not
+    /// consider it yet.
     pub needs: u32,
-    /// Whether this robot found out, while it could take nothing, that the luggage is not out of its reach.
+    /// True if this robot found out, while it could take no job, that the luggage is within its reach.
     pub judged: bool,
 }
 
 impl fmt::Display for Request {
-    /// As the console of the manual's figures shows it.
+    /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Luggage to bring from {} to {}", self.job.from, self.job.to)
     }
@@ -57,26 +58,26 @@ impl Request {
     }
 }
 
-/// The luggage that waits, oldest first.
+/// Luggage that waits, oldest first.
 #[derive(Debug)]
 pub struct Requests {
     number: u32,
     open: Vec<Request>,
-    /// The one that this robot took an interest in: no longer on the list.
+    /// The request that this robot took an interest in; it is not on the list.
     claimed: Option<Request>,
-    /// Luggage that this robot leaves to others for good.
+    /// Luggage that this robot leaves to other robots for good.
     refused: Vec<u32>,
-    /// Luggage that other robots leave to others for good, and those robots.
+    /// Luggage that other robots refused, with the robot.
     refusals: BTreeSet<(u32, u32)>,
 }
 
 impl Requests {
-    /// None, for the robot of this number.
+    /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Requests {
         Requests { number, open: Vec::new(), claimed: None, refused: Vec::new(), refusals: BTreeSet::new() }
     }
 
-    /// Takes in a request or a response; the own responses do not count.
+    /// Handles a request or a response, without the robot's own responses.
     pub fn hear(&mut self, event: &EventLuggage, header: Header) {
         if event.stage == LuggageStage::Request {
             return self.hear_request(event, header);
@@ -129,27 +130,27 @@ impl Requests {
         }
     }
 
-    /// Takes what others took an interest in off the list.
+    /// Removes requests that other robots took an interest in.
     pub fn drop_contested(&mut self) {
         self.open.retain(|request| request.rivals.is_empty());
     }
 
-    /// Those on the list, oldest first.
+    /// Requests on the list, oldest first.
     pub fn open(&self) -> &[Request] {
         &self.open
     }
 
-    /// Those on the list, to note something about them.
+    /// Requests on the list, mutable.
     pub fn open_mut(&mut self) -> &mut [Request] {
         &mut self.open
     }
 
-    /// The one that this robot took an interest in, unless another robot took it.
+    /// The request that this robot took an interest in, unless another robot took it.
     pub fn claimed(&self) -> Option<&Request> {
         self.claimed.as_ref()
     }
 
-    /// Takes an interest in the one at this place of the list.
+    /// Takes an interest in the request at this index.
     pub fn claim(&mut self, place: usize) -> Option<&Request> {
         if place < self.open.len() && self.claimed.is_none() {
             self.claimed = Some(self.open.remove(place));
@@ -157,12 +158,12 @@ impl Requests {
         self.claimed.as_ref()
     }
 
-    /// Ends the interest: the robot brings it, or another one does.
+    /// Ends the interest: this robot brings the luggage, or another one does.
     pub fn settle(&mut self) -> Option<Request> {
         self.claimed.take()
     }
 
-    /// Ends the interest and puts the request back where it was on the list.
+    /// Ends the interest and returns the request to its place on the list.
     pub fn put_back(&mut self) {
         if let Some(request) = self.claimed.take() {
             let place = self.open.partition_point(|open| open.since <= request.since);
@@ -170,17 +171,17 @@ impl Requests {
         }
     }
 
-    /// Whether another robot leaves luggage to others for good.
+    /// True if another robot refused the luggage for good.
     pub fn is_refused_by(&self, luggage: u32, robot: u32) -> bool {
         self.refusals.contains(&(luggage, robot))
     }
 
-    /// What was found out about requests while this robot could take none does not hold any more.
+    /// Forgets the results that were found out about requests while this robot could take no job.
     pub fn judge_again(&mut self) {
         self.open.iter_mut().for_each(|request| request.judged = false);
     }
 
-    /// Leaves luggage to others for good.
+    /// Refuses luggage for good.
     pub fn refuse(&mut self, luggage: u32) {
         self.open.retain(|open| open.job.luggage != luggage);
         self.refused.push(luggage);

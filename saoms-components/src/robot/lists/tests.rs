@@ -20,7 +20,7 @@ fn response(luggage: u32, robot: u32, stage: LuggageStage) -> EventLuggage {
     EventLuggage { robot, stage, block: Block::new(0, robot as i32), ..request(luggage) }
 }
 
-/// Lists that heard of luggage 1, 2 and 3, a second apart.
+/// Lists with luggage 1, 2 and 3, requested a second apart.
 fn lists() -> Lists {
     let mut lists = Lists::new(MINE);
     for luggage in 1..=3 {

@@ -3,10 +3,10 @@ use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Record, Recorda
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{RobotKnowledge, Trouble};
 
-/// Uses the battery, and turns back to the charger in time.
+/// Discharges the battery, and returns to the charger in time.
 ///
-/// It knows how many executions the battery lasts, and how many the way to the charger takes with what is kept back for waiting and making
-/// way. What a robot finishes before its battery is that low, it finishes.
+/// The robot knows how many executions the battery lasts, and how many the way to the charger takes, with a reserve for
+/// waiting and making way. A job that ends before the battery is that low is finished.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.BatteryMS",
@@ -14,66 +14,66 @@ use crate::robot::{RobotKnowledge, Trouble};
     senses("block", "next", "job", "chargeAt"),
     effects("battery", "inCharge", "chargeBlock")
 )]
-pub struct BatteryMS {
+pub struct SafeBattery {
     charging: bool,
-    /// Whether the robot is in charge, as the others learn once the loop has decided.
+    /// True if the robot charges; other robots learn that once the loop has decided.
     in_charge: bool,
-    /// How often other ways had become necessary when it looked at the way to its charger.
+    /// Number of changes of the ways at the last check of the way to the charger.
     changes: u32,
-    /// Why it went to its charger: what becomes of it on the way follows from that.
+    /// Cause of the return to the charger; events on the way follow from it.
     turned: Cause,
     /// Its own charger, while it charges at another one.
     own: Option<Block>,
 }
 
-/// What the battery allows now.
+/// State of the battery.
 #[derive(Clone, Copy, Debug)]
-pub enum BatterySymptom {
-    /// It is as far down as the way to the charger allows.
+pub enum SafeBatterySymptom {
+    /// The battery is as low as the way to the charger allows.
     Low {
-        /// What is left, in percent.
+        /// Battery level in percent.
         battery: f64,
-        /// For how many executions that is.
+        /// Number of executions that it lasts.
         left: u32,
-        /// How many the way to the charger takes.
+        /// Number of executions that the way to the charger takes.
         home: u32,
     },
-    /// It is empty, with no charger there.
+    /// The battery is empty, away from a charger.
     Empty,
-    /// No way leads to the charger any more, and another one can be reached.
+    /// No way leads to the charger any more, and another charger can be reached.
     CutOff {
-        /// The charger.
+        /// Block of the charger.
         charger: Block,
-        /// The other one.
+        /// Block of the other charger.
         other: Block,
     },
-    /// The battery does not last for the way to the charger any more, and a free one is closer.
+    /// The battery does not last for the way to the charger any more, and a free charger is closer.
     OutOfReach {
-        /// The charger.
+        /// Block of the charger.
         charger: Block,
-        /// The other one.
+        /// Block of the other charger.
         other: Block,
     },
-    /// At the charger it holds enough for what the robot has to do.
+    /// The battery at the charger has enough for the robot's work.
     Charged {
-        /// What is in it, in percent.
+        /// Battery level in percent.
         battery: f64,
     },
-    /// The robot begins to be in charge, or no longer is.
+    /// The robot starts or ends charging.
     Charge {
-        /// Whether it is.
+        /// True if it starts.
         begins: bool,
-        /// What is in it, in percent.
+        /// Battery level in percent.
         battery: f64,
     },
 }
 
-/// What to do about it.
+/// Reaction to the state of the battery.
 #[derive(Clone, Copy, Debug)]
-pub enum BatteryDecision {
-    /// Go to the charger, whatever the job.
+pub enum SafeBatteryDecision {
+    /// Go to the charger, in spite of the job.
     Charge,
-    /// Stay where the robot is, and say so.
+    /// Stay at the block, and report that.
     Stop,
     /// Leave the charger.
     Leave,
@@ -81,69 +81,69 @@ pub enum BatteryDecision {
     Use(Block),
     /// Charge at another charger this time.
     Borrow(Block),
-    /// Be in charge, or no longer.
+    /// Start or end charging.
     BeInCharge(bool),
 }
 
-impl Recordable for BatterySymptom {
+impl Recordable for SafeBatterySymptom {
     fn record(&self) -> Record {
         match *self {
-            BatterySymptom::Low { battery, left, home } => record!(
+            SafeBatterySymptom::Low { battery, left, home } => record!(
                 "has {battery} % left: enough for {left} executions, and the way to its charger takes {home}",
                 battery,
                 left,
                 home
             ),
-            BatterySymptom::Empty => record!("has an empty battery"),
-            BatterySymptom::OutOfReach { charger, other } => record!(
+            SafeBatterySymptom::Empty => record!("has an empty battery"),
+            SafeBatterySymptom::OutOfReach { charger, other } => record!(
                 "its charger at {charger} is out of reach by now, and the one at {other} is free",
                 charger,
                 other
             ),
-            BatterySymptom::CutOff { charger, other } => {
+            SafeBatterySymptom::CutOff { charger, other } => {
                 record!(
                     "no way leads to its charger at {charger} any more, but one to {other}",
                     charger,
                     other
                 )
             }
-            BatterySymptom::Charged { battery } => record!("has charged up to {battery} %", battery),
-            BatterySymptom::Charge { begins: true, battery } => {
+            SafeBatterySymptom::Charged { battery } => record!("has charged up to {battery} %", battery),
+            SafeBatterySymptom::Charge { begins: true, battery } => {
                 record!("is at its charger with {battery} %", battery)
             }
-            BatterySymptom::Charge { begins: false, battery } => {
+            SafeBatterySymptom::Charge { begins: false, battery } => {
                 record!("gains nothing from its charger any more, with {battery} %", battery)
             }
         }
     }
 }
 
-impl Recordable for BatteryDecision {
+impl Recordable for SafeBatteryDecision {
     fn record(&self) -> Record {
         match *self {
-            BatteryDecision::Charge => record!("goes to its charger"),
-            BatteryDecision::Stop => record!("stays where it is"),
-            BatteryDecision::Leave => record!("has enough for what it has to do"),
-            BatteryDecision::Use(other) => record!("charges at {other} from now on", other),
-            BatteryDecision::Borrow(other) => record!("charges at {other} this time", other),
-            BatteryDecision::BeInCharge(true) => record!("is in charge"),
-            BatteryDecision::BeInCharge(false) => record!("is in charge no more"),
+            SafeBatteryDecision::Charge => record!("goes to its charger"),
+            SafeBatteryDecision::Stop => record!("stays where it is"),
+            SafeBatteryDecision::Leave => record!("has enough for what it has to do"),
+            SafeBatteryDecision::Use(other) => record!("charges at {other} from now on", other),
+            SafeBatteryDecision::Borrow(other) => record!("charges at {other} this time", other),
+            SafeBatteryDecision::BeInCharge(true) => record!("is in charge"),
+            SafeBatteryDecision::BeInCharge(false) => record!("is in charge no more"),
         }
     }
 }
 
-impl Loop for BatteryMS {
+impl Loop for SafeBattery {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = BatterySymptom;
-    type Decision = BatteryDecision;
+    type Symptom = SafeBatterySymptom;
+    type Decision = SafeBatteryDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(BatteryMS::default())
+        Ok(SafeBattery::default())
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        if knowledge.hooks.has_entered() {
+        if knowledge.hardware.has_entered() {
             self.use_battery(knowledge, context);
         }
         Ok(())
@@ -153,7 +153,7 @@ impl Loop for BatteryMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<BatterySymptom>, Failure> {
+    ) -> Result<Option<SafeBatterySymptom>, Failure> {
         if knowledge.trouble.is_some() {
             return Ok(None);
         }
@@ -163,85 +163,85 @@ impl Loop for BatteryMS {
             && let Some(other) = knowledge.other_charger()
         {
             let charger = knowledge.charge_block;
-            return Ok(Some(BatterySymptom::CutOff { charger, other }));
+            return Ok(Some(SafeBatterySymptom::CutOff { charger, other }));
         }
         let battery = knowledge.battery.percent();
         let must_charge = knowledge.energy.must_charge();
         let symptom = if knowledge.is_at_charger() {
             let lasts = self.own.is_none_or(|own| knowledge.lasts_to(own));
-            (must_charge && lasts && knowledge.may_leave()).then_some(BatterySymptom::Charged { battery })
+            (must_charge && lasts && knowledge.may_leave()).then_some(SafeBatterySymptom::Charged { battery })
         } else if knowledge.battery.is_empty() {
             context.because(self.turned);
-            Some(BatterySymptom::Empty)
+            Some(SafeBatterySymptom::Empty)
         } else if must_charge {
             let charger = knowledge.charge_block;
             let other = knowledge.charger_in_reach();
             other.map(|other| {
                 context.because(self.turned);
-                BatterySymptom::OutOfReach { charger, other }
+                SafeBatterySymptom::OutOfReach { charger, other }
             })
         } else if knowledge.goes_on() {
             None
         } else {
             let (left, home) = (knowledge.battery.executions_left(), knowledge.home(knowledge.next));
-            Some(BatterySymptom::Low { battery, left, home })
+            Some(SafeBatterySymptom::Low { battery, left, home })
         };
         let begins = self.in_charge;
         let changes = knowledge.variables.in_charge != begins;
-        Ok(symptom.or(changes.then_some(BatterySymptom::Charge { begins, battery })))
+        Ok(symptom.or(changes.then_some(SafeBatterySymptom::Charge { begins, battery })))
     }
 
     fn plan(
         &mut self,
-        symptom: BatterySymptom,
+        symptom: SafeBatterySymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<BatteryDecision>, Failure> {
+    ) -> Result<Option<SafeBatteryDecision>, Failure> {
         Ok(Some(match symptom {
-            BatterySymptom::Low { .. } => BatteryDecision::Charge,
-            BatterySymptom::Empty => BatteryDecision::Stop,
-            BatterySymptom::Charged { .. } => BatteryDecision::Leave,
-            BatterySymptom::CutOff { other, .. } => BatteryDecision::Use(other),
-            BatterySymptom::OutOfReach { other, .. } => BatteryDecision::Borrow(other),
-            BatterySymptom::Charge { begins, .. } => BatteryDecision::BeInCharge(begins),
+            SafeBatterySymptom::Low { .. } => SafeBatteryDecision::Charge,
+            SafeBatterySymptom::Empty => SafeBatteryDecision::Stop,
+            SafeBatterySymptom::Charged { .. } => SafeBatteryDecision::Leave,
+            SafeBatterySymptom::CutOff { other, .. } => SafeBatteryDecision::Use(other),
+            SafeBatterySymptom::OutOfReach { other, .. } => SafeBatteryDecision::Borrow(other),
+            SafeBatterySymptom::Charge { begins, .. } => SafeBatteryDecision::BeInCharge(begins),
         }))
     }
 
     fn execute(
         &mut self,
-        decision: BatteryDecision,
+        decision: SafeBatteryDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        // Whatever else there is to decide, so that the journal has it.
+        // In addition to any other decision, so that the journal has it.
         knowledge.variables.in_charge = self.in_charge;
         match decision {
-            BatteryDecision::BeInCharge(_) => {}
-            BatteryDecision::Charge => {
+            SafeBatteryDecision::BeInCharge(_) => {}
+            SafeBatteryDecision::Charge => {
                 self.turned = context.cause();
                 knowledge.energy.turn_back();
                 let (name, battery) = (&knowledge.name, &knowledge.battery);
                 context.console(format_args!("{name} has low battery and is going under charge..."));
                 context.info(format_args!("has low battery ({battery} %): goes to charge"));
             }
-            BatteryDecision::Stop => {
+            SafeBatteryDecision::Stop => {
                 knowledge.trouble = Some(Trouble::Battery);
                 context.count("stranded", 1);
                 let block = knowledge.block;
                 context.log(Level::Error, format_args!("is stranded at {block}: its battery is empty"));
             }
-            BatteryDecision::Leave => {
+            SafeBatteryDecision::Leave => {
                 knowledge.energy.may_go();
                 if let Some(own) = self.own.take().filter(|own| !knowledge.routes.is_obstacle(*own)) {
                     knowledge.use_charger(own);
                 }
             }
-            BatteryDecision::Use(other) => {
+            SafeBatteryDecision::Use(other) => {
                 self.own = None;
                 knowledge.use_charger(other);
                 context.info(format_args!("charges at {other} from now on"));
             }
-            BatteryDecision::Borrow(other) => {
+            SafeBatteryDecision::Borrow(other) => {
                 self.own = self.own.or(Some(knowledge.charge_block));
                 knowledge.use_charger(other);
                 context.info(format_args!("charges at {other} this time: its own is out of reach"));
@@ -252,14 +252,15 @@ impl Loop for BatteryMS {
 }
 
 impl RobotKnowledge {
-    /// Charges at this charger from now on.
+    /// Makes this block the robot's charger from now on.
     pub(in crate::robot) fn use_charger(&mut self, charger: Block) {
         self.charge_block = charger;
         let others = self.lists.chargers.iter().map(|(_, charger)| *charger);
         self.routes.use_charger(charger, others);
     }
 
-    /// Where the battery does not last for the way to the charger any more: the closest other one that is closer and that nobody holds.
+    /// The closest free charger that is closer than the robot's own, if the battery does not last for the way to its
+    /// own.
     fn charger_in_reach(&mut self) -> Option<Block> {
         let home = self.home(self.next);
         if self.battery.executions_left() > home || self.next != self.block {
@@ -273,8 +274,8 @@ impl RobotKnowledge {
         (self.home_to(closest) < home).then_some(closest)
     }
 
-    /// Another charger, where no way leads to the own one any more: the closest of those that nobody uses any more, else the closest at all, where
-    /// robots charge one after the other.
+    /// Another charger, if no way leads to the robot's own: the closest one that no robot uses any more, otherwise the
+    /// closest one, where robots charge one after the other.
     fn other_charger(&mut self) -> Option<Block> {
         if self.routes.between(self.next, self.charge_block) != UNREACHABLE
             && !self.routes.is_obstacle(self.charge_block)
@@ -291,8 +292,8 @@ impl RobotKnowledge {
     }
 }
 
-impl BatteryMS {
-    /// Takes what an execution needs, or gives what it gains.
+impl SafeBattery {
+    /// Discharges or charges the battery by one execution.
     fn use_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
         if !knowledge.is_at_charger() {
             (self.charging, self.in_charge) = (false, false);

@@ -4,9 +4,9 @@ use crate::grid::Block;
 use crate::messages::{IMMOVABLE, POSITION, Position};
 use crate::robot::RobotKnowledge;
 
-/// Lets the robot enter the block that it wants only once nobody else holds or wants it.
+/// Lets the robot enter the block that it wants only once no other robot holds or wants it.
 ///
-/// The right of way is that of `Traffic`.
+/// `Traffic` decides about the right of way.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.CollisionMS",
@@ -15,63 +15,63 @@ use crate::robot::RobotKnowledge;
     effects("stopAPeriod"),
     subscribes(POSITION)
 )]
-pub struct CollisionMS {
+pub struct SafeCollision {
     positions: Subscription<Position>,
-    /// For which block and robot the robot waits.
+    /// Block and robot that the robot waits for.
     waits: Option<(Block, u32)>,
 }
 
-/// How the block stands that the robot wants.
+/// State of the block that the robot wants.
 #[derive(Clone, Copy, Debug)]
-pub enum CollisionSymptom {
-    /// Another robot holds it, or wants it.
+pub enum SafeCollisionSymptom {
+    /// Another robot holds or wants it.
     Taken {
         /// The block.
         block: Block,
         /// The other robot.
         robot: u32,
     },
-    /// It is free now.
+    /// The block is free now.
     Clear,
 }
 
-/// Whether to go on.
+/// Right of way.
 #[derive(Clone, Copy, Debug)]
-pub enum CollisionDecision {
+pub enum SafeCollisionDecision {
     /// Wait for the other robot.
     Wait(Block, u32),
     /// Go on.
     GoOn,
 }
 
-impl Recordable for CollisionSymptom {
+impl Recordable for SafeCollisionSymptom {
     fn record(&self) -> Record {
         match *self {
-            CollisionSymptom::Taken { block, robot } => {
+            SafeCollisionSymptom::Taken { block, robot } => {
                 record!("robot {robot} holds or wants {block}", robot, block)
             }
-            CollisionSymptom::Clear => record!("nobody is in its way any more"),
+            SafeCollisionSymptom::Clear => record!("nobody is in its way any more"),
         }
     }
 }
 
-impl Recordable for CollisionDecision {
+impl Recordable for SafeCollisionDecision {
     fn record(&self) -> Record {
         match *self {
-            CollisionDecision::Wait(_, robot) => record!("waits for robot {robot}", robot),
-            CollisionDecision::GoOn => record!("goes on"),
+            SafeCollisionDecision::Wait(_, robot) => record!("waits for robot {robot}", robot),
+            SafeCollisionDecision::GoOn => record!("goes on"),
         }
     }
 }
 
-impl Loop for CollisionMS {
+impl Loop for SafeCollision {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = CollisionSymptom;
-    type Decision = CollisionDecision;
+    type Symptom = SafeCollisionSymptom;
+    type Decision = SafeCollisionDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(CollisionMS::default())
+        Ok(SafeCollision::default())
     }
 
     fn initialize(
@@ -93,7 +93,7 @@ impl Loop for CollisionMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<CollisionSymptom>, Failure> {
+    ) -> Result<Option<SafeCollisionSymptom>, Failure> {
         let RobotKnowledge { traffic, lists, next, .. } = knowledge;
         traffic.look(&lists.peers, *next);
         let taken = traffic.wanted(*next).and_then(|block| Some((block, traffic.in_the_way(block)?)));
@@ -101,32 +101,32 @@ impl Loop for CollisionMS {
             return Ok(None);
         }
         Ok(Some(match taken {
-            Some((block, robot)) => CollisionSymptom::Taken { block, robot },
-            None => CollisionSymptom::Clear,
+            Some((block, robot)) => SafeCollisionSymptom::Taken { block, robot },
+            None => SafeCollisionSymptom::Clear,
         }))
     }
 
     fn plan(
         &mut self,
-        symptom: CollisionSymptom,
+        symptom: SafeCollisionSymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<CollisionDecision>, Failure> {
+    ) -> Result<Option<SafeCollisionDecision>, Failure> {
         Ok(Some(match symptom {
-            CollisionSymptom::Taken { block, robot } => CollisionDecision::Wait(block, robot),
-            CollisionSymptom::Clear => CollisionDecision::GoOn,
+            SafeCollisionSymptom::Taken { block, robot } => SafeCollisionDecision::Wait(block, robot),
+            SafeCollisionSymptom::Clear => SafeCollisionDecision::GoOn,
         }))
     }
 
     fn execute(
         &mut self,
-        decision: CollisionDecision,
+        decision: SafeCollisionDecision,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         self.waits = match decision {
-            CollisionDecision::Wait(block, robot) => Some((block, robot)),
-            CollisionDecision::GoOn => None,
+            SafeCollisionDecision::Wait(block, robot) => Some((block, robot)),
+            SafeCollisionDecision::GoOn => None,
         };
         knowledge.variables.stop_a_period = self.waits.is_some();
         Ok(())
@@ -134,7 +134,7 @@ impl Loop for CollisionMS {
 }
 
 impl RobotKnowledge {
-    /// Takes in where robots are that cannot move any more.
+    /// Records the positions of robots that cannot move any more as obstacles.
     fn learn_obstacles(&mut self) {
         let RobotKnowledge { lists, routes, .. } = self;
         lists.lost.retain(|robot| {

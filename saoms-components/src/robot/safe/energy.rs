@@ -1,31 +1,31 @@
-//! Whether the battery lasts.
+//! Energy management: decides if the battery lasts.
 
 use crate::grid::Block;
 use crate::robot::{Job, RobotKnowledge};
 
 use super::pace::Pace;
 
-/// Moves that are kept back for waiting and making way on the way to the charger, where the battery allows. Simulated fleets of the
-/// tests strand robots now and then with less than 12.
+/// Number of moves that are reserved for waiting and making way on the way to the charger, if the battery allows it.
+/// With less than 12, robots in the simulated fleets of the tests sometimes ran out of battery.
 const RESERVE: u32 = 14;
 
-/// Executions that are always kept back.
+/// Minimum reserve, in executions.
 const LEAST_RESERVE: u32 = 2;
 
-/// A robot that turned back so often during one job asks itself whether it can be done at all.
+/// Number of returns to the charger during one job after which a robot checks if the job is possible at all.
 const IN_VAIN: u32 = 3;
 
-/// A robot in charge makes way for others when its battery lasts for so many moves beyond the reserve.
+/// Number of moves beyond the reserve that the battery has to last before a charging robot makes way for others.
 const YIELD_FROM: u32 = 3;
 
-/// What a robot found out about its battery.
+/// State of a robot's energy management.
 #[derive(Debug)]
 pub(crate) struct Energy {
     must_charge: bool,
     pace: Pace,
-    /// Executions that are kept back now: less than usual on a way that takes nearly the whole battery.
+    /// Current reserve in executions: less than usual on a way that takes nearly the whole battery.
     reserve: u32,
-    /// How often the robot had to turn to its charger during the present job.
+    /// Number of returns to the charger during the current job.
     returns: u32,
 }
 
@@ -35,42 +35,42 @@ impl Default for Energy {
     }
 }
 
-/// What the battery allows of a job.
+/// Result of comparing the battery with a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Means {
+pub(super) enum Feasibility {
     /// The battery lasts, or a full one does with a stop at the charger in between.
     Enough,
-    /// It has to last for so many executions.
+    /// The battery has to last for this number of executions.
     Needs(u32),
-    /// No way leads there, or no full battery lasts.
+    /// No way leads to the job, or no full battery lasts.
     Never,
 }
 
 impl Energy {
-    /// Whether the robot has to go to its charger now, or to stay there.
+    /// True if the robot has to go to its charger now, or to stay there.
     pub(super) fn must_charge(&self) -> bool {
         self.must_charge
     }
 
-    /// The robot goes to its charger.
+    /// Sends the robot to its charger.
     pub(super) fn turn_back(&mut self) {
         self.must_charge = true;
         self.returns = self.returns.saturating_add(1);
     }
 
-    /// The robot may leave its charger.
+    /// Lets the robot leave its charger.
     pub(super) fn may_go(&mut self) {
         self.must_charge = false;
     }
 
-    /// What the robot learns about its speed.
+    /// Measured speed of the robot.
     pub(super) fn pace(&mut self) -> &mut Pace {
         &mut self.pace
     }
 }
 
 impl RobotKnowledge {
-    /// Whether a robot at its charger has too little to make way for others.
+    /// True if a robot at its charger has too little energy to make way for others.
     pub(super) fn holds_charger(&self) -> bool {
         if !self.is_at_charger() {
             return false;
@@ -79,7 +79,8 @@ impl RobotKnowledge {
         self.battery.executions_left() < wanted.min(self.battery.executions_when_full())
     }
 
-    /// Whether the robot need not turn to its charger yet: enough is left to do so later, or to finish its job before.
+    /// True if the robot need not return to its charger yet: the battery lasts to do so later, or to finish its job
+    /// before.
     pub(super) fn goes_on(&mut self) -> bool {
         if !self.variables.busy && self.battery.percent() <= self.charge_at {
             return false;
@@ -94,50 +95,50 @@ impl RobotKnowledge {
         left >= rest.saturating_add((reserve / 2).max(LEAST_RESERVE))
     }
 
-    /// Whether the battery lasts for collecting or depositing here, and for the way to the charger.
+    /// True if the battery lasts for collecting or depositing here, and for the way to the charger.
     pub(super) fn may_handle(&mut self) -> bool {
         let home = self.home(self.next).saturating_add(LEAST_RESERVE);
         self.battery.executions_left() >= home.saturating_add(self.energy.pace.handling)
     }
 
-    /// What the battery allows of a job that starts here and now.
-    pub(super) fn means(&mut self, job: &Job) -> Means {
+    /// Compares the battery with a job that starts here and now.
+    pub(super) fn means(&mut self, job: &Job) -> Feasibility {
         if self.is_loaded {
-            return Means::Never;
+            return Feasibility::Never;
         }
         let (left, full) = (self.battery.executions_left(), self.battery.executions_when_full());
         let usual = self.executions_for(job, false).saturating_add(self.usual_reserve());
         if usual <= left {
-            return Means::Enough;
+            return Feasibility::Enough;
         }
         match (self.is_within(job, full), left == full) {
-            (false, _) => Means::Never,
-            (true, true) => Means::Enough,
-            (true, false) => Means::Needs(usual.min(full)),
+            (false, _) => Feasibility::Never,
+            (true, true) => Feasibility::Enough,
+            (true, false) => Feasibility::Needs(usual.min(full)),
         }
     }
 
-    /// Starts a job, or goes on with it after charging: decides what to keep back. A robot that would come too low charges between collecting
-    /// and depositing.
+    /// Sets the reserve at the start of a job, or after charging. A robot that would arrive with too little energy
+    /// charges between collecting and depositing.
     pub(super) fn set_out(&mut self, job: &Job) {
         let next = if self.variables.has_luggage { job.to } else { job.from };
         let way = self.routes.between(self.next, next);
         let back = self.routes.between(next, self.charge_block);
         let first = self.energy.pace.job(way, 1).saturating_add(self.energy.pace.job(back, 0));
         let spare = self.battery.executions_left().saturating_sub(first);
-        // Who turned back in vain dares more the next time.
+        // A robot that returned in vain uses a smaller reserve the next time.
         let reserve = (spare / 4 * 3).min(self.usual_reserve());
         let reserve = reserve.checked_shr(self.energy.returns).unwrap_or(0);
         self.energy.reserve = reserve.max(self.least_reserve(back));
     }
 
-    /// Without a job nothing speaks against the usual reserve.
+    /// Resets the reserve to the usual one, for a robot without a job.
     pub(super) fn keep_usual_reserve(&mut self) {
         self.energy.reserve = self.usual_reserve();
         self.energy.returns = 0;
     }
 
-    /// Whether a charged robot can go on: what is left suffices for the rest of its job, or more is not to be had.
+    /// True if a charged robot can go on: the battery lasts for the rest of its job, or is full.
     pub(super) fn may_leave(&mut self) -> bool {
         let Some(job) = self.job.filter(|_| self.variables.busy) else { return true };
         let needs = self.executions_for(&job, self.variables.has_luggage);
@@ -149,8 +150,8 @@ impl RobotKnowledge {
         may
     }
 
-    /// What the robot brings and where it has to go for that, if it is at its charger again with a full battery, turned back from there again and
-    /// again, and knows its speed by now: no battery lasts for that.
+    /// Job and destination of a robot for whose job no battery lasts: it is at its charger with a full battery after
+    /// several returns, and knows its speed by now.
     pub(super) fn strives_in_vain(&mut self) -> Option<(Job, Block)> {
         let (job, to) = (self.job?, self.destination()?);
         let charged = self.is_at_charger() && self.battery.is_full();
@@ -162,7 +163,7 @@ impl RobotKnowledge {
         (!self.is_within(&rest, full)).then_some((job, to))
     }
 
-    /// How many executions another robot may take for one move.
+    /// Number of executions that another robot may take for one move.
     pub(super) fn tempo(&self) -> u32 {
         let slower = self.lists.slowest_period().checked_div(self.period).unwrap_or(1).max(1);
         self.energy.pace.moving.saturating_mul(u32::try_from(slower).unwrap_or(u32::MAX))
@@ -173,7 +174,7 @@ impl RobotKnowledge {
         RESERVE.saturating_mul(self.tempo()).max(full / 4).min(full / 3)
     }
 
-    /// Executions for the rest of a job from here, and the way to the charger.
+    /// Number of executions for the rest of a job from here, and the way to the charger.
     fn executions_for(&mut self, job: &Job, has_luggage: bool) -> u32 {
         let start = self.next;
         let executions = if has_luggage {
@@ -185,14 +186,14 @@ impl RobotKnowledge {
         executions.saturating_add(self.home(job.to))
     }
 
-    /// Executions for a whole job from the charger and back, where nobody is in the way.
+    /// Number of executions for a whole job from the charger and back, without other robots in the way.
     pub(super) fn executions_from_charger(&mut self, job: &Job) -> u32 {
         let ways = [(self.charge_block, job.from), (job.from, job.to), (job.to, self.charge_block)];
         let moves = ways.map(|(from, to)| self.routes.between(from, to));
         self.energy.pace.job_alone(moves.into_iter().fold(0, u32::saturating_add), 2)
     }
 
-    /// Whether a full battery lasts for each half of a job, from the charger and back.
+    /// True if a full battery lasts for each half of a job, from the charger and back.
     fn is_within(&mut self, job: &Job, full: u32) -> bool {
         [job.from, job.to].into_iter().all(|block| {
             let way = self.routes.between(block, self.charge_block);
@@ -200,30 +201,31 @@ impl RobotKnowledge {
         })
     }
 
-    /// What is kept back at least where so many moves lead to the charger.
+    /// Minimum reserve for a way of `way` moves to the charger.
     fn least_reserve(&self, way: u32) -> u32 {
         least_reserve(way, self.energy.pace.moving)
     }
 
-    /// Executions from a block to the charger.
+    /// Number of executions from a block to the charger.
     pub(super) fn home(&mut self, from: Block) -> u32 {
         self.energy.pace.job(self.routes.between(from, self.charge_block), 0)
     }
 
-    /// Whether the battery lasts for the way to another charger with the usual reserve, or is full.
+    /// True if the battery lasts for the way to another charger with the usual reserve, or is full.
     pub(super) fn lasts_to(&mut self, charger: Block) -> bool {
         let needs = self.home_to(charger).saturating_add(self.usual_reserve());
         self.battery.is_full() || self.battery.executions_left() >= needs
     }
 
-    /// Executions from where the robot goes on to another charger.
+    /// Number of executions from the block where the robot goes on to another charger.
     pub(super) fn home_to(&mut self, charger: Block) -> u32 {
         self.energy.pace.job(self.routes.between(self.next, charger), 0)
     }
 }
 
-/// Whether a full battery of so many executions lasts for so many moves from the charger, collecting or depositing there, and the way back, where
-/// a move and handling luggage take these executions. A robot takes no job beyond that.
+/// True if a full battery of `full` executions lasts for `way` moves from the charger, collecting or depositing there,
+/// and the way back. `moving` and `handling` are the executions of a move and of handling luggage. A robot takes no job
+/// beyond that.
 pub(crate) fn is_within(way: u32, moving: u32, handling: u32, full: u32) -> bool {
     let round = way.saturating_mul(2).saturating_mul(moving);
     round.saturating_add(handling).saturating_add(least_reserve(way, moving)) <= full

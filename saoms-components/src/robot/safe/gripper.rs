@@ -4,7 +4,7 @@ use crate::hardware::Action;
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, RobotKnowledge};
 
-/// Works the gripper: collects luggage where it is and deposits it where it has to go.
+/// Uses the gripper: collects luggage at its block and deposits it at its destination.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.GripperMS",
@@ -13,78 +13,82 @@ use crate::robot::{Job, RobotKnowledge};
     effects("job", "busy", "transporter", "hasLuggage", "healer"),
     publishes(EVENT_LUGGAGE)
 )]
-pub struct GripperMS {
+pub struct SafeGripper {
     luggage: Publisher<EventLuggage>,
 }
 
-/// What is to be done here.
+/// Work for the gripper.
 #[derive(Clone, Copy, Debug)]
-pub enum GripperSymptom {
-    /// The robot stands where its luggage is.
+pub enum SafeGripperSymptom {
+    /// The robot is at the block of its luggage.
     AtLuggage(Job),
-    /// The robot stands where its luggage has to go.
+    /// The robot is at the destination of its luggage.
     AtDestination(Job),
-    /// What was deposited is not told yet.
+    /// Luggage was deposited, which is not reported yet.
     Deposited(Job),
-    /// What could not be collected is not told yet.
+    /// Luggage could not be collected, which is not reported yet.
     Failed(Job),
 }
 
-/// What to do about it.
+/// Action of the gripper.
 #[derive(Clone, Copy, Debug)]
-pub enum GripperDecision {
+pub enum SafeGripperDecision {
     /// Start to collect.
     Collect(Job),
     /// Start to deposit.
     Deposit(Job),
-    /// Tell that the luggage is delivered.
+    /// Report that the luggage is delivered.
     Tell(Job),
-    /// Leave it to others.
+    /// Leave the luggage to other robots.
     Return(Job),
 }
 
-impl Recordable for GripperSymptom {
+impl Recordable for SafeGripperSymptom {
     fn record(&self) -> Record {
         match *self {
-            GripperSymptom::AtLuggage(Job { luggage, from, .. }) => {
+            SafeGripperSymptom::AtLuggage(Job { luggage, from, .. }) => {
                 record!("is at {from}, where luggage {luggage} is", from, luggage)
             }
-            GripperSymptom::AtDestination(Job { luggage, to, .. }) => {
+            SafeGripperSymptom::AtDestination(Job { luggage, to, .. }) => {
                 record!("is at {to}, where luggage {luggage} has to go", to, luggage)
             }
-            GripperSymptom::Deposited(Job { luggage, .. }) => {
+            SafeGripperSymptom::Deposited(Job { luggage, .. }) => {
                 record!("has deposited luggage {luggage}", luggage)
             }
-            GripperSymptom::Failed(Job { luggage, from, .. }) => {
+            SafeGripperSymptom::Failed(Job { luggage, from, .. }) => {
                 record!("cannot collect luggage {luggage} at {from}", luggage, from)
             }
         }
     }
 }
 
-impl Recordable for GripperDecision {
+impl Recordable for SafeGripperDecision {
     fn record(&self) -> Record {
         match *self {
-            GripperDecision::Collect(Job { luggage, .. }) => record!("collects luggage {luggage}", luggage),
-            GripperDecision::Deposit(Job { luggage, .. }) => record!("deposits luggage {luggage}", luggage),
-            GripperDecision::Tell(Job { luggage, .. }) => {
+            SafeGripperDecision::Collect(Job { luggage, .. }) => {
+                record!("collects luggage {luggage}", luggage)
+            }
+            SafeGripperDecision::Deposit(Job { luggage, .. }) => {
+                record!("deposits luggage {luggage}", luggage)
+            }
+            SafeGripperDecision::Tell(Job { luggage, .. }) => {
                 record!("tells that luggage {luggage} is delivered", luggage)
             }
-            GripperDecision::Return(Job { luggage, .. }) => {
+            SafeGripperDecision::Return(Job { luggage, .. }) => {
                 record!("leaves luggage {luggage} to others", luggage)
             }
         }
     }
 }
 
-impl Loop for GripperMS {
+impl Loop for SafeGripper {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = GripperSymptom;
-    type Decision = GripperDecision;
+    type Symptom = SafeGripperSymptom;
+    type Decision = SafeGripperDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(GripperMS::default())
+        Ok(SafeGripper::default())
     }
 
     fn initialize(
@@ -97,7 +101,7 @@ impl Loop for GripperMS {
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        if knowledge.hooks.is_handling() {
+        if knowledge.hardware.is_handling() {
             knowledge.polled = knowledge.poll(context)?;
         }
         Ok(())
@@ -107,57 +111,58 @@ impl Loop for GripperMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<GripperSymptom>, Failure> {
+    ) -> Result<Option<SafeGripperSymptom>, Failure> {
         if let Some((job, stage)) = knowledge.untold {
             let delivered = stage == LuggageStage::Delivered;
             return Ok(Some(if delivered {
-                GripperSymptom::Deposited(job)
+                SafeGripperSymptom::Deposited(job)
             } else {
-                GripperSymptom::Failed(job)
+                SafeGripperSymptom::Failed(job)
             }));
         }
-        if knowledge.hooks.running().is_some() || knowledge.variables.critical {
+        if knowledge.hardware.running().is_some() || knowledge.variables.critical {
             return Ok(None);
         }
         let has_luggage = knowledge.variables.has_luggage;
-        let symptom = if has_luggage { GripperSymptom::AtDestination } else { GripperSymptom::AtLuggage };
+        let symptom =
+            if has_luggage { SafeGripperSymptom::AtDestination } else { SafeGripperSymptom::AtLuggage };
         Ok(knowledge.job_here().map(symptom))
     }
 
     fn plan(
         &mut self,
-        symptom: GripperSymptom,
+        symptom: SafeGripperSymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<GripperDecision>, Failure> {
+    ) -> Result<Option<SafeGripperDecision>, Failure> {
         Ok(Some(match symptom {
-            GripperSymptom::AtLuggage(job) => GripperDecision::Collect(job),
-            GripperSymptom::AtDestination(job) => GripperDecision::Deposit(job),
-            GripperSymptom::Deposited(job) => GripperDecision::Tell(job),
-            GripperSymptom::Failed(job) => GripperDecision::Return(job),
+            SafeGripperSymptom::AtLuggage(job) => SafeGripperDecision::Collect(job),
+            SafeGripperSymptom::AtDestination(job) => SafeGripperDecision::Deposit(job),
+            SafeGripperSymptom::Deposited(job) => SafeGripperDecision::Tell(job),
+            SafeGripperSymptom::Failed(job) => SafeGripperDecision::Return(job),
         }))
     }
 
     fn execute(
         &mut self,
-        decision: GripperDecision,
+        decision: SafeGripperDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         let action = match decision {
-            GripperDecision::Collect(job) => Some(Action::collect(job.luggage, job.from)),
-            GripperDecision::Deposit(job) => Some(Action::deposit(job.luggage, job.to)),
-            GripperDecision::Tell(_) | GripperDecision::Return(_) => None,
+            SafeGripperDecision::Collect(job) => Some(Action::collect(job.luggage, job.from)),
+            SafeGripperDecision::Deposit(job) => Some(Action::deposit(job.luggage, job.to)),
+            SafeGripperDecision::Tell(_) | SafeGripperDecision::Return(_) => None,
         };
         if let Some(action) = action {
             knowledge.begin(context, action)?;
         }
-        knowledge.tell(self.luggage, context)
+        knowledge.report_outcome(self.luggage, context)
     }
 }
 
 impl RobotKnowledge {
-    /// The job, if the robot stands where it leads next, with enough left in its battery to work there.
+    /// The job, if the robot is at its next destination, with enough energy to work there.
     pub(super) fn job_here(&mut self) -> Option<Job> {
         let destination = self.destination()?;
         let stands = self.next == self.block && self.reaches(destination, self.block);

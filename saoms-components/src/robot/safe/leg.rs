@@ -4,7 +4,7 @@ use crate::grid::Block;
 use crate::messages::Priority;
 use crate::robot::RobotKnowledge;
 
-/// The way to one goal.
+/// Way to one goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Leg {
     pub(super) goal: Option<Block>,
@@ -12,10 +12,10 @@ pub(crate) struct Leg {
     since: Time,
 }
 
-/// What a way is for, the most urgent last.
+/// Purposes of a way, the most urgent last.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Urgency {
-    /// Nothing: the robot is where it wants to be.
+    /// No way: the robot is where it wants to be.
     #[default]
     None,
     /// Going home without a job.
@@ -27,27 +27,28 @@ pub(super) enum Urgency {
 }
 
 impl Leg {
-    /// The more urgent way goes first; of two alike, the one that lasts longer. It stays the same on the whole way: robots that swap their
-    /// priorities would push each other to and fro.
+    /// Priority of the way: the more urgent one is higher; of two equally urgent ways the older one. It does not change
+    /// on the way: robots that swap their priorities would push each other back and forth.
     pub(super) fn priority(&self, robot: u32) -> Priority {
         if self.urgency == Urgency::None {
-            // Who rests has nothing to compare, and nothing new to say when it rests for another reason.
+            // A resting robot has no way to compare, and need not announce a new reason for resting.
             return Priority { rank: 0, robot };
         }
         const MOST: u64 = (1 << 56) - 1;
-        // Quarters of microseconds: the time of a run fits for more than 500 years.
+        // The unit is 256 ns, so that the time of a run fits for more than 500 years.
         let age = MOST - (self.since.as_nanos() >> 8).min(MOST);
         Priority { rank: (self.urgency as u64) << 56 | age, robot }
     }
 }
 
 impl RobotKnowledge {
-    /// Whether the gripper reaches a block from another one: it is the same, or beside it and held by a robot that does not move any more.
+    /// True if the gripper reaches a block from another one: it is the same block, or adjacent and held by a robot that
+    /// does not move any more.
     pub(super) fn reaches(&self, block: Block, from: Block) -> bool {
         from == block || (from.distance(block) == 1 && self.routes.is_obstacle(block))
     }
 
-    /// Decides where to go from now on, and how urgently.
+    /// Selects the goal and its urgency.
     pub(super) fn set_leg(&mut self, now: Time) {
         let (goal, urgency) = if self.energy.must_charge() {
             (Some(self.charge_block), Urgency::Energy)
@@ -69,7 +70,7 @@ impl RobotKnowledge {
         }
     }
 
-    /// Whether it goes to its charger after its job, and whether it is on the way there.
+    /// Two flags: the robot goes to its charger after its job; the robot is on the way there.
     pub(super) fn homeward(&self) -> (bool, bool) {
         let homeward = self.energy.must_charge() || self.relieved;
         let Leg { goal, urgency, .. } = self.leg;

@@ -1,26 +1,26 @@
-//! How fast a robot gets on.
+//! Measured speed of a robot.
 
 use crate::hardware::{Action, ActionKind};
 use crate::robot::actions::Outcome;
 
-/// Waiting is counted in so many parts of an execution.
+/// Unit of waiting times: parts of an execution.
 const PARTS: u32 = 16;
 
-/// The newest move has one part in so many of the average.
+/// Weight of the newest move in the average: one part of this number.
 const MEMORY: u32 = 8;
 
-/// What a robot learnt about the executions that its actions take.
+/// Number of executions that a robot's actions take, as measured so far.
 #[derive(Debug)]
 pub(super) struct Pace {
-    /// The most executions that a move took so far.
+    /// Maximum number of executions of a move so far.
     pub(super) moving: u32,
-    /// The most executions that collecting or depositing took so far.
+    /// Maximum number of executions of collecting or depositing so far.
     pub(super) handling: u32,
-    /// The executions of the running action.
+    /// Number of executions of the running action.
     running: u32,
-    /// The executions since the last move on the present way.
+    /// Number of executions since the last move on the current way.
     since: u32,
-    /// How long the robot waited before a move, on average, in parts of an execution.
+    /// Average waiting time before a move, in parts of an execution.
     waiting: u32,
 }
 
@@ -31,7 +31,7 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// Takes in what became of the running action in this execution.
+    /// Records the outcome of the running action in this execution.
     pub(super) fn note_action(&mut self, polled: Option<(Action, Outcome)>) {
         let Some((action, outcome)) = polled else { return self.running = 0 };
         self.running += 1;
@@ -42,7 +42,7 @@ impl Pace {
         }
     }
 
-    /// Takes in whether the robot is on a way in this execution, and whether it goes on to the next block.
+    /// Records if the robot is on a way in this execution, and if it enters the next block.
     pub(super) fn note_way(&mut self, on_the_way: bool, goes_on: bool) {
         self.since = if on_the_way { self.since.saturating_add(1) } else { 0 };
         if goes_on {
@@ -52,12 +52,12 @@ impl Pace {
         }
     }
 
-    /// Executions for so many moves and so often collecting or depositing.
+    /// Number of executions for moves and for collecting or depositing.
     pub(super) fn job(&self, moves: u32, handlings: u32) -> u32 {
         self.way(moves, self.waiting).saturating_add(handlings * self.handling)
     }
 
-    /// The same where the robot never waits.
+    /// The same for a robot that never waits.
     pub(super) fn job_alone(&self, moves: u32, handlings: u32) -> u32 {
         self.way(moves, 0).saturating_add(handlings * self.handling)
     }

@@ -9,10 +9,10 @@ use crate::robot::{RobotKnowledge, Variables};
 use super::leg::Urgency;
 use super::traffic::Claim;
 
-/// A robot tells that it waits when it does so for so many executions.
+/// Number of executions of waiting after which a robot reports that it waits.
 const TELLING_WAIT: u32 = 3;
 
-/// Drives the wheels along the way to where the robot has to be, and says which block it wants next.
+/// Drives the wheels on the way to the robot's goal, and announces the block that it wants next.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.PathFollowerMS",
@@ -21,72 +21,72 @@ const TELLING_WAIT: u32 = 3;
     effects("block", "next", "readyToGoUnderCharge", "reachingCharge"),
     publishes(POSITION)
 )]
-pub struct PathFollowerMS {
+pub struct SafePathFollower {
     said: Option<Position>,
     positions: Publisher<Position>,
 }
 
-/// How the robot stands on its way.
+/// State of the robot on its way.
 #[derive(Clone, Copy, Debug)]
-pub enum PathSymptom {
-    /// It works with luggage, or cannot move.
+pub enum SafePathSymptom {
+    /// The robot handles luggage, or cannot move.
     Bound {
-        /// Where.
+        /// Position of the robot.
         block: Block,
     },
-    /// It is on the way.
+    /// The robot is on the way.
     OnTheWay {
-        /// From where it goes on.
+        /// Block from which it goes on.
         at: Block,
-        /// Where it has to be.
+        /// Goal of the robot.
         goal: Block,
     },
-    /// It is where it has to be, or has no place to be.
+    /// The robot is at its goal, or has none.
     There {
-        /// Where.
+        /// Position of the robot.
         block: Block,
     },
 }
 
-/// What to do with the wheels.
+/// Decision about the next move.
 #[derive(Clone, Copy, Debug)]
-pub enum PathDecision {
-    /// Stay whoever comes.
+pub enum SafePathDecision {
+    /// Stay, without making way.
     Hold,
-    /// Go to a block that is clear.
+    /// Enter a free block.
     Go(Block),
-    /// Stay for now, and say what the robot wants.
+    /// Stay for now, and announce the block that the robot wants.
     Stay,
 }
 
-impl Recordable for PathSymptom {
+impl Recordable for SafePathSymptom {
     fn record(&self) -> Record {
         match *self {
-            PathSymptom::Bound { block } => record!("is bound to {block}", block),
-            PathSymptom::OnTheWay { at, goal } => record!("is at {at} on its way to {goal}", at, goal),
-            PathSymptom::There { block } => record!("rests at {block}", block),
+            SafePathSymptom::Bound { block } => record!("is bound to {block}", block),
+            SafePathSymptom::OnTheWay { at, goal } => record!("is at {at} on its way to {goal}", at, goal),
+            SafePathSymptom::There { block } => record!("rests at {block}", block),
         }
     }
 }
 
-impl Recordable for PathDecision {
+impl Recordable for SafePathDecision {
     fn record(&self) -> Record {
         match *self {
-            PathDecision::Hold => record!("lets nobody pass"),
-            PathDecision::Go(block) => record!("moves to {block}", block),
-            PathDecision::Stay => record!("stays for now"),
+            SafePathDecision::Hold => record!("lets nobody pass"),
+            SafePathDecision::Go(block) => record!("moves to {block}", block),
+            SafePathDecision::Stay => record!("stays for now"),
         }
     }
 }
 
-impl Loop for PathFollowerMS {
+impl Loop for SafePathFollower {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = PathSymptom;
-    type Decision = PathDecision;
+    type Symptom = SafePathSymptom;
+    type Decision = SafePathDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(PathFollowerMS::default())
+        Ok(SafePathFollower::default())
     }
 
     fn initialize(
@@ -95,15 +95,15 @@ impl Loop for PathFollowerMS {
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         self.positions = context.publish(&POSITION)?;
-        // Before anybody moves, everybody has to know which blocks are held.
+        // All robots have to know which blocks are held before the first one moves.
         self.say(context, knowledge.position())
     }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        if knowledge.hooks.is_moving() {
+        if knowledge.hardware.is_moving() {
             knowledge.polled = knowledge.poll(context)?;
             if let Some((_, Outcome::Failed)) = knowledge.polled {
-                // What it wanted is beside the block that it did not get to.
+                // The wanted block is adjacent to the block that the robot did not reach.
                 knowledge.traffic.stay(knowledge.next);
             }
         }
@@ -114,13 +114,13 @@ impl Loop for PathFollowerMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<PathSymptom>, Failure> {
+    ) -> Result<Option<SafePathSymptom>, Failure> {
         let block = knowledge.block;
         if knowledge.is_bound() {
             let said = self.said.as_ref().is_some_and(|said| {
                 (said.block, said.next, said.wanted, said.priority) == (block, block, block, IMMOVABLE)
             });
-            return Ok((!said).then_some(PathSymptom::Bound { block }));
+            return Ok((!said).then_some(SafePathSymptom::Bound { block }));
         }
         knowledge.set_leg(context.now());
         if self.rests(knowledge) {
@@ -128,32 +128,32 @@ impl Loop for PathFollowerMS {
         }
         Ok(Some(match knowledge.leg.goal {
             Some(goal) if knowledge.leg.urgency != Urgency::None => {
-                PathSymptom::OnTheWay { at: knowledge.next, goal }
+                SafePathSymptom::OnTheWay { at: knowledge.next, goal }
             }
-            _ => PathSymptom::There { block },
+            _ => SafePathSymptom::There { block },
         }))
     }
 
     fn plan(
         &mut self,
-        symptom: PathSymptom,
+        symptom: SafePathSymptom,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<PathDecision>, Failure> {
-        if let PathSymptom::Bound { .. } = symptom {
-            return Ok(Some(PathDecision::Hold));
+    ) -> Result<Option<SafePathDecision>, Failure> {
+        if let SafePathSymptom::Bound { .. } = symptom {
+            return Ok(Some(SafePathDecision::Hold));
         }
         let from = knowledge.next;
         let wanted = knowledge.traffic.wanted(from).filter(|_| !knowledge.variables.stop_a_period);
         Ok(Some(match wanted {
-            Some(wanted) if knowledge.block == from => PathDecision::Go(wanted),
-            _ => PathDecision::Stay,
+            Some(wanted) if knowledge.block == from => SafePathDecision::Go(wanted),
+            _ => SafePathDecision::Stay,
         }))
     }
 
     fn execute(
         &mut self,
-        decision: PathDecision,
+        decision: SafePathDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
@@ -162,14 +162,14 @@ impl Loop for PathFollowerMS {
             (knowledge.variables.ready_to_go_under_charge, knowledge.variables.reaching_charge) = variables;
         }
         let goes_on = match decision {
-            PathDecision::Hold => {
+            SafePathDecision::Hold => {
                 knowledge.next = knowledge.block;
                 knowledge.traffic.stay(knowledge.next);
                 let position = Position { priority: IMMOVABLE, ..knowledge.position() };
                 return self.say_if_news(context, position);
             }
-            PathDecision::Go(to) => go(knowledge, context, to)?,
-            PathDecision::Stay => false,
+            SafePathDecision::Go(to) => go(knowledge, context, to)?,
+            SafePathDecision::Stay => false,
         };
         knowledge.energy.pace().note_way(knowledge.leg.urgency != Urgency::None, goes_on);
         let position = want(knowledge, context);
@@ -183,14 +183,15 @@ impl Loop for PathFollowerMS {
     }
 
     fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        // The robot stays where it is, and nobody else gets past it.
+        // The robot stays where it is, and no other robot gets past it.
         knowledge.next = knowledge.block;
         self.say_if_news(context, Position { priority: IMMOVABLE, ..knowledge.position() })
     }
 }
 
-impl PathFollowerMS {
-    /// Whether the robot is where it wants to be, in nobody's way, and the others know it: then there is nothing to do.
+impl SafePathFollower {
+    /// True if the robot is at its goal, in no other robot's way, and the others know it: then there is nothing to
+    /// decide.
     fn rests(&self, knowledge: &mut RobotKnowledge) -> bool {
         let at = knowledge.next;
         let Variables { ready_to_go_under_charge, reaching_charge, .. } = knowledge.variables;
@@ -220,13 +221,13 @@ impl PathFollowerMS {
         context.send(&self.positions, position)
     }
 
-    /// Says where the robot is and goes, where the others do not know that already.
+    /// Announces position and next block, unless the other robots know them.
     fn say_if_news(&mut self, context: &mut Context<'_>, position: Position) -> Result<(), Failure> {
         if self.said.as_ref() == Some(&position) { Ok(()) } else { self.say(context, position) }
     }
 }
 
-/// Goes to the block that was wanted in an earlier execution and is clear now.
+/// Enters the block that was wanted in an earlier execution and is free now.
 fn go(knowledge: &mut RobotKnowledge, context: &mut Context<'_>, to: Block) -> Result<bool, Failure> {
     let from = knowledge.next;
     let outcome = knowledge.begin(context, Action::move_to(to))?;
@@ -238,7 +239,7 @@ fn go(knowledge: &mut RobotKnowledge, context: &mut Context<'_>, to: Block) -> R
     Ok(goes_on)
 }
 
-/// Decides which block to want from now on.
+/// Chooses the block that the robot wants from now on.
 fn want(knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Position {
     let at = knowledge.next;
     let stays = knowledge.job_here().is_some() || knowledge.holds_charger();
@@ -258,8 +259,8 @@ fn want(knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Position {
 }
 
 impl RobotKnowledge {
-    /// Whether the robot works with luggage, or cannot move any more.
+    /// True if the robot handles luggage, or cannot move any more.
     fn is_bound(&self) -> bool {
-        self.hooks.is_handling() || self.variables.critical
+        self.hardware.is_handling() || self.variables.critical
     }
 }

@@ -3,9 +3,10 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
 
-/// Knows which robots are active, and says that this one is.
+/// Keeps the list of active robots, and announces that this robot is active.
 ///
-/// It repeats that only where others learn something from it: when its battery changed, and when it starts or ends charging.
+/// It repeats the announcement only with new information: when its battery level changed, and when it starts or ends
+/// charging.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.RobotListMS",
@@ -14,28 +15,28 @@ use crate::robot::RobotKnowledge;
     publishes(ROBOT_LIST),
     subscribes(ROBOT_LIST)
 )]
-pub struct RobotListMS {
+pub struct SafeRobotList {
     said: Option<RobotList>,
     robots: Publisher<RobotList>,
     robots_heard: Subscription<RobotList>,
 }
 
-/// A robot repeats that it is active when its battery changed by so many percent.
+/// Change of the battery level, in percent, after which a robot repeats its announcement.
 const BATTERY_STEP: f64 = 5.0;
 
-/// What others do not know about this robot.
+/// State of this robot that the others do not know yet.
 #[derive(Clone, Copy, Debug)]
-pub struct RobotListSymptom {
+pub struct SafeRobotListSymptom {
     battery: f64,
     in_charge: bool,
     critical: bool,
 }
 
-/// To say so.
+/// Decision to announce the robot's state.
 #[derive(Clone, Copy, Debug)]
 pub struct SayRobot;
 
-impl Recordable for RobotListSymptom {
+impl Recordable for SafeRobotListSymptom {
     fn record(&self) -> Record {
         let battery = self.battery;
         match self.in_charge {
@@ -52,14 +53,14 @@ impl Recordable for SayRobot {
     }
 }
 
-impl Loop for RobotListMS {
+impl Loop for SafeRobotList {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = RobotListSymptom;
+    type Symptom = SafeRobotListSymptom;
     type Decision = SayRobot;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(RobotListMS::default())
+        Ok(SafeRobotList::default())
     }
 
     fn initialize(
@@ -91,7 +92,7 @@ impl Loop for RobotListMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<RobotListSymptom>, Failure> {
+    ) -> Result<Option<SafeRobotListSymptom>, Failure> {
         let (battery, in_charge) = (knowledge.battery.percent(), knowledge.variables.in_charge);
         let news = self.said.as_ref().is_none_or(|said| {
             said.in_charge != in_charge
@@ -101,12 +102,12 @@ impl Loop for RobotListMS {
                 || knowledge.variables.critical
         });
         let critical = knowledge.variables.critical;
-        Ok(news.then_some(RobotListSymptom { battery, in_charge, critical }))
+        Ok(news.then_some(SafeRobotListSymptom { battery, in_charge, critical }))
     }
 
     fn plan(
         &mut self,
-        _symptom: RobotListSymptom,
+        _symptom: SafeRobotListSymptom,
         _knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<Option<SayRobot>, Failure> {

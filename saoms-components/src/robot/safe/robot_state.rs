@@ -3,13 +3,14 @@ use saoms_api::{Cause, Context, Failure, Header, Loop, LoopClass, Record, Record
 use crate::messages::{ROBOT_STATE, RobotList, RobotState};
 use crate::robot::{Help, Request, RobotKnowledge};
 
-/// For so many executions a sleeping robot leaves luggage to whoever could be awaked for it.
+/// Number of executions for which a sleeping robot leaves luggage to each robot that is asked before it.
 const TURN: u32 = 5;
 
-/// Awakes the robot and lets it sleep, as others ask.
+/// Wakes the robot and sends it to sleep, on request.
 ///
-/// A robot that is sent to sleep finishes its job, goes to its charger and takes no jobs until it is awaked. It goes on to listen and to make
-/// way. It awakes by itself where a robot needs help, or luggage waits, and no other robot is awake that can do it.
+/// A robot that is sent to sleep finishes its job, goes to its charger and takes no jobs until it is woken. It still
+/// listens and makes way. It wakes by itself if a robot needs help, or luggage waits, and no robot that is awake can do
+/// it.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.RobotMS",
@@ -18,45 +19,45 @@ const TURN: u32 = 5;
     effects("asleep"),
     subscribes(ROBOT_STATE)
 )]
-pub struct RobotMS {
+pub struct SafeRobotState {
     states: Subscription<RobotState>,
-    /// What arrived and is not judged yet: before that, the robot has to hear who is there.
+    /// Commands that arrived and are not judged yet. They are judged once the robot has heard which robots are active.
     arrived: Vec<(Header, RobotState)>,
     called: Option<(RobotState, Cause)>,
-    /// Why it sleeps once it is at its charger.
+    /// Cause of sleeping once it is at its charger.
     sent: Cause,
 }
 
-/// Why to be awake, or asleep.
+/// Reasons to be awake, or asleep.
 #[derive(Clone, Copy, Debug)]
-pub enum RobotSymptom {
-    /// Somebody awakes the robot, perhaps in place of another one.
+pub enum SafeRobotSymptom {
+    /// A command to wake, perhaps as a substitute.
     Awaked {
-        /// The robot to stand in for; 0 where it is for none.
+        /// Number of the robot to substitute; 0 for none.
         emulate: u32,
     },
-    /// Somebody sends the robot to its charger.
+    /// A command to go to the charger and sleep.
     SentToSleep,
-    /// A robot needs help, and nobody is awake who can give it.
+    /// A robot needs help, and no robot that is awake can give it.
     NobodyAwake {
-        /// The robot.
+        /// Number of that robot.
         critical: u32,
     },
-    /// Luggage waits, and nobody is awake who can bring it.
+    /// Luggage waits, and no robot that is awake can bring it.
     NobodyForLuggage {
-        /// The luggage.
+        /// Number of the luggage.
         luggage: u32,
     },
     /// The robot was sent to sleep, and is at its charger.
     AtRest,
 }
 
-/// What to do about it.
+/// Reaction to the reason.
 #[derive(Clone, Copy, Debug)]
-pub enum RobotDecision {
-    /// Be awake, perhaps in place of another robot.
+pub enum SafeRobotDecision {
+    /// Wake up, perhaps as a substitute.
     Awake {
-        /// The robot to stand in for; 0 where it is for none.
+        /// Number of the robot to substitute; 0 for none.
         emulate: u32,
     },
     /// Stay awake.
@@ -67,43 +68,45 @@ pub enum RobotDecision {
     Sleep,
 }
 
-impl Recordable for RobotSymptom {
+impl Recordable for SafeRobotSymptom {
     fn record(&self) -> Record {
         match *self {
-            RobotSymptom::Awaked { emulate: 0 } => record!("is awaked"),
-            RobotSymptom::Awaked { emulate } => record!("is awaked in place of robot {emulate}", emulate),
-            RobotSymptom::SentToSleep => record!("is sent to sleep"),
-            RobotSymptom::NobodyAwake { critical } => {
+            SafeRobotSymptom::Awaked { emulate: 0 } => record!("is awaked"),
+            SafeRobotSymptom::Awaked { emulate } => record!("is awaked in place of robot {emulate}", emulate),
+            SafeRobotSymptom::SentToSleep => record!("is sent to sleep"),
+            SafeRobotSymptom::NobodyAwake { critical } => {
                 record!("robot {critical} needs help, and no robot that is awake can give it", critical)
             }
-            RobotSymptom::NobodyForLuggage { luggage } => {
+            SafeRobotSymptom::NobodyForLuggage { luggage } => {
                 record!("luggage {luggage} waits, and no robot that is awake can bring it", luggage)
             }
-            RobotSymptom::AtRest => record!("is at its charger and was sent to sleep"),
+            SafeRobotSymptom::AtRest => record!("is at its charger and was sent to sleep"),
         }
     }
 }
 
-impl Recordable for RobotDecision {
+impl Recordable for SafeRobotDecision {
     fn record(&self) -> Record {
         match *self {
-            RobotDecision::Awake { emulate: 0 } => record!("awakes"),
-            RobotDecision::Awake { emulate } => record!("awakes and stands in for robot {emulate}", emulate),
-            RobotDecision::StayAwake => record!("is awake already"),
-            RobotDecision::Finish => record!("finishes its job, then sleeps"),
-            RobotDecision::Sleep => record!("sleeps"),
+            SafeRobotDecision::Awake { emulate: 0 } => record!("awakes"),
+            SafeRobotDecision::Awake { emulate } => {
+                record!("awakes and stands in for robot {emulate}", emulate)
+            }
+            SafeRobotDecision::StayAwake => record!("is awake already"),
+            SafeRobotDecision::Finish => record!("finishes its job, then sleeps"),
+            SafeRobotDecision::Sleep => record!("sleeps"),
         }
     }
 }
 
-impl Loop for RobotMS {
+impl Loop for SafeRobotState {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = RobotSymptom;
-    type Decision = RobotDecision;
+    type Symptom = SafeRobotSymptom;
+    type Decision = SafeRobotDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(RobotMS::default())
+        Ok(SafeRobotState::default())
     }
 
     fn initialize(
@@ -125,9 +128,9 @@ impl Loop for RobotMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<RobotSymptom>, Failure> {
+    ) -> Result<Option<SafeRobotSymptom>, Failure> {
         for (header, state) in self.arrived.drain(..) {
-            if knowledge.lets_in(&state, header, context) && state.robot == knowledge.number {
+            if knowledge.accepts(&state, header, context) && state.robot == knowledge.number {
                 self.called = Some((state, header.cause));
             }
         }
@@ -136,61 +139,63 @@ impl Loop for RobotMS {
         }
         if let Some((state, cause)) = self.called.take() {
             context.because(cause);
-            let symptom = RobotSymptom::Awaked { emulate: state.emulate };
-            return Ok(Some(if state.awake { symptom } else { RobotSymptom::SentToSleep }));
+            let symptom = SafeRobotSymptom::Awaked { emulate: state.emulate };
+            return Ok(Some(if state.awake { symptom } else { SafeRobotSymptom::SentToSleep }));
         }
         if knowledge.variables.asleep {
             if let Some((critical, cause)) = knowledge.has_to_help() {
                 context.because(cause);
-                return Ok(Some(RobotSymptom::NobodyAwake { critical }));
+                return Ok(Some(SafeRobotSymptom::NobodyAwake { critical }));
             }
             return Ok(knowledge.has_to_bring(context).map(|(luggage, cause)| {
                 context.because(cause);
-                RobotSymptom::NobodyForLuggage { luggage }
+                SafeRobotSymptom::NobodyForLuggage { luggage }
             }));
         }
         let rests = knowledge.relieved && knowledge.is_free() && knowledge.is_at_charger();
         context.because(self.sent);
-        Ok(rests.then_some(RobotSymptom::AtRest))
+        Ok(rests.then_some(SafeRobotSymptom::AtRest))
     }
 
     fn plan(
         &mut self,
-        symptom: RobotSymptom,
+        symptom: SafeRobotSymptom,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<RobotDecision>, Failure> {
+    ) -> Result<Option<SafeRobotDecision>, Failure> {
         let asleep = knowledge.variables.asleep;
         Ok(match symptom {
-            RobotSymptom::Awaked { emulate } if asleep || knowledge.relieved => {
-                Some(RobotDecision::Awake { emulate })
+            SafeRobotSymptom::Awaked { emulate } if asleep || knowledge.relieved => {
+                Some(SafeRobotDecision::Awake { emulate })
             }
-            RobotSymptom::Awaked { .. } => Some(RobotDecision::StayAwake),
-            RobotSymptom::NobodyAwake { critical } => Some(RobotDecision::Awake { emulate: critical }),
-            RobotSymptom::NobodyForLuggage { .. } => Some(RobotDecision::Awake { emulate: 0 }),
-            RobotSymptom::SentToSleep => (!asleep).then_some(RobotDecision::Finish),
-            RobotSymptom::AtRest => Some(RobotDecision::Sleep),
+            SafeRobotSymptom::Awaked { .. } => Some(SafeRobotDecision::StayAwake),
+            SafeRobotSymptom::NobodyAwake { critical } => {
+                Some(SafeRobotDecision::Awake { emulate: critical })
+            }
+            SafeRobotSymptom::NobodyForLuggage { .. } => Some(SafeRobotDecision::Awake { emulate: 0 }),
+            SafeRobotSymptom::SentToSleep => (!asleep).then_some(SafeRobotDecision::Finish),
+            SafeRobotSymptom::AtRest => Some(SafeRobotDecision::Sleep),
         })
     }
 
     fn execute(
         &mut self,
-        decision: RobotDecision,
+        decision: SafeRobotDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         match decision {
-            RobotDecision::Awake { emulate } => {
+            SafeRobotDecision::Awake { emulate } => {
                 (knowledge.variables.asleep, knowledge.relieved) = (false, false);
                 self.sent = Cause::default();
                 knowledge.stands_in_for = Some(emulate).filter(|emulate| *emulate > 0);
                 context.info(format_args!("awakes"));
             }
-            RobotDecision::StayAwake => {}
-            RobotDecision::Finish => {
+            SafeRobotDecision::StayAwake => {}
+            SafeRobotDecision::Finish => {
                 (knowledge.relieved, self.sent) = (true, context.cause());
             }
-            RobotDecision::Sleep => {
+            SafeRobotDecision::Sleep => {
                 (knowledge.variables.asleep, knowledge.relieved) = (true, false);
                 context.info(format_args!("sleeps"));
             }
@@ -200,12 +205,12 @@ impl Loop for RobotMS {
 }
 
 impl RobotKnowledge {
-    /// Whether the robot has no job and would take none.
+    /// True if the robot has no job and would take none.
     pub(super) fn is_free(&self) -> bool {
         !self.variables.busy && !self.variables.transporter && !self.offers_help
     }
 
-    /// The robot that needs help, if this one is the first to awake where nobody who is awake can help it.
+    /// The robot that needs help, if no robot that is awake can help it and this robot is the first to wake.
     fn has_to_help(&self) -> Option<(u32, Cause)> {
         let mut requests = self.lists.helps.open().iter().filter(|request| self.is_to_be_helped(request));
         let mine = |request: &&Help| {
@@ -217,7 +222,8 @@ impl RobotKnowledge {
         Some((request.situation.critical, request.cause))
     }
 
-    /// The luggage that nobody who is awake can bring and that is in reach, if it is this robot's turn: sleepers of lower numbers are asked first.
+    /// Luggage in reach that no robot that is awake can bring, if it is this robot's turn: sleeping robots with lower
+    /// numbers are asked first.
     fn has_to_bring(&self, context: &Context<'_>) -> Option<(u32, Cause)> {
         let waits = |request: &&Request| {
             let luggage = Some(request.job.luggage);
@@ -232,12 +238,12 @@ impl RobotKnowledge {
         Some((request.job.luggage, request.cause))
     }
 
-    /// Whether another robot is awake that did not refuse the luggage.
+    /// True if another robot is awake that did not refuse the luggage.
     fn is_awake_for(&self, luggage: Option<u32>) -> bool {
         self.lists.active.iter().any(|robot| !robot.asleep && !self.refused(luggage, robot.robot))
     }
 
-    /// The other robots that sleep and did not refuse the luggage.
+    /// Other robots that sleep and did not refuse the luggage.
     fn sleepers_for(&self, luggage: Option<u32>) -> impl Iterator<Item = &RobotList> {
         self.lists.sleepers().filter(move |robot| !self.refused(luggage, robot.robot))
     }

@@ -1,12 +1,14 @@
-//! Who goes where next.
+//! Right of way between robots.
 //!
-//! A robot says which block beside its own it wants. It enters in an execution in which nobody else holds that block or wants it, as far as
-//! was heard since it said so. Of two robots that want one block at least one hears of the other before it enters, so they never both do,
-//! however late messages are; the one with the lower priority then wants something else.
+//! A robot announces the adjacent block that it wants. It enters in an execution in which no other robot holds or wants
+//! that block, according to the messages since the announcement. Of two robots that want the same block at least one
+//! hears of the other before it enters, so they never both enter, however late messages are. The one with the lower
+//! priority then wants another block.
 //!
-//! Wanting a block that is held asks its holder to make way. The holder of lower priority does, with the priority of the asking robot, and so
-//! on along a line of robots: the priority inheritance of PIBT (Okumura, Machida, Défago, Tamura, "Priority Inheritance with
-//! Backtracking for Iterative Multi-agent Path Finding", 2019), here without common steps. A robot that gets nowhere tries another way.
+//! Wanting a held block asks its holder to make way. A holder of lower priority does, with the priority of the asking
+//! robot, and so on along a line of robots. This is the priority inheritance of PIBT (Okumura, Machida, Défago, Tamura,
+//! "Priority Inheritance with Backtracking for Iterative Multi-agent Path Finding", 2019), without its common time
+//! steps. A robot without progress tries another way.
 
 use std::cmp::Reverse;
 
@@ -16,102 +18,103 @@ use crate::grid::{Block, MOVE, UNREACHABLE};
 use crate::messages::{IMMOVABLE, Position, Priority};
 use crate::robot::{Peers, Routes};
 
-/// A robot that waited for so many executions for others to make way tries another way.
+/// Number of executions of waiting after which a robot tries another way.
 const PATIENCE: u32 = 8;
 
-/// The same for a robot that nobody makes way for.
+/// The same for a robot for which no other makes way.
 const SHORT_PATIENCE: u32 = 3;
 
-/// A robot's view of the robots around it, and what it wants.
+/// A robot's view of the robots around it, and the block that it wants.
 #[derive(Debug, Default)]
 pub(crate) struct Traffic {
     near: Vec<Position>,
     wanted: Option<Block>,
-    /// The block that it left last: not the first choice when another one is as good.
+    /// Block that it left last: not the first choice among equally good blocks.
     previous: Option<Block>,
     waited: u32,
-    /// The block that it does not try again while the same robot holds it.
+    /// Block that it does not try again while the same robot holds it.
     avoided: Option<(Block, u32)>,
 }
 
-/// What a robot brings to the choice of its next block.
+/// Input of a robot to the choice of its next block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Claim {
     pub(super) robot: u32,
-    /// The block from which it goes on.
+    /// Block from which it goes on.
     pub(super) at: Block,
     pub(super) goal: Option<Block>,
-    /// Whether to go along y first where both ways are as short.
+    /// True if the robot goes along y first when both directions are equally short.
     pub(super) y_first: bool,
     pub(super) priority: Priority,
-    /// How many executions others may take for what this robot does in one; 0 while it moves and so waits for nobody.
+    /// Number of executions that other robots may take for one execution of this robot; 0 while it moves and so does
+    /// not wait.
     pub(super) tempo: u32,
 }
 
-/// How a block stands, the best first.
+/// Availability of a block, the best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Standing {
-    /// Nobody holds it.
+enum Availability {
+    /// No robot holds it.
     Free,
-    /// Its holder goes on.
+    /// Its holder is leaving.
     Leaving,
     /// Its holder has to make way.
     Yielding,
 }
 
-impl Standing {
-    /// What waiting for the block is worth, in parts of a move.
+impl Availability {
+    /// Cost of waiting for the block, in parts of a move.
     fn delay(self) -> u32 {
         match self {
-            Standing::Free => 0,
-            Standing::Leaving => 1,
-            Standing::Yielding => MOVE,
+            Availability::Free => 0,
+            Availability::Leaving => 1,
+            Availability::Yielding => MOVE,
         }
     }
 }
 
 impl Traffic {
-    /// Looks around: only robots close to this block matter.
+    /// Collects the robots near this block; others do not matter.
     pub(super) fn look(&mut self, peers: &Peers, at: Block) {
         self.near.clear();
         self.near.extend(peers.all().filter(|peer| peer.block.distance(at) <= 3).cloned());
     }
 
-    /// What the robot said that it wants, if that is not to stay.
+    /// The block that the robot announced to want, unless it wants to stay.
     pub(super) fn wanted(&self, at: Block) -> Option<Block> {
         self.wanted.filter(|wanted| *wanted != at)
     }
 
-    /// Wants nothing but the block that it holds.
+    /// Wants only the block that it holds.
     pub(super) fn stay(&mut self, at: Block) {
         self.wanted = Some(at);
         self.previous = None;
         self.waited = 0;
     }
 
-    /// Another robot that holds the block, or wants it.
+    /// Another robot that holds or wants the block.
     pub(super) fn in_the_way(&self, block: Block) -> Option<u32> {
         self.near.iter().find(|peer| peer.holds(block) || peer.wanted == block).map(|peer| peer.robot)
     }
 
-    /// For how many executions the robot wanted to go on and could not.
+    /// Number of executions for which the robot wanted to go on and could not.
     pub(super) fn waited(&self) -> u32 {
         self.waited
     }
 
-    /// Takes in that the robot goes to what it wanted.
+    /// Records that the robot enters the block that it wanted.
     pub(super) fn went(&mut self, from: Block) {
         self.previous = Some(from);
         self.waited = 0;
     }
 
-    /// The robot's own priority, or that of the robot for which it has to make way.
+    /// The robot's own priority, or the priority of the robot for which it has to make way.
     pub(super) fn inherited(&self, own: Priority, at: Block) -> Priority {
         let asking = self.near.iter().filter(|peer| peer.wanted == at && !peer.holds(at));
         asking.map(|peer| peer.priority).max().map_or(own, |asked| asked.max(own))
     }
 
-    /// Decides which block to want from now on.
+    /// Chooses the block that the robot wants from now on.
     pub(super) fn choose(
         &mut self,
         claim: &Claim,
@@ -143,10 +146,10 @@ impl Traffic {
                 routes.is_free(*block) && self.avoided.is_none_or(|(avoided, _)| avoided != *block)
             })
             .filter_map(|block| {
-                let standing = self.standing(block, claim)?;
+                let standing = self.availability(block, claim)?;
                 let cost = goal.map_or(0, |goal| routes.to_goal(block, goal));
                 let goes_back = Some(block) == self.previous;
-                let aside = impatient && standing == Standing::Free;
+                let aside = impatient && standing == Availability::Free;
                 if !makes_way
                     && (cost == UNREACHABLE
                         || (cost >= here && !aside)
@@ -155,9 +158,9 @@ impl Traffic {
                     return None;
                 }
                 let rank = if makes_way {
-                    // Straight ahead is where the asking robot is likely to want to go next.
+                    // The asking robot probably wants the block straight ahead next.
                     let ahead = if ahead == Some(block) { 2 * MOVE } else { 0 };
-                    // Others may have to reach theirs in time.
+                    // Other robots may have to reach their chargers in time.
                     let charger = if routes.is_charger(block) { 2 * MOVE } else { 0 };
                     (standing as u32, cost.saturating_add(ahead).saturating_add(charger))
                 } else {
@@ -173,12 +176,12 @@ impl Traffic {
         wanted
     }
 
-    /// After waiting in vain: not the same block again while the same robot holds it, unless there was no other way.
+    /// After waiting in vain, avoids the same block while the same robot holds it, unless there was no other way.
     fn give_up(&mut self, claim: &Claim, routes: &Routes, chance: &mut Chance) {
-        // Two robots in each other's way must not give up at the same time for ever.
+        // Random, so that two robots in each other's way do not always give up at the same time.
         self.waited = u32::try_from(chance.below(u64::from(SHORT_PATIENCE))).unwrap_or(0);
         if self.wanted(claim.at).is_none() && self.avoided.take().is_some() {
-            // Its holder only makes way for who asks again.
+            // The holder makes way only if it is asked again.
             return;
         }
         let toward = |block: &Block| claim.goal.map_or(0, |goal| routes.to_goal(*block, goal));
@@ -189,7 +192,7 @@ impl Traffic {
         self.wanted = None;
     }
 
-    /// Whether the robot that should make way heard of it, as its priority shows, and cannot.
+    /// True if the robot that should make way has heard of it, as its priority shows, and cannot.
     fn is_stuck_for(&self, claim: &Claim) -> bool {
         self.wanted(claim.at).is_some_and(|wanted| {
             let stays =
@@ -198,7 +201,7 @@ impl Traffic {
         })
     }
 
-    /// The block on the other side of the robot that asks for this one with the most right.
+    /// The block on the other side of the robot with the highest priority that asks for this one.
     fn ahead_of_asker(&self, at: Block) -> Option<Block> {
         let asking = self.near.iter().filter(|peer| peer.wanted == at && !peer.holds(at));
         let asker = asking.max_by_key(|peer| peer.priority)?.next;
@@ -210,19 +213,19 @@ impl Traffic {
         self.near.iter().find(|peer| peer.holds(block)).map(|peer| peer.robot)
     }
 
-    /// How a block stands; `None` where the robot cannot have it.
-    fn standing(&self, block: Block, claim: &Claim) -> Option<Standing> {
+    /// Availability of a block; `None` if the robot cannot have it.
+    fn availability(&self, block: Block, claim: &Claim) -> Option<Availability> {
         let right = |priority: Priority, robot: u32| (priority, Reverse(robot));
         let mine = right(claim.priority, claim.robot);
-        let mut standing = Standing::Free;
+        let mut standing = Availability::Free;
         for peer in &self.near {
             if peer.holds(block) {
                 let comes_here = peer.wanted == claim.at || peer.next == claim.at;
                 let leaves = peer.next != block || (peer.wanted != block && !comes_here);
                 standing = if leaves && peer.priority != IMMOVABLE {
-                    Standing::Leaving
+                    Availability::Leaving
                 } else if peer.priority < claim.priority {
-                    Standing::Yielding
+                    Availability::Yielding
                 } else {
                     return None;
                 };
@@ -235,7 +238,7 @@ impl Traffic {
 }
 
 impl Position {
-    /// Whether the robot holds a block.
+    /// True if the robot holds a block.
     pub(super) fn holds(&self, block: Block) -> bool {
         self.block == block || self.next == block
     }

@@ -1,11 +1,12 @@
-//! Luggage that comes faster for ever than the robots can bring it and charge.
+//! Rule: luggage arrives permanently faster than the robots can bring it and charge.
 //!
-//! All is counted in robots: how many of them an endless line of a scenario keeps busy. A robot spends a sixth of its time at its charger at least,
-//! since it gains there in an execution what it needs in five.
+//! The unit is robots: the number of robots that an endless line of a scenario keeps busy. A robot spends at least a
+//! sixth of its time at its charger, since one execution there gains the energy of five.
 //!
-//! The *least* that a piece takes is certain: the shortest way from where the last piece went to where this one is, and to where it has to go, each
-//! move and each handling in as many executions as the hardware needs. The *usual* adds what robots of the simulated fleets in the tests need
-//! besides: settling who goes, the ways to and from the charger, and what they keep back of a full battery.
+//! The *least* effort of a piece is certain: the shortest way from the destination of the last piece to this one, and
+//! on to its destination, with the executions that the hardware needs for each move and each handling. The *usual*
+//! effort adds what robots of the simulated fleets in the tests need besides: agreeing on the robot that goes, the ways
+//! to and from the charger, and the reserve of the battery.
 
 use std::time::Duration;
 
@@ -16,26 +17,26 @@ use super::Range;
 use super::reach::Ways;
 use crate::environment::Spot;
 use crate::grid::{Block, Map};
-use crate::rules::looks::Looks;
-use crate::rules::map::{Area, Luggage};
+use crate::rules::budget::Budget;
+use crate::rules::map::{LuggageLine, WorldMap};
 
-/// How many executions a robot off its charger goes on with what it gains in one there.
+/// Number of executions off the charger for which the energy of one execution at the charger lasts.
 const CHARGE_FACTOR: f64 = 5.0;
 
-/// Executions in which robots settle who brings a piece, and announce where they go.
+/// Number of executions in which robots agree on the robot that brings a piece, and announce their moves.
 const SETTLING: f64 = 4.0;
 
 /// An endless line, and the seconds from one of its pieces to the next.
 struct Line<'l> {
-    luggage: &'l Luggage,
+    luggage: &'l LuggageLine,
     every: f64,
 }
 
-/// Of the luggage that never ends, what is too much.
+/// Findings about endless luggage that is too much.
 pub(super) fn overloaded(
-    area: &Area,
+    area: &WorldMap,
     ranges: &[Range],
-    luggage: &[Luggage],
+    luggage: &[LuggageLine],
     ways: &mut Ways<'_>,
 ) -> Option<Finding> {
     let lines = |pick: fn(Duration, Duration) -> f64| -> Vec<Line<'_>> {
@@ -43,10 +44,10 @@ pub(super) fn overloaded(
         endless.map(|(luggage, every)| Line { luggage, every: pick(every.least, every.most) }).collect()
     };
     let rarest = lines(|_, most| most.as_secs_f64());
-    // Each line is held to each other one, and to each robot.
+    // Each line is compared with each other line, and with each robot.
     let sides = (area.map.width() + area.map.height()) as usize;
-    let looks = rarest.len().saturating_mul(sides).saturating_add(ranges.len());
-    if !Looks::default().admit(rarest.len().saturating_mul(looks)) {
+    let budget = rarest.len().saturating_mul(sides).saturating_add(ranges.len());
+    if !Budget::default().admit(rarest.len().saturating_mul(budget)) {
         return None;
     }
     let usual = lines(|least, most| f64::midpoint(least.as_secs_f64(), most.as_secs_f64()));
@@ -84,12 +85,12 @@ fn robots(ranges: &[Range]) -> f64 {
     number(i64::try_from(ranges.len()).unwrap_or(i64::MAX))
 }
 
-/// A number for people: whole where it is large.
+/// A number for people: without decimals if it is large.
 fn rounded(number: f64) -> String {
     if number >= 10.0 { format!("{number:.0}") } else { format!("{number:.1}") }
 }
 
-/// How many robots the lines keep busy at least.
+/// Minimum number of robots that the lines keep busy.
 fn least_robots(
     map: &Map,
     ranges: &[Range],
@@ -102,24 +103,24 @@ fn least_robots(
         (Some(from), Some(to)) => f64::from(ways.moves(from, to).flatten().unwrap_or(from.distance(to))),
         _ => apart(from, to, map),
     };
-    // Who brings luggage comes from where it brought the last one, or from its charger in between, which is farther.
+    // A robot comes from the destination of its last piece, or from its charger in between, which is farther.
     let mut approach = f64::INFINITY;
     for line in lines {
         for last in lines {
             approach = approach.min(way(last.luggage.to.value, line.luggage.from.value, apart));
         }
     }
-    // What is drawn is as far as the average in the long run; around walls it is farther, and some blocks are not drawn.
+    // On average, random blocks are as far as the mean distance. Walls make ways longer, and exclude some blocks.
     let carried = if map.is_open() { mean } else { apart };
     let mut busy = 0.0;
     for line in lines {
         let (from, to) = (line.luggage.from.value, line.luggage.to.value);
         let moves = way(from, to, carried) + approach;
-        // At a charger handling takes no charge.
+        // Handling at a charger takes no energy.
         let far = |spot: Spot| !chargers.iter().any(|charger| contains(spot, *charger, map));
         let handlings = f64::from(u8::from(far(from)) + u8::from(far(to)));
         let least = ranges.iter().map(|range| {
-            // Handling that is over at once goes on in the same execution.
+            // A handling that is over at once continues in the same execution.
             let handling = if range.handling > 1 { f64::from(range.handling) } else { 0.0 };
             let driving = moves * f64::from(range.moving);
             let (whole, drained) = (driving + 2.0 * handling, driving + handlings * handling);
@@ -131,10 +132,10 @@ fn least_robots(
     busy
 }
 
-/// Which share of their time the robots are usually busy; more than 1 where they cannot do it.
+/// Usual share of the time in which the robots are busy; more than 1 if they cannot do the work.
 fn usual_share(map: &Map, ranges: &[Range], lines: &[Line<'_>]) -> f64 {
     let pieces: f64 = lines.iter().map(|line| 1.0 / line.every).sum();
-    let average = |of: &dyn Fn(&Luggage) -> f64| -> f64 {
+    let average = |of: &dyn Fn(&LuggageLine) -> f64| -> f64 {
         lines.iter().map(|line| of(line.luggage) / line.every / pieces).sum()
     };
     let way = average(&|piece| mean(piece.from.value, piece.to.value, map));
@@ -149,8 +150,8 @@ fn usual_share(map: &Map, ranges: &[Range], lines: &[Line<'_>]) -> f64 {
 }
 
 impl Range {
-    /// Executions that a piece usually takes: moves to bring it, to come to it from the last one, and from and to the charger. Where much is to do, a
-    /// robot charges for each piece, no more than it needs for that.
+    /// Usual number of executions of a piece: moves to bring it, to come to it from the last one, and from and to the
+    /// charger. Under heavy load a robot charges for each piece, but no more than the piece needs.
     fn usual_piece(&self, way: f64, approach: f64, homeward: f64) -> f64 {
         let (moving, settling) = (f64::from(self.moving), 2.0 * f64::from(self.handling) + SETTLING);
         if self.full == u32::MAX {
@@ -160,7 +161,7 @@ impl Range {
     }
 }
 
-/// The first and the last column and row of a spot, as far as they are on the map.
+/// First and last column and row of a spot, as far as they are on the map.
 fn sides(spot: Spot, map: &Map) -> [(i64, i64); 2] {
     let (first, last) = spot.corners(Some(map)).unwrap_or_default();
     let cut = |side: i32, length: u32| i64::from(side).min(i64::from(length) - 1);
@@ -176,16 +177,16 @@ fn contains(spot: Spot, block: Block, map: &Map) -> bool {
     inside(columns, block.x) && inside(rows, block.y)
 }
 
-/// How many moves are between two spots at least.
+/// Minimum number of moves between two spots.
 fn apart(one: Spot, other: Spot, map: &Map) -> f64 {
     let gap =
         |((first, last), (start, end)): ((i64, i64), (i64, i64))| (start - last).max(first - end).max(0);
     sides(one, map).into_iter().zip(sides(other, map)).map(|sides| number(gap(sides))).sum()
 }
 
-/// How many moves are between blocks of two spots on average, walls aside.
+/// Average number of moves between blocks of two spots, without walls.
 fn mean(one: Spot, other: Spot, map: &Map) -> f64 {
-    // To all from 0 to this one.
+    // Sum of the distances from 0 to each number up to this one.
     let up_to = |steps: i64| steps * (steps + 1) / 2;
     let between = |((first, last), (start, end)): ((i64, i64), (i64, i64))| {
         let sum: i64 = (first..=last)

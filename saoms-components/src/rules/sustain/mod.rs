@@ -1,7 +1,8 @@
-//! Work that the robots cannot do with the charge that they get.
+//! Rules: work that exceeds the energy of the robots.
 //!
-//! Every robot has its own charger, where it starts (S5003 holds that), so it is the work that may be too much: luggage farther off than a full
-//! battery lasts, or coming faster for ever than the robots can bring it and charge.
+//! Every robot has its own charger, where it starts (rule S5003 ensures that), so only the work can be too much:
+//! luggage farther away than a full battery lasts, or luggage that arrives permanently faster than the robots can bring
+//! it and charge.
 
 mod load;
 mod reach;
@@ -11,8 +12,8 @@ use std::time::Duration;
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
-use super::map::{Area, area, luggage};
-use super::robots::{Known, may_be_others, robots};
+use super::map::{WorldMap, area, luggage};
+use super::robots::{FleetRobot, may_be_others, robots};
 use crate::grid::Block;
 use crate::robot::safe::is_within;
 use crate::robot::{Battery, Policy};
@@ -35,13 +36,13 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let luggage = luggage(fleet);
-    // Without work none is too much.
+    // Without luggage there is nothing to check.
     if luggage.is_empty() {
         return Vec::new();
     }
     let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
-    // The classic rules drive on with an empty battery, and of other robots and loops nothing is known.
-    let is_known = |robot: &Known| {
+    // The classic rules go on with an empty battery; robots of other classes and other loops are unknown.
+    let is_known = |robot: &FleetRobot| {
         let loops = &fleet.components()[robot.index].class.loops;
         robot.properties.policy == Policy::Safe && loops.iter().all(|name| name.starts_with("saoms."))
     };
@@ -54,30 +55,30 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut ways = Ways::on(&area.map, chargers.chain(ends.filter_map(|spot| spot.value.block())));
     let mut findings: Vec<Finding> =
         luggage.iter().filter_map(|piece| out_of_reach(&area, &ranges, piece, &mut ways)).collect();
-    // What is never brought is no load.
+    // Luggage that no robot can bring is no load.
     if findings.is_empty() {
         findings.extend(overloaded(&area, &ranges, &luggage, &mut ways));
     }
     findings
 }
 
-/// How far and fast a robot gets.
+/// Range and speed of a robot.
 struct Range {
     charger: Block,
-    /// Executions that a full battery lasts; `u32::MAX` where nothing drains it.
+    /// Number of executions that a full battery lasts; `u32::MAX` without discharge.
     full: u32,
-    /// Executions that a move takes.
+    /// Number of executions of a move.
     moving: u32,
-    /// Executions that collecting or depositing takes.
+    /// Number of executions of collecting or depositing.
     handling: u32,
     /// Seconds from one execution to the next.
     period: f64,
 }
 
 impl Range {
-    fn of(fleet: &FleetView<'_>, area: &Area, robot: &Known) -> Range {
+    fn of(fleet: &FleetView<'_>, area: &WorldMap, robot: &FleetRobot) -> Range {
         let period = fleet.components()[robot.index].period.unwrap_or_default();
-        // A robot asks in each execution whether its action is over. Without a world each is over at once.
+        // A robot checks in each execution if its action is over. Without a world each action is over at once.
         let executions = |time: Duration| match robot.world {
             Some(world) if world == area.index => {
                 let executions = time.as_nanos().div_ceil(period.as_nanos().max(1));
@@ -94,12 +95,13 @@ impl Range {
         }
     }
 
-    /// Whether it may get there and back. It may charge between collecting and depositing, so that it never has to do more at once.
+    /// True if it can go there and back. It may charge between collecting and depositing, so it never needs more at
+    /// once.
     fn reaches(&self, moves: u32) -> bool {
         is_within(moves, self.moving, self.handling, self.full)
     }
 
-    /// How many moves from its charger it may go.
+    /// Maximum number of moves from its charger.
     fn most(&self) -> u32 {
         let (mut reached, mut beyond) = (0, self.full / 2 / self.moving + 1);
         while reached + 1 < beyond {

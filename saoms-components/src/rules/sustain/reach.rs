@@ -1,4 +1,4 @@
-//! Luggage that is farther off than any full battery lasts.
+//! Rule: luggage is farther away than any full battery lasts.
 
 use std::collections::HashMap;
 
@@ -8,26 +8,26 @@ use saoms_api::rule::Severity;
 use super::Range;
 use crate::environment::Spot;
 use crate::grid::{Block, Map};
-use crate::rules::looks::Looks;
-use crate::rules::map::{Area, Luggage};
+use crate::rules::budget::Budget;
+use crate::rules::map::{LuggageLine, WorldMap};
 
 pub(super) fn out_of_reach(
-    area: &Area,
+    area: &WorldMap,
     ranges: &[Range],
-    piece: &Luggage,
+    piece: &LuggageLine,
     ways: &mut Ways<'_>,
 ) -> Option<Finding> {
     for spot in [&piece.from, &piece.to] {
         for block in farthest(area, spot.value) {
             let mut nearest = None;
             let mut is_reached = false;
-            // Of thousands of robots, the one that reached the last piece, or one that is written behind it, as a rule reaches this one.
+            // Usually the robot that reached the last piece, or one after it in the document, reaches this one.
             let (before, behind) = ranges.split_at(ways.reached.min(ranges.len()));
             for (place, range) in behind.iter().chain(before).enumerate() {
-                if !ways.looks.admit(LOOK) {
+                if !ways.budget.admit(LOOK) {
                     return None;
                 }
-                // What no way leads to is told by another rule.
+                // Luggage that no way leads to is reported by another rule.
                 let Some(moves) = ways.moves(range.charger, block)? else { continue };
                 is_reached = range.reaches(moves);
                 if is_reached {
@@ -51,8 +51,8 @@ pub(super) fn out_of_reach(
     None
 }
 
-/// The blocks to look at: the one, or the corners of many as far as they are free.
-fn farthest(area: &Area, spot: Spot) -> Vec<Block> {
+/// The blocks to check: the single block, or the free corners of a rectangle.
+fn farthest(area: &WorldMap, spot: Spot) -> Vec<Block> {
     let Some((first, last)) = spot.corners(Some(&area.map)) else { return Vec::new() };
     let corners = [first, last, Block::new(first.x, last.y), Block::new(last.x, first.y)];
     let mut corners: Vec<Block> = corners.into_iter().filter(|block| area.map.is_free(*block)).collect();
@@ -61,33 +61,33 @@ fn farthest(area: &Area, spot: Spot) -> Vec<Block> {
     corners
 }
 
-/// How many moves lead from one block to another.
+/// Number of moves between blocks.
 pub(super) struct Ways<'m> {
     map: &'m Map,
-    /// The blocks from which ways are asked for, in order.
+    /// Blocks from which ways are needed, sorted.
     starts: Vec<Block>,
-    /// The same as blocked blocks, which are found faster.
+    /// The same blocks as blocked blocks of a map, for faster lookup.
     marked: Map,
-    /// The moves to a block from each start.
+    /// Number of moves to a block from each start.
     known: HashMap<Block, Vec<u32>>,
     left: usize,
-    looks: Looks,
-    /// The robot that reached the last block.
+    budget: Budget,
+    /// Index of the robot that reached the last block.
     reached: usize,
-    /// How many moves from its charger any robot may go, once that was asked for.
+    /// Maximum number of moves from its charger of any robot, once it was needed.
     most: Option<u32>,
 }
 
-/// How many blocks are searched at most, for all luggage together: a check must not take longer than the run.
+/// Maximum number of blocks that are searched for all luggage together: a check must not take longer than the run.
 const SEARCHED: usize = 20_000_000;
 
-/// How many moves are kept at most.
+/// Maximum number of distances that are kept.
 const KEPT: usize = 250_000;
 
-/// What it costs to ask for the moves from a charger, which is some searches in lists.
+/// Cost of looking up the distance from a charger, in searched blocks.
 const LOOK: usize = 5;
 
-/// No way leads there.
+/// Distance of blocks without a way.
 const NO_WAY: u32 = u32::MAX;
 
 impl<'m> Ways<'m> {
@@ -101,10 +101,10 @@ impl<'m> Ways<'m> {
             starts.iter().for_each(|block| _ = marked.set_blocked(*block));
         }
         let known = HashMap::new();
-        Ways { map, starts, marked, known, left: SEARCHED, looks: Looks::default(), reached: 0, most: None }
+        Ways { map, starts, marked, known, left: SEARCHED, budget: Budget::default(), reached: 0, most: None }
     }
 
-    /// The outer `None` says that too much was searched already, the inner one that no way leads there.
+    /// Number of moves. The outer `None` means that the budget is used up, the inner one that no way leads there.
     pub(super) fn moves(&mut self, from: Block, to: Block) -> Option<Option<u32>> {
         let (Ok(start), true) = (self.starts.binary_search(&from), self.map.is_free(to)) else {
             return Some(None);
@@ -122,7 +122,8 @@ impl<'m> Ways<'m> {
         Some(self.known.get(&to)?.get(start).copied().filter(|moves| *moves != NO_WAY))
     }
 
-    /// The moves to a block from each start. Of the blocks in between no more is kept than that they were reached: a large map has few starts.
+    /// Number of moves to a block from each start. For blocks in between only one bit is kept, since a large map has
+    /// few starts.
     fn moves_to(&self, to: Block) -> Vec<u32> {
         let mut moves = vec![NO_WAY; self.starts.len()];
         let mut unreached = self.map.clone();
@@ -166,7 +167,7 @@ mod tests {
             ((0, 0), (3, 0), Some(7)),
             ((3, 0), (0, 0), Some(7)),
             ((0, 0), (4, 1), Some(7)),
-            // Nowhere, from nowhere, and outside.
+            // To no block, from no block, and from outside.
             ((4, 4), (0, 0), None),
             ((2, 0), (1, 0), None),
             ((1, 0), (2, 0), None),

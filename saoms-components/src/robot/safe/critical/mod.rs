@@ -1,4 +1,4 @@
-//! Robots that cannot go on, and those that help them.
+//! Robots that cannot go on, and robots that help them.
 
 mod records;
 mod substitute;
@@ -12,23 +12,24 @@ use crate::messages::{
 };
 use crate::robot::{Help, Rival, RobotKnowledge, Trouble};
 
-use super::energy::Means;
+use super::energy::Feasibility;
 use super::patience::Idle;
 
 use records::doing;
-pub(super) use records::{CriticalDecision, CriticalSymptom};
+pub(super) use records::{SafeCriticalDecision, SafeCriticalSymptom};
 use substitute::Substitution;
 
 /// Looks after robots that cannot go on.
 ///
-/// *This robot*: when it breaks, it says what it was doing, stays where it is, and is silent from then on.
+/// *This robot*: when it breaks, it reports its job, stays where it is, and is silent from then on.
 ///
-/// *Others*: a free robot says that it would help, from where it is, and helps once no other robot that would is known; where there are several, all
-/// but the closest leave it. As with luggage (see [`EventLuggageMS`](super::EventLuggageMS)) no two robots help one, however late messages are. The helper
-/// takes over the whole job and awakes a robot in place of the broken one. Only robots without a job take one over; for a broken robot that
-/// had none, any robot that is awake awakes another one.
+/// *Others*: a free robot offers help with its position, and helps once no other offer is known. If there are several
+/// offers, all robots but the closest take theirs back. As with luggage (see
+/// [`saoms.EventLuggageMS`](super::SafeEventLuggage)) no two robots help the same robot, however late messages are. The
+/// helper takes over the whole job and wakes a substitute for the broken robot. Only robots without a job take one
+/// over; if the broken robot had no job, any robot that is awake wakes another one.
 ///
-/// *Charging*: where others sleep, a robot that has to charge awakes one of them in its place, and sleeps when it is charged.
+/// *Charging*: a robot that has to charge wakes a sleeping robot as its substitute, and sleeps when it is charged.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.CriticalSituationMS",
@@ -38,36 +39,36 @@ use substitute::Substitution;
     publishes(CRITICAL_SITUATION, ROBOT_STATE, EVENT_LUGGAGE),
     subscribes(CRITICAL_SITUATION, FAULT)
 )]
-pub struct CriticalSituationMS {
+pub struct SafeCriticalSituation {
     situations: Publisher<CriticalSituation>,
     situations_heard: Subscription<CriticalSituation>,
     faults: Subscription<Fault>,
     luggage: Publisher<EventLuggage>,
     states: Publisher<RobotState>,
-    /// Why the robot broke.
+    /// Cause of the robot's breakdown.
     cause: Cause,
-    /// From where it said that it would help.
+    /// Position of the robot at its offer to help.
     said_at: Block,
-    /// Why: what it decides about that robot next follows from this.
+    /// Cause of the offer; its next decision about that robot follows from it.
     said: Cause,
-    /// Whether it brought another robot's luggage already then.
+    /// True if it was bringing another robot's luggage at the time of the offer.
     was_healer: bool,
     substitution: Option<Substitution>,
-    /// Why another robot has to be awaked.
+    /// Cause for waking another robot.
     missing: Cause,
-    /// Whether it was in charge in the last execution.
+    /// True if it was charging in the last execution.
     was_in_charge: bool,
     idle: Idle,
 }
 
-impl Loop for CriticalSituationMS {
+impl Loop for SafeCriticalSituation {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = CriticalSymptom;
-    type Decision = CriticalDecision;
+    type Symptom = SafeCriticalSymptom;
+    type Decision = SafeCriticalDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(CriticalSituationMS::default())
+        Ok(SafeCriticalSituation::default())
     }
 
     fn initialize(
@@ -85,14 +86,14 @@ impl Loop for CriticalSituationMS {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, fault) in context.receive(&self.faults).with_headers() {
-            let is_mine = knowledge.lets_in(fault, header, context) && fault.robot == knowledge.number;
+            let is_mine = knowledge.accepts(fault, header, context) && fault.robot == knowledge.number;
             if is_mine && knowledge.trouble.is_none() {
                 knowledge.trouble = Some(Trouble::Breakdown);
                 self.cause = header.cause;
             }
         }
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
-            if !knowledge.lets_in(situation, header, context) {
+            if !knowledge.accepts(situation, header, context) {
                 continue;
             }
             // A robot that only charges looks for its substitute itself.
@@ -112,14 +113,14 @@ impl Loop for CriticalSituationMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<CriticalSymptom>, Failure> {
+    ) -> Result<Option<SafeCriticalSymptom>, Failure> {
         if knowledge.variables.critical {
             return Ok(None);
         }
         if let Some(trouble) = knowledge.trouble {
             context.because(self.cause);
             let (kind, block) = (knowledge.critical_kind(), knowledge.block);
-            return Ok(Some(CriticalSymptom::Broken { trouble, kind, block }));
+            return Ok(Some(SafeCriticalSymptom::Broken { trouble, kind, block }));
         }
         let starts_to_charge = knowledge.variables.in_charge && !self.was_in_charge;
         self.was_in_charge = knowledge.variables.in_charge;
@@ -136,7 +137,7 @@ impl Loop for CriticalSituationMS {
         if let Some(emulates) = knowledge.stands_in_for
             && !knowledge.needs_help(emulates)
         {
-            return Ok(Some(CriticalSymptom::Awaked { emulates }));
+            return Ok(Some(SafeCriticalSymptom::Awaked { emulates }));
         }
         if let Some(substitution) = &mut self.substitution {
             let symptom = substitution.look(knowledge);
@@ -150,7 +151,7 @@ impl Loop for CriticalSituationMS {
         }
         if let Some((situation, cause)) = self.look_at_idleness(knowledge, context) {
             context.because(cause);
-            return Ok(Some(CriticalSymptom::InVain(situation)));
+            return Ok(Some(SafeCriticalSymptom::InVain(situation)));
         }
         let mut found = look_for_help_requests(knowledge);
         if found.is_none() && (knowledge.energy.must_charge() || knowledge.relieved) {
@@ -166,47 +167,53 @@ impl Loop for CriticalSituationMS {
         let battery = knowledge.battery.percent();
         let substituted = charges && self.substitution.is_none();
         let better = || knowledge.best_sleeper(&[]).is_some_and(|sleeper| sleeper.battery > battery);
-        Ok((substituted && better()).then_some(CriticalSymptom::Charges { battery }))
+        Ok((substituted && better()).then_some(SafeCriticalSymptom::Charges { battery }))
     }
 
     fn plan(
         &mut self,
-        symptom: CriticalSymptom,
+        symptom: SafeCriticalSymptom,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<CriticalDecision>, Failure> {
+    ) -> Result<Option<SafeCriticalDecision>, Failure> {
         Ok(Some(match symptom {
-            CriticalSymptom::Broken { trouble, kind, .. } => CriticalDecision::CallForHelp { trouble, kind },
-            CriticalSymptom::NeedsHelp { situation, .. } => match situation.job() {
-                None => CriticalDecision::Offer(situation),
+            SafeCriticalSymptom::Broken { trouble, kind, .. } => {
+                SafeCriticalDecision::CallForHelp { trouble, kind }
+            }
+            SafeCriticalSymptom::NeedsHelp { situation, .. } => match situation.job() {
+                None => SafeCriticalDecision::Offer(situation),
                 Some(job) => match knowledge.means(&job) {
-                    Means::Enough => CriticalDecision::Offer(situation),
-                    Means::Needs(needs) => CriticalDecision::Postpone { critical: situation.critical, needs },
-                    Means::Never => CriticalDecision::Refuse(situation),
+                    Feasibility::Enough => SafeCriticalDecision::Offer(situation),
+                    Feasibility::Needs(needs) => {
+                        SafeCriticalDecision::Postpone { critical: situation.critical, needs }
+                    }
+                    Feasibility::Never => SafeCriticalDecision::Refuse(situation),
                 },
             },
-            CriticalSymptom::InVain(situation) => CriticalDecision::Refuse(situation),
-            CriticalSymptom::Alone(situation) => CriticalDecision::Heal(situation),
-            CriticalSymptom::Beaten { situation, .. } => CriticalDecision::Release(situation),
-            CriticalSymptom::Gone => CriticalDecision::Forget,
-            CriticalSymptom::Awaked { emulates } => CriticalDecision::StandIn { critical: emulates },
-            CriticalSymptom::Charges { .. } => CriticalDecision::AskForSubstitute,
-            CriticalSymptom::Missing { robot, sleeper, .. } => CriticalDecision::Awake { sleeper, robot },
-            CriticalSymptom::Substituted { robot, .. } => CriticalDecision::Rest { robot },
+            SafeCriticalSymptom::InVain(situation) => SafeCriticalDecision::Refuse(situation),
+            SafeCriticalSymptom::Alone(situation) => SafeCriticalDecision::Heal(situation),
+            SafeCriticalSymptom::Beaten { situation, .. } => SafeCriticalDecision::Release(situation),
+            SafeCriticalSymptom::Gone => SafeCriticalDecision::Forget,
+            SafeCriticalSymptom::Awaked { emulates } => SafeCriticalDecision::StandIn { critical: emulates },
+            SafeCriticalSymptom::Charges { .. } => SafeCriticalDecision::AskForSubstitute,
+            SafeCriticalSymptom::Missing { robot, sleeper, .. } => {
+                SafeCriticalDecision::Awake { sleeper, robot }
+            }
+            SafeCriticalSymptom::Substituted { robot, .. } => SafeCriticalDecision::Rest { robot },
         }))
     }
 
     fn execute(
         &mut self,
-        decision: CriticalDecision,
+        decision: SafeCriticalDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         match decision {
-            CriticalDecision::CallForHelp { trouble, kind } => {
+            SafeCriticalDecision::CallForHelp { trouble, kind } => {
                 return self.call_for_help(knowledge, context, trouble, kind);
             }
-            CriticalDecision::Offer(situation) => {
+            SafeCriticalDecision::Offer(situation) => {
                 knowledge.lists.helps.claim(situation.critical);
                 knowledge.offers_help = true;
                 self.was_healer = std::mem::replace(&mut knowledge.variables.healer, true);
@@ -214,42 +221,42 @@ impl Loop for CriticalSituationMS {
                 (self.said_at, self.said) = (knowledge.block, context.cause());
                 self.respond(knowledge, context, situation, CriticalStage::Intention)?;
             }
-            CriticalDecision::Postpone { critical, needs } => {
+            SafeCriticalDecision::Postpone { critical, needs } => {
                 knowledge.lists.helps.postpone(critical, needs);
             }
-            CriticalDecision::Refuse(situation) => {
+            SafeCriticalDecision::Refuse(situation) => {
                 knowledge.lists.helps.refuse(situation.critical);
                 if let Some(job) = situation.job() {
                     let refused = job.response(knowledge.number, knowledge.block, LuggageStage::Refused);
                     context.send(&self.luggage, refused)?;
                 }
             }
-            CriticalDecision::Heal(situation) => self.heal(knowledge, context, situation)?,
-            CriticalDecision::Release(situation) => {
+            SafeCriticalDecision::Heal(situation) => self.heal(knowledge, context, situation)?,
+            SafeCriticalDecision::Release(situation) => {
                 knowledge.lists.helps.put_back();
                 knowledge.end_offer(self.was_healer);
                 self.respond(knowledge, context, situation, CriticalStage::Release)?;
             }
-            CriticalDecision::Forget => knowledge.end_offer(self.was_healer),
-            CriticalDecision::StandIn { critical } => {
+            SafeCriticalDecision::Forget => knowledge.end_offer(self.was_healer),
+            SafeCriticalDecision::StandIn { critical } => {
                 knowledge.stands_in_for = None;
                 let (kind, block) = (CriticalKind::Idle, knowledge.block);
                 let situation = CriticalSituation { critical, kind, block, ..CriticalSituation::default() };
                 self.respond(knowledge, context, situation, CriticalStage::StandsIn)?;
             }
-            CriticalDecision::AskForSubstitute => {
+            SafeCriticalDecision::AskForSubstitute => {
                 self.substitution = Some(Substitution::of(knowledge.number));
                 self.missing = context.cause();
                 context.send(&self.situations, knowledge.situation(CriticalKind::Idle))?;
             }
-            CriticalDecision::Awake { sleeper, robot } => {
+            SafeCriticalDecision::Awake { sleeper, robot } => {
                 if let Some(substitution) = &mut self.substitution {
                     substitution.ask(sleeper);
                 }
                 context.info(format_args!("awakes robot {sleeper} in place of robot {robot}"));
                 self.awake(context, sleeper, robot)?;
             }
-            CriticalDecision::Rest { robot } => {
+            SafeCriticalDecision::Rest { robot } => {
                 self.substitution = None;
                 knowledge.relieved |= robot == knowledge.number;
             }
@@ -258,7 +265,7 @@ impl Loop for CriticalSituationMS {
     }
 
     fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        // Somebody has to take over what is not done.
+        // Another robot has to take over the rest of the job.
         if knowledge.job.is_some() && !knowledge.variables.critical {
             context.send(&self.situations, knowledge.situation(knowledge.critical_kind()))?;
         }
@@ -266,7 +273,7 @@ impl Loop for CriticalSituationMS {
     }
 }
 
-impl CriticalSituationMS {
+impl SafeCriticalSituation {
     fn respond(
         &self,
         knowledge: &RobotKnowledge,
@@ -278,26 +285,26 @@ impl CriticalSituationMS {
         context.send(&self.situations, CriticalSituation { stage, healer, healer_block, ..situation })
     }
 
-    /// Awakes a robot in place of another one.
+    /// Wakes a robot as a substitute for another one.
     fn awake(&self, context: &mut Context<'_>, robot: u32, emulate: u32) -> Result<(), Failure> {
         context.send(&self.states, RobotState { robot, awake: true, emulate })
     }
 
-    /// How the robot stands that this one would help; `None` while it waits for others to leave it.
-    fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<CriticalSymptom> {
-        let Some(request) = knowledge.lists.helps.claimed() else { return Some(CriticalSymptom::Gone) };
+    /// State of the robot that this one offered to help; `None` while it waits for others to take their offers back.
+    fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<SafeCriticalSymptom> {
+        let Some(request) = knowledge.lists.helps.claimed() else { return Some(SafeCriticalSymptom::Gone) };
         let situation = request.situation.clone();
         if situation.kind != CriticalKind::Idle && knowledge.energy.must_charge() {
-            return Some(CriticalSymptom::Beaten { situation, by: None });
+            return Some(SafeCriticalSymptom::Beaten { situation, by: None });
         }
         let by = closer_rival(request, self.said_at, knowledge.number);
         if by.is_some() {
-            return Some(CriticalSymptom::Beaten { situation, by });
+            return Some(SafeCriticalSymptom::Beaten { situation, by });
         }
-        request.rivals.is_empty().then_some(CriticalSymptom::Alone(situation))
+        request.rivals.is_empty().then_some(SafeCriticalSymptom::Alone(situation))
     }
 
-    /// A request that waits in vain for this robot, and what caused it.
+    /// A request that this robot cannot answer in time, and its cause.
     fn look_at_idleness(
         &mut self,
         knowledge: &RobotKnowledge,
@@ -330,7 +337,7 @@ impl CriticalSituationMS {
         self.respond(knowledge, context, situation, CriticalStage::Taken)
     }
 
-    /// Says what is open, and shuts down. Where the hardware cannot be reached, it is tried again in the next execution.
+    /// Reports its open job, and shuts down. If the hardware cannot be reached, this is repeated in the next execution.
     fn call_for_help(
         &mut self,
         knowledge: &mut RobotKnowledge,
@@ -367,15 +374,15 @@ impl CriticalSituationMS {
     }
 }
 
-/// The oldest request that this robot can answer, and what caused it.
-fn look_for_help_requests(knowledge: &mut RobotKnowledge) -> Option<(CriticalSymptom, Cause)> {
+/// The oldest request that this robot can answer, and its cause.
+fn look_for_help_requests(knowledge: &mut RobotKnowledge) -> Option<(SafeCriticalSymptom, Cause)> {
     if knowledge.lists.helps.open().is_empty() {
         return None;
     }
     let free = knowledge.is_free()
         && !knowledge.energy.must_charge()
         && !knowledge.relieved
-        && knowledge.hooks.running().is_none();
+        && knowledge.hardware.running().is_none();
     if free {
         knowledge.keep_usual_reserve();
     }
@@ -389,28 +396,29 @@ fn look_for_help_requests(knowledge: &mut RobotKnowledge) -> Option<(CriticalSym
             && closer_rival(request, knowledge.block, knowledge.number).is_none()
     };
     let requests = knowledge.lists.helps.open().iter().filter(can);
-    // Who was awaked for a robot helps that one first.
+    // A robot that was woken for another one helps that one first.
     let request = requests.min_by_key(|request| emulates != Some(request.situation.critical))?;
     let (situation, cause) = (request.situation.clone(), request.cause);
     let distance = knowledge.block.distance(start(&situation));
-    Some((CriticalSymptom::NeedsHelp { situation, distance }, cause))
+    Some((SafeCriticalSymptom::NeedsHelp { situation, distance }, cause))
 }
 
-/// A request with a job that is out of this robot's reach: others may have to know that nobody can do it, also where this one takes none now.
-fn look_for_hopeless_requests(knowledge: &mut RobotKnowledge) -> Option<(CriticalSymptom, Cause)> {
+/// A request whose job is out of this robot's reach, even if it takes no job now: others may have to know that no robot
+/// can do it.
+fn look_for_hopeless_requests(knowledge: &mut RobotKnowledge) -> Option<(SafeCriticalSymptom, Cause)> {
     let open = knowledge.lists.helps.open().len();
     (0..open).find_map(|place| {
         let request = knowledge.lists.helps.open().get(place)?;
         let (situation, cause) = (request.situation.clone(), request.cause);
-        if knowledge.means(&situation.job()?) != Means::Never {
+        if knowledge.means(&situation.job()?) != Feasibility::Never {
             return None;
         }
         let distance = knowledge.block.distance(start(&situation));
-        Some((CriticalSymptom::NeedsHelp { situation, distance }, cause))
+        Some((SafeCriticalSymptom::NeedsHelp { situation, distance }, cause))
     })
 }
 
-/// A robot that would help and is closer; at the same distance the lower number is.
+/// A robot that offered help and is closer; of equally close robots the one with the lower number is.
 fn closer_rival(request: &Help, block: Block, number: u32) -> Option<u32> {
     let start = start(&request.situation);
     let mine = (block.distance(start), number);
@@ -418,13 +426,13 @@ fn closer_rival(request: &Help, block: Block, number: u32) -> Option<u32> {
     request.rivals.iter().find(closer).map(|rival| rival.robot)
 }
 
-/// Where the help begins.
+/// Block where the help begins.
 fn start(situation: &CriticalSituation) -> Block {
     situation.job().map_or(situation.block, |job| job.from)
 }
 
 impl RobotKnowledge {
-    /// Whether a request is open: its robot is broken. Robots that only charge find their substitutes themselves.
+    /// True if a request is open: its robot is broken. Robots that only charge find their substitutes themselves.
     pub(super) fn is_to_be_helped(&self, request: &Help) -> bool {
         let CriticalSituation { kind, critical, .. } = request.situation;
         kind != CriticalKind::Idle || !self.lists.is_active(critical)
@@ -434,7 +442,7 @@ impl RobotKnowledge {
         self.lists.helps.get(critical).is_some_and(|request| self.is_to_be_helped(request))
     }
 
-    /// Would not help any more, or does it now.
+    /// Ends the offer to help.
     fn end_offer(&mut self, was_healer: bool) {
         self.offers_help = false;
         self.stands_in_for = None;

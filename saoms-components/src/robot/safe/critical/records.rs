@@ -4,121 +4,121 @@ use crate::grid::Block;
 use crate::messages::{CriticalKind, CriticalSituation};
 use crate::robot::Trouble;
 
-/// What is critical.
+/// Critical situations that a robot can react to.
 #[derive(Clone, Debug)]
-pub enum CriticalSymptom {
+pub enum SafeCriticalSymptom {
     /// This robot cannot go on.
     Broken {
-        /// What is broken.
+        /// Reason why it cannot go on.
         trouble: Trouble,
-        /// What it was doing.
+        /// Kind of its critical situation.
         kind: CriticalKind,
-        /// Where it is.
+        /// Position of the robot.
         block: Block,
     },
     /// Another robot needs help.
     NeedsHelp {
-        /// What that robot said.
+        /// The request of that robot.
         situation: CriticalSituation,
-        /// How far it is to where the help begins.
+        /// Distance to the block where the help begins.
         distance: u32,
     },
-    /// Another robot has needed help for very long, while this robot did nothing else, and others were in its way.
+    /// Another robot has needed help for very long. This robot was free, but other robots were in its way.
     InVain(CriticalSituation),
-    /// This robot would help, and nobody else would.
+    /// This robot offered help, and no other robot did.
     Alone(CriticalSituation),
-    /// Another robot would help and is closer, or the battery got low.
+    /// Another robot offered help and is closer, or the battery is low.
     Beaten {
-        /// What the robot in need said.
+        /// The request for help.
         situation: CriticalSituation,
-        /// The other robot; `None` where this one has to charge.
+        /// Number of the other robot; `None` if this one has to charge.
         by: Option<u32>,
     },
     /// Another robot helps.
     Gone,
-    /// This robot was awaked in place of another one, whose job is taken over already.
+    /// This robot was woken as a substitute for a robot whose job is already taken over.
     Awaked {
-        /// The other robot.
+        /// Number of the other robot.
         emulates: u32,
     },
     /// This robot starts to charge, and others sleep.
     Charges {
-        /// Its battery in percent.
+        /// Battery level in percent.
         battery: f64,
     },
     /// A robot is missing, and another one sleeps.
     Missing {
-        /// The robot that is missing.
+        /// Number of the missing robot.
         robot: u32,
-        /// The one that sleeps.
+        /// Number of the sleeping robot.
         sleeper: u32,
-        /// Its battery in percent.
+        /// Battery level of the sleeping robot, in percent.
         battery: f64,
     },
-    /// A robot that was missing has a substitute.
+    /// A missing robot has a substitute.
     Substituted {
-        /// The robot that was missing.
+        /// Number of the missing robot.
         robot: u32,
-        /// The one that stands in.
+        /// Number of its substitute.
         by: u32,
     },
 }
 
-/// What to do about it.
+/// Reaction to a critical situation.
 #[derive(Clone, Debug)]
-pub enum CriticalDecision {
+pub enum SafeCriticalDecision {
     /// Ask for help, and shut down.
     CallForHelp {
-        /// What is broken.
+        /// Reason why the robot cannot go on.
         trouble: Trouble,
-        /// What the robot was doing.
+        /// Kind of its critical situation.
         kind: CriticalKind,
     },
-    /// Be ready to help, and ask who else is.
+    /// Offer help.
     Offer(CriticalSituation),
-    /// Think about it again when the battery lasts for so many executions.
+    /// Consider the request again when the battery lasts long enough.
     Postpone {
-        /// The robot in need.
+        /// Number of the robot in need.
         critical: u32,
-        /// The executions.
+        /// Number of executions that the battery has to last.
         needs: u32,
     },
-    /// Leave it to others: it is out of reach.
+    /// Leave the request to other robots: it is out of reach.
     Refuse(CriticalSituation),
     /// Help.
     Heal(CriticalSituation),
-    /// Leave it to others.
+    /// Take the offer back.
     Release(CriticalSituation),
-    /// Be free again.
+    /// Become free again.
     Forget,
-    /// Say that this robot stands in for another one.
+    /// Report that this robot substitutes another one.
     StandIn {
-        /// The other robot.
+        /// Number of the other robot.
         critical: u32,
     },
     /// Ask for a substitute.
     AskForSubstitute,
-    /// Awake a robot in place of another one.
+    /// Wake a substitute for another robot.
     Awake {
-        /// The robot that sleeps.
+        /// Number of the sleeping robot.
         sleeper: u32,
-        /// The robot that is missing.
+        /// Number of the missing robot.
         robot: u32,
     },
-    /// Let it be; this robot itself sleeps when it was the one that was missing.
+    /// End the search; this robot itself sleeps if it was the missing one.
     Rest {
-        /// The robot that was missing.
+        /// Number of the missing robot.
         robot: u32,
     },
 }
 
-impl Recordable for CriticalSymptom {
+impl Recordable for SafeCriticalSymptom {
     fn record(&self) -> Record {
         match *self {
-            CriticalSymptom::Broken { trouble, kind, block } => {
+            SafeCriticalSymptom::Broken { trouble, kind, block } => {
                 record!("{trouble} at {block} {doing}", trouble = trouble.words(), block, doing = doing(kind))
             }
-            CriticalSymptom::NeedsHelp { ref situation, distance } => {
+            SafeCriticalSymptom::NeedsHelp { ref situation, distance } => {
                 let CriticalSituation { critical, block, kind, .. } = *situation;
                 record!(
                     "robot {critical} broke down at {block} {doing}, {distance} blocks away",
@@ -128,53 +128,56 @@ impl Recordable for CriticalSymptom {
                     distance
                 )
             }
-            CriticalSymptom::InVain(CriticalSituation { critical, .. }) => record!(
+            SafeCriticalSymptom::InVain(CriticalSituation { critical, .. }) => record!(
                 "could not begin to help robot {critical} for very long: others are in its way",
                 critical
             ),
-            CriticalSymptom::Alone(CriticalSituation { critical, .. }) => {
+            SafeCriticalSymptom::Alone(CriticalSituation { critical, .. }) => {
                 record!("no other robot would help robot {critical}", critical)
             }
-            CriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: Some(robot) } => {
+            SafeCriticalSymptom::Beaten {
+                situation: CriticalSituation { critical, .. },
+                by: Some(robot),
+            } => {
                 record!("robot {robot} is closer to robot {critical}", robot, critical)
             }
-            CriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: None } => {
+            SafeCriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: None } => {
                 record!("has to charge, and said that it would help robot {critical}", critical)
             }
-            CriticalSymptom::Gone => record!("another robot helps"),
-            CriticalSymptom::Awaked { emulates } => {
+            SafeCriticalSymptom::Gone => record!("another robot helps"),
+            SafeCriticalSymptom::Awaked { emulates } => {
                 record!("was awaked in place of robot {emulates}", emulates)
             }
-            CriticalSymptom::Charges { battery } => {
+            SafeCriticalSymptom::Charges { battery } => {
                 record!("has to charge (battery {battery} %), and others sleep", battery)
             }
-            CriticalSymptom::Missing { robot, sleeper, battery } => record!(
+            SafeCriticalSymptom::Missing { robot, sleeper, battery } => record!(
                 "robot {robot} is missing, and robot {sleeper} sleeps with {battery} %",
                 robot,
                 sleeper,
                 battery
             ),
-            CriticalSymptom::Substituted { robot, by } => {
+            SafeCriticalSymptom::Substituted { robot, by } => {
                 record!("robot {by} stands in for robot {robot}", by, robot)
             }
         }
     }
 }
 
-impl Recordable for CriticalDecision {
+impl Recordable for SafeCriticalDecision {
     fn record(&self) -> Record {
         match *self {
-            CriticalDecision::CallForHelp { .. } => record!("calls for help and shuts down"),
-            CriticalDecision::Offer(CriticalSituation { critical, .. }) => {
+            SafeCriticalDecision::CallForHelp { .. } => record!("calls for help and shuts down"),
+            SafeCriticalDecision::Offer(CriticalSituation { critical, .. }) => {
                 record!("would help robot {critical}, and asks who else would", critical)
             }
-            CriticalDecision::Postpone { needs, .. } => {
+            SafeCriticalDecision::Postpone { needs, .. } => {
                 record!("charges first: that takes {needs} executions", needs)
             }
-            CriticalDecision::Refuse(CriticalSituation { critical, .. }) => {
+            SafeCriticalDecision::Refuse(CriticalSituation { critical, .. }) => {
                 record!("leaves robot {critical} to others: it can never do that", critical)
             }
-            CriticalDecision::Heal(CriticalSituation { critical, kind, luggage, to, .. }) => match kind {
+            SafeCriticalDecision::Heal(CriticalSituation { critical, kind, luggage, to, .. }) => match kind {
                 CriticalKind::CarriesLuggage => {
                     record!(
                         "collects luggage {luggage} from robot {critical} and brings it to {to}",
@@ -193,16 +196,16 @@ impl Recordable for CriticalDecision {
                 }
                 CriticalKind::Idle => record!("finds a substitute for robot {critical}", critical),
             },
-            CriticalDecision::Release(CriticalSituation { critical, .. }) => {
+            SafeCriticalDecision::Release(CriticalSituation { critical, .. }) => {
                 record!("leaves robot {critical} to others", critical)
             }
-            CriticalDecision::Forget => record!("is free again"),
-            CriticalDecision::StandIn { critical } => record!("stands in for robot {critical}", critical),
-            CriticalDecision::AskForSubstitute => record!("asks for a substitute"),
-            CriticalDecision::Awake { sleeper, robot } => {
+            SafeCriticalDecision::Forget => record!("is free again"),
+            SafeCriticalDecision::StandIn { critical } => record!("stands in for robot {critical}", critical),
+            SafeCriticalDecision::AskForSubstitute => record!("asks for a substitute"),
+            SafeCriticalDecision::Awake { sleeper, robot } => {
                 record!("awakes robot {sleeper} in place of robot {robot}", sleeper, robot)
             }
-            CriticalDecision::Rest { robot } => record!("robot {robot} has its substitute", robot),
+            SafeCriticalDecision::Rest { robot } => record!("robot {robot} has its substitute", robot),
         }
     }
 }

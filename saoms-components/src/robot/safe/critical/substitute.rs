@@ -1,21 +1,21 @@
 use crate::messages::RobotList;
 use crate::robot::RobotKnowledge;
 
-use super::CriticalSymptom;
+use super::SafeCriticalSymptom;
 
-/// A robot that was awaked and does not say so within so many executions is given up.
+/// Number of executions within which a woken robot has to answer.
 const PATIENCE: u32 = 8;
 
-/// The search for a robot that stands in for another one.
+/// Search for a substitute of a robot.
 #[derive(Debug)]
 pub(super) struct Substitution {
-    /// The robot that is missing.
+    /// Number of the missing robot.
     robot: u32,
-    /// Whom this robot awaked, and for how many executions it waits for an answer.
+    /// Number of the robot that was woken, and number of executions that are left for its answer.
     asked: Option<(u32, u32)>,
-    /// Who did not answer.
+    /// Numbers of robots that did not answer.
     silent: Vec<u32>,
-    /// Who stands in.
+    /// Number of the substitute.
     by: Option<u32>,
 }
 
@@ -24,7 +24,7 @@ impl Substitution {
         Substitution { robot, asked: None, silent: Vec::new(), by: None }
     }
 
-    /// Takes in that a robot stands in for another one.
+    /// Handles the report that a robot substitutes another one.
     pub(super) fn hear(&mut self, critical: u32, healer: u32) {
         if critical == self.robot && self.asked.is_some_and(|(asked, _)| asked == healer) {
             self.by = Some(healer);
@@ -35,11 +35,11 @@ impl Substitution {
         self.asked = Some((sleeper, 0));
     }
 
-    /// What comes next; `None` while an answer is waited for. The search is over when nothing is waited for then.
-    pub(super) fn look(&mut self, knowledge: &RobotKnowledge) -> Option<CriticalSymptom> {
+    /// The next step of the search; `None` while it waits for an answer or is over.
+    pub(super) fn look(&mut self, knowledge: &RobotKnowledge) -> Option<SafeCriticalSymptom> {
         let robot = self.robot;
         if let Some(by) = self.by {
-            return Some(CriticalSymptom::Substituted { robot, by });
+            return Some(SafeCriticalSymptom::Substituted { robot, by });
         }
         if let Some((sleeper, waited)) = &mut self.asked {
             *waited += 1;
@@ -50,7 +50,7 @@ impl Substitution {
             self.asked = None;
         }
         let RobotList { robot: sleeper, battery, .. } = knowledge.best_sleeper(&self.silent)?;
-        Some(CriticalSymptom::Missing { robot, sleeper: *sleeper, battery: *battery })
+        Some(SafeCriticalSymptom::Missing { robot, sleeper: *sleeper, battery: *battery })
     }
 
     pub(super) fn is_waiting(&self) -> bool {
@@ -59,7 +59,8 @@ impl Substitution {
 }
 
 impl RobotKnowledge {
-    /// The robot to awake: the one that sleeps with the most in its battery, of equal ones that with the lowest number.
+    /// The robot to wake: the sleeping robot with the highest battery level, of equal ones the one with the lowest
+    /// number.
     pub(super) fn best_sleeper(&self, without: &[u32]) -> Option<&RobotList> {
         let sleepers = self.lists.sleepers().filter(|sleeper| !without.contains(&sleeper.robot));
         sleepers.reduce(|best, other| if other.battery > best.battery { other } else { best })

@@ -1,4 +1,4 @@
-//! Luggage that waits for a robot, and how robots part it among them.
+//! Distribution of luggage among the robots.
 
 mod records;
 
@@ -8,19 +8,20 @@ use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
 
-use super::energy::Means;
+use super::energy::Feasibility;
 use super::patience::{Attempt, Idle};
 
-pub(super) use records::{EventLuggageDecision, EventLuggageSymptom, Hindrance};
+pub(super) use records::{Hindrance, SafeLuggageDecision, SafeLuggageSymptom};
 
-/// A request that waits for so many executions counts as one block closer, so that none waits for ever.
+/// Number of executions that count as one block of distance, so that no request waits for ever.
 const PATIENCE: u64 = 4;
 
 /// Decides which luggage this robot brings.
 ///
-/// A free robot takes an interest in one request and says so, from where it is. It takes the job in an execution in which no interest of
-/// another robot is known; where there are several, all but the closest take theirs back and the closest waits for that. Of two robots
-/// at least one hears of the other's interest before it decides, so no luggage is taken twice, however late messages are.
+/// A free robot takes an interest in one request and announces that with its position. It takes the job in an execution
+/// in which it knows no interest of another robot. If several robots are interested, all but the closest take their
+/// interest back, and the closest waits for that. Of two robots at least one hears of the other's interest before it
+/// decides, so no luggage is taken twice, however late messages are.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.EventLuggageMS",
@@ -30,14 +31,14 @@ const PATIENCE: u64 = 4;
     publishes(EVENT_LUGGAGE),
     subscribes(EVENT_LUGGAGE)
 )]
-pub struct EventLuggageMS {
-    /// From where the robot said that it is interested.
+pub struct SafeEventLuggage {
+    /// Position of the robot when it announced its interest.
     said_at: Block,
-    /// Why: what it decides about that luggage next follows from this.
+    /// Cause of the interest; its next decision about that luggage follows from it.
     said: Cause,
-    /// Whether it warned that some luggage is out of its reach.
+    /// True if it has warned that some luggage is out of its reach.
     warned: bool,
-    /// How often other ways had become necessary when it looked at its way, and to where that led.
+    /// Number of changes of the ways at the last check of its way, and the goal of that way.
     seen: (u32, Option<Block>),
     attempt: Attempt,
     idle: Idle,
@@ -45,14 +46,14 @@ pub struct EventLuggageMS {
     luggage_heard: Subscription<EventLuggage>,
 }
 
-impl Loop for EventLuggageMS {
+impl Loop for SafeEventLuggage {
     type Properties = ();
     type Knowledge = RobotKnowledge;
-    type Symptom = EventLuggageSymptom;
-    type Decision = EventLuggageDecision;
+    type Symptom = SafeLuggageSymptom;
+    type Decision = SafeLuggageDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(EventLuggageMS::default())
+        Ok(SafeEventLuggage::default())
     }
 
     fn initialize(
@@ -74,22 +75,22 @@ impl Loop for EventLuggageMS {
         &mut self,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
-    ) -> Result<Option<EventLuggageSymptom>, Failure> {
+    ) -> Result<Option<SafeLuggageSymptom>, Failure> {
         if let Some(symptom) = self.look_at_way(knowledge) {
             return Ok(Some(symptom));
         }
         if let Some((job, to)) = knowledge.strives_in_vain() {
             let carries = knowledge.variables.has_luggage;
-            return Ok(Some(EventLuggageSymptom::TooFar { job, to, carries }));
+            return Ok(Some(SafeLuggageSymptom::TooFar { job, to, carries }));
         }
         let in_vain = self.look_at_idleness(knowledge, context);
-        if knowledge.hooks.running().is_none()
+        if knowledge.hardware.running().is_none()
             && let Some(symptom) = self.look_at_time(knowledge)
         {
             return Ok(Some(symptom));
         }
         let variables = &knowledge.variables;
-        if variables.busy || variables.critical || knowledge.hooks.running().is_some() {
+        if variables.busy || variables.critical || knowledge.hardware.running().is_some() {
             return Ok(None);
         }
         if knowledge.variables.transporter {
@@ -113,34 +114,34 @@ impl Loop for EventLuggageMS {
 
     fn plan(
         &mut self,
-        symptom: EventLuggageSymptom,
+        symptom: SafeLuggageSymptom,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
-    ) -> Result<Option<EventLuggageDecision>, Failure> {
+    ) -> Result<Option<SafeLuggageDecision>, Failure> {
         Ok(Some(match symptom {
-            EventLuggageSymptom::Waiting { place, job, .. } => match knowledge.means(&job) {
-                Means::Enough => EventLuggageDecision::TakeInterest { place, job },
-                Means::Needs(needs) => EventLuggageDecision::Postpone { place, needs },
-                Means::Never => EventLuggageDecision::Refuse { job, why: Hindrance::Battery },
+            SafeLuggageSymptom::Waiting { place, job, .. } => match knowledge.means(&job) {
+                Feasibility::Enough => SafeLuggageDecision::TakeInterest { place, job },
+                Feasibility::Needs(needs) => SafeLuggageDecision::Postpone { place, needs },
+                Feasibility::Never => SafeLuggageDecision::Refuse { job, why: Hindrance::Battery },
             },
-            EventLuggageSymptom::InVain(job) => EventLuggageDecision::Refuse { job, why: Hindrance::Others },
-            EventLuggageSymptom::Alone(job) => EventLuggageDecision::Take(job),
-            EventLuggageSymptom::Beaten { job, .. } => EventLuggageDecision::Release(job),
-            EventLuggageSymptom::Gone => EventLuggageDecision::Forget,
-            EventLuggageSymptom::CutOff { job, carries, .. } => leave(job, carries, Hindrance::NoWay),
-            EventLuggageSymptom::TooFar { job, carries, .. } => leave(job, carries, Hindrance::Battery),
-            EventLuggageSymptom::Stuck { job, carries, .. } => leave(job, carries, Hindrance::Others),
+            SafeLuggageSymptom::InVain(job) => SafeLuggageDecision::Refuse { job, why: Hindrance::Others },
+            SafeLuggageSymptom::Alone(job) => SafeLuggageDecision::Take(job),
+            SafeLuggageSymptom::Beaten { job, .. } => SafeLuggageDecision::Release(job),
+            SafeLuggageSymptom::Gone => SafeLuggageDecision::Forget,
+            SafeLuggageSymptom::CutOff { job, carries, .. } => leave(job, carries, Hindrance::NoWay),
+            SafeLuggageSymptom::TooFar { job, carries, .. } => leave(job, carries, Hindrance::Battery),
+            SafeLuggageSymptom::Stuck { job, carries, .. } => leave(job, carries, Hindrance::Others),
         }))
     }
 
     fn execute(
         &mut self,
-        decision: EventLuggageDecision,
+        decision: SafeLuggageDecision,
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         let stage = match decision {
-            EventLuggageDecision::TakeInterest { place, job } => {
+            SafeLuggageDecision::TakeInterest { place, job } => {
                 knowledge.lists.requests.claim(place);
                 knowledge.variables.transporter = true;
                 (self.said_at, self.said) = (knowledge.block, context.cause());
@@ -148,18 +149,18 @@ impl Loop for EventLuggageMS {
                 context.console(format_args!("{name} is bringing luggage from {} to {}", job.from, job.to));
                 (job, LuggageStage::Interest)
             }
-            EventLuggageDecision::Postpone { place, needs } => {
+            SafeLuggageDecision::Postpone { place, needs } => {
                 knowledge.lists.requests.open_mut()[place].needs = needs;
                 return Ok(());
             }
-            EventLuggageDecision::Refuse { job, why } => {
+            SafeLuggageDecision::Refuse { job, why } => {
                 knowledge.lists.requests.refuse(job.luggage);
                 if !knowledge.is_loaded {
                     self.warn(&job, why, knowledge, context);
                 }
                 (job, LuggageStage::Refused)
             }
-            EventLuggageDecision::Take(job) => {
+            SafeLuggageDecision::Take(job) => {
                 knowledge.lists.requests.settle();
                 knowledge.variables.busy = true;
                 knowledge.job = Some(job);
@@ -167,23 +168,23 @@ impl Loop for EventLuggageMS {
                 context.info(format_args!("takes luggage {} from {} to {}", job.luggage, job.from, job.to));
                 (job, LuggageStage::Taken)
             }
-            EventLuggageDecision::Release(job) => {
+            SafeLuggageDecision::Release(job) => {
                 knowledge.variables.transporter = false;
                 knowledge.lists.requests.put_back();
                 (job, LuggageStage::Release)
             }
-            EventLuggageDecision::Forget => {
+            SafeLuggageDecision::Forget => {
                 knowledge.variables.transporter = false;
                 return Ok(());
             }
-            EventLuggageDecision::Return(job) => {
+            SafeLuggageDecision::Return(job) => {
                 knowledge.drop_job();
                 knowledge.untold = Some((job, LuggageStage::Refused));
-                return knowledge.tell(self.luggage, context);
+                return knowledge.report_outcome(self.luggage, context);
             }
-            EventLuggageDecision::GiveUp { job, why } => {
+            SafeLuggageDecision::GiveUp { job, why } => {
                 knowledge.drop_job();
-                // With that on board it is of no use, until somebody helps.
+                // A loaded robot is of no use until another one helps.
                 (knowledge.relieved, knowledge.is_loaded) = (true, true);
                 context.count("assistance", 1);
                 let (Job { luggage, to, .. }, why) = (job, why.words());
@@ -199,9 +200,9 @@ impl Loop for EventLuggageMS {
     }
 }
 
-impl EventLuggageMS {
-    /// Whether a way still leads to where the robot has to go, when that or something about the ways changed.
-    fn look_at_way(&mut self, knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
+impl SafeEventLuggage {
+    /// Checks that a way still leads to the robot's goal, when the goal or the ways changed.
+    fn look_at_way(&mut self, knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
         let seen = (knowledge.routes.changes(), knowledge.job.and(knowledge.destination()));
         let before = std::mem::replace(&mut self.seen, seen);
         if before == seen {
@@ -213,15 +214,15 @@ impl EventLuggageMS {
         let (job, to) = (knowledge.job?, seen.1?);
         let reached = knowledge.routes.between(knowledge.next, to) != UNREACHABLE;
         let carries = knowledge.variables.has_luggage;
-        (!reached).then_some(EventLuggageSymptom::CutOff { job, to, carries })
+        (!reached).then_some(SafeLuggageSymptom::CutOff { job, to, carries })
     }
 
-    /// Whether the robot has been on its job for many times as long as it takes.
-    fn look_at_time(&mut self, knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
+    /// Checks that the robot has not been on its job for many times as long as the job takes.
+    fn look_at_time(&mut self, knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
         let job = knowledge.job;
         let longest = || job.map_or(u32::MAX, |job| knowledge.executions_from_charger(&job));
         let executions = self.attempt.note(job.map(|job| job.luggage), longest)?;
-        Some(EventLuggageSymptom::Stuck { job: job?, executions, carries: knowledge.variables.has_luggage })
+        Some(SafeLuggageSymptom::Stuck { job: job?, executions, carries: knowledge.variables.has_luggage })
     }
 
     /// Luggage that waits in vain for this robot.
@@ -229,28 +230,29 @@ impl EventLuggageMS {
         &mut self,
         knowledge: &RobotKnowledge,
         context: &Context<'_>,
-    ) -> Option<EventLuggageSymptom> {
+    ) -> Option<SafeLuggageSymptom> {
         let requests = &knowledge.lists.requests;
         let waits = !requests.open().is_empty() || requests.claimed().is_some();
         self.idle.note(waits && knowledge.job.is_none() && !knowledge.variables.asleep);
         let oldest = requests.open().first()?;
-        self.idle.is_in_vain(oldest.since, context).then_some(EventLuggageSymptom::InVain(oldest.job))
+        self.idle.is_in_vain(oldest.since, context).then_some(SafeLuggageSymptom::InVain(oldest.job))
     }
 
-    /// How what this robot is interested in stands; `None` while it waits for others to take their interest back.
-    fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<EventLuggageSymptom> {
+    /// State of the luggage that this robot is interested in; `None` while it waits for others to take their interest
+    /// back.
+    fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<SafeLuggageSymptom> {
         let Some(request) = knowledge.lists.requests.claimed() else {
-            return Some(EventLuggageSymptom::Gone);
+            return Some(SafeLuggageSymptom::Gone);
         };
         let job = request.job;
         if knowledge.energy.must_charge() {
-            return Some(EventLuggageSymptom::Beaten { job, by: None });
+            return Some(SafeLuggageSymptom::Beaten { job, by: None });
         }
         let by = closer_rival(request, self.said_at, knowledge.number);
         if by.is_some() {
-            return Some(EventLuggageSymptom::Beaten { job, by });
+            return Some(SafeLuggageSymptom::Beaten { job, by });
         }
-        request.rivals.is_empty().then_some(EventLuggageSymptom::Alone(job))
+        request.rivals.is_empty().then_some(SafeLuggageSymptom::Alone(job))
     }
 
     fn warn(&mut self, job: &Job, why: Hindrance, knowledge: &RobotKnowledge, context: &mut Context<'_>) {
@@ -270,28 +272,28 @@ impl EventLuggageMS {
     }
 }
 
-/// What to do with a job that comes to nothing.
-fn leave(job: Job, carries: bool, why: Hindrance) -> EventLuggageDecision {
-    if carries { EventLuggageDecision::GiveUp { job, why } } else { EventLuggageDecision::Return(job) }
+/// Decision about a job that cannot be finished.
+fn leave(job: Job, carries: bool, why: Hindrance) -> SafeLuggageDecision {
+    if carries { SafeLuggageDecision::GiveUp { job, why } } else { SafeLuggageDecision::Return(job) }
 }
 
-/// Whether the next request that a robot which takes none now did not think about yet is out of its reach: others may have to know that nobody
-/// can.
-fn judge(knowledge: &mut RobotKnowledge) -> Option<EventLuggageSymptom> {
+/// The next request that is out of this robot's reach, while it takes no jobs: others may have to know that no robot
+/// can bring it.
+fn judge(knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
     let requests = knowledge.lists.requests.open_mut();
     let place = requests.iter().position(|request| !request.judged)?;
     requests[place].judged = true;
     let job = requests[place].job;
     let distance = knowledge.block.distance(job.from);
-    let never = knowledge.means(&job) == Means::Never;
-    never.then_some(EventLuggageSymptom::Waiting { place, job, distance })
+    let never = knowledge.means(&job) == Feasibility::Never;
+    never.then_some(SafeLuggageSymptom::Waiting { place, job, distance })
 }
 
-/// The request that suits this robot best, and what caused it.
+/// The request that suits this robot best, and its cause.
 fn look_for_luggage(
     knowledge: &RobotKnowledge,
     context: &Context<'_>,
-) -> Option<(EventLuggageSymptom, Cause)> {
+) -> Option<(SafeLuggageSymptom, Cause)> {
     let (now, period) = (context.now(), context.period().as_nanos().max(1));
     let (block, number) = (knowledge.block, knowledge.number);
     let left = knowledge.battery.executions_left();
@@ -304,11 +306,11 @@ fn look_for_luggage(
     let best = requests.filter(|(_, request)| suits(request)).min_by_key(|(_, request)| score(request));
     best.map(|(place, request)| {
         let distance = block.distance(request.job.from);
-        (EventLuggageSymptom::Waiting { place, job: request.job, distance }, request.cause)
+        (SafeLuggageSymptom::Waiting { place, job: request.job, distance }, request.cause)
     })
 }
 
-/// A robot that is interested and closer; at the same distance the lower number is.
+/// A robot that is interested and closer; of equally close robots the one with the lower number is.
 fn closer_rival(request: &Request, block: Block, number: u32) -> Option<u32> {
     let from = request.job.from;
     let mine = (block.distance(from), number);

@@ -3,109 +3,109 @@ use saoms_api::{Record, Recordable, record};
 use crate::grid::Block;
 use crate::robot::Job;
 
-/// What there is to decide about luggage.
+/// Luggage that a robot can decide about.
 #[derive(Clone, Copy, Debug)]
-pub enum EventLuggageSymptom {
+pub enum SafeLuggageSymptom {
     /// Luggage waits, and suits this robot best.
     Waiting {
-        /// Its place on the list.
+        /// Index of the request on the list.
         place: usize,
-        /// What there is to bring.
+        /// The job.
         job: Job,
-        /// How far away it is.
+        /// Distance to the luggage.
         distance: u32,
     },
-    /// This robot is interested, and nobody else is.
+    /// This robot is interested, and no other robot is.
     Alone(Job),
-    /// Another robot is interested and closer, or the battery got low.
+    /// Another robot is interested and closer, or the battery is low.
     Beaten {
-        /// What this robot was interested in.
+        /// The job that this robot was interested in.
         job: Job,
-        /// The other robot; `None` where this one has to charge.
+        /// Number of the other robot; `None` if this one has to charge.
         by: Option<u32>,
     },
-    /// Another robot took what this one was interested in.
+    /// Another robot took the luggage that this one was interested in.
     Gone,
-    /// No way leads any more to where this robot has to go.
+    /// No way leads to the robot's goal any more.
     CutOff {
-        /// What it brings.
+        /// The job.
         job: Job,
-        /// Where it has to go.
+        /// Goal of the robot.
         to: Block,
-        /// Whether it carries it.
+        /// True if the robot carries the luggage.
         carries: bool,
     },
-    /// It waits for very long, while this robot did nothing else, and others were in its way.
+    /// The luggage has waited for very long. This robot was free, but other robots were in its way.
     InVain(Job),
-    /// This robot has been on it for many times as long as it takes, because others are in its way.
+    /// This robot has been on the job for many times as long as the job takes, because other robots are in its way.
     Stuck {
-        /// What it brings.
+        /// The job.
         job: Job,
-        /// Since how many executions.
+        /// Number of executions since its start.
         executions: u32,
-        /// Whether it carries it.
+        /// True if the robot carries the luggage.
         carries: bool,
     },
-    /// Charged and turned back again and again, it knows by now that no full battery lasts.
+    /// After several returns to the charger this robot knows that no full battery lasts.
     TooFar {
-        /// What it brings.
+        /// The job.
         job: Job,
-        /// Where it has to go.
+        /// Goal of the robot.
         to: Block,
-        /// Whether it carries it.
+        /// True if the robot carries the luggage.
         carries: bool,
     },
 }
 
-/// What to do about it.
+/// Reaction to the state of luggage.
 #[derive(Clone, Copy, Debug)]
-pub enum EventLuggageDecision {
-    /// Take an interest, and say so.
+pub enum SafeLuggageDecision {
+    /// Take an interest, and announce it.
     TakeInterest {
-        /// The request's place on the list.
+        /// Index of the request on the list.
         place: usize,
-        /// What there is to bring.
+        /// The job.
         job: Job,
     },
-    /// Think about it again when the battery lasts for so many executions.
+    /// Consider the request again when the battery lasts long enough.
     Postpone {
-        /// The request's place on the list.
+        /// Index of the request on the list.
         place: usize,
-        /// The executions.
+        /// Number of executions that the battery has to last.
         needs: u32,
     },
-    /// Leave it to others for good.
+    /// Leave the luggage to other robots for good.
     Refuse {
-        /// What there is to bring.
+        /// The job.
         job: Job,
-        /// Why it cannot.
+        /// Reason why this robot cannot bring it.
         why: Hindrance,
     },
-    /// Bring it.
+    /// Bring the luggage.
     Take(Job),
     /// Take the interest back.
     Release(Job),
     /// Look for other luggage.
     Forget,
-    /// Leave what it did not collect yet to others.
+    /// Leave luggage that is not collected yet to other robots.
     Return(Job),
-    /// Give up what it carries.
+    /// Give up luggage that the robot carries.
     GiveUp {
-        /// What it brings.
+        /// The job.
         job: Job,
-        /// Why it cannot.
+        /// Reason why the robot cannot bring it.
         why: Hindrance,
     },
 }
 
-/// What keeps a robot from bringing what it carries.
+/// Reasons why a robot cannot bring its luggage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hindrance {
-    /// No way leads there.
+    /// No way leads to the destination.
     NoWay,
     /// No full battery lasts for the way.
     Battery,
-    /// Others are in the way for ever.
+    /// Other robots are permanently in the way.
     Others,
 }
 
@@ -119,41 +119,41 @@ impl Hindrance {
     }
 }
 
-impl Recordable for EventLuggageSymptom {
+impl Recordable for SafeLuggageSymptom {
     fn record(&self) -> Record {
         match *self {
-            EventLuggageSymptom::Waiting { job: Job { luggage, from, .. }, distance, .. } => {
+            SafeLuggageSymptom::Waiting { job: Job { luggage, from, .. }, distance, .. } => {
                 record!("luggage {luggage} waits at {from}, {distance} blocks away", luggage, from, distance)
             }
-            EventLuggageSymptom::Alone(Job { luggage, .. }) => {
+            SafeLuggageSymptom::Alone(Job { luggage, .. }) => {
                 record!("no other robot is interested in luggage {luggage}", luggage)
             }
-            EventLuggageSymptom::Beaten { job: Job { luggage, .. }, by: Some(robot) } => {
+            SafeLuggageSymptom::Beaten { job: Job { luggage, .. }, by: Some(robot) } => {
                 record!("robot {robot} is closer to luggage {luggage}", robot, luggage)
             }
-            EventLuggageSymptom::Beaten { job: Job { luggage, .. }, by: None } => {
+            SafeLuggageSymptom::Beaten { job: Job { luggage, .. }, by: None } => {
                 record!("has to charge, and said that it would bring luggage {luggage}", luggage)
             }
-            EventLuggageSymptom::Gone => record!("another robot takes the luggage"),
-            EventLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
+            SafeLuggageSymptom::Gone => record!("another robot takes the luggage"),
+            SafeLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
                 record!(
                     "no way leads to {to} any more, where it has to go for luggage {luggage}",
                     to,
                     luggage
                 )
             }
-            EventLuggageSymptom::InVain(Job { luggage, .. }) => {
+            SafeLuggageSymptom::InVain(Job { luggage, .. }) => {
                 record!(
                     "could not begin with luggage {luggage} for very long: others are in its way",
                     luggage
                 )
             }
-            EventLuggageSymptom::Stuck { job: Job { luggage, .. }, executions, .. } => record!(
+            SafeLuggageSymptom::Stuck { job: Job { luggage, .. }, executions, .. } => record!(
                 "gets nowhere with luggage {luggage}: others have been in its way for {executions} executions",
                 luggage,
                 executions
             ),
-            EventLuggageSymptom::TooFar { job: Job { luggage, .. }, to, .. } => {
+            SafeLuggageSymptom::TooFar { job: Job { luggage, .. }, to, .. } => {
                 record!(
                     "turned back from the way to {to} again and again: no full battery lasts to bring luggage {luggage}",
                     to,
@@ -164,29 +164,29 @@ impl Recordable for EventLuggageSymptom {
     }
 }
 
-impl Recordable for EventLuggageDecision {
+impl Recordable for SafeLuggageDecision {
     fn record(&self) -> Record {
         match *self {
-            EventLuggageDecision::TakeInterest { job: Job { luggage, .. }, .. } => {
+            SafeLuggageDecision::TakeInterest { job: Job { luggage, .. }, .. } => {
                 record!("would bring luggage {luggage}, and asks who else would", luggage)
             }
-            EventLuggageDecision::Postpone { needs, .. } => {
+            SafeLuggageDecision::Postpone { needs, .. } => {
                 record!("charges first: that takes {needs} executions", needs)
             }
-            EventLuggageDecision::Refuse { job: Job { luggage, .. }, .. } => {
+            SafeLuggageDecision::Refuse { job: Job { luggage, .. }, .. } => {
                 record!("leaves luggage {luggage} to others: it can never bring that", luggage)
             }
-            EventLuggageDecision::Take(Job { luggage, from, to }) => {
+            SafeLuggageDecision::Take(Job { luggage, from, to }) => {
                 record!("brings luggage {luggage} from {from} to {to}", luggage, from, to)
             }
-            EventLuggageDecision::Release(Job { luggage, .. }) => {
+            SafeLuggageDecision::Release(Job { luggage, .. }) => {
                 record!("leaves luggage {luggage} to others", luggage)
             }
-            EventLuggageDecision::Forget => record!("looks for other luggage"),
-            EventLuggageDecision::Return(Job { luggage, .. }) => {
+            SafeLuggageDecision::Forget => record!("looks for other luggage"),
+            SafeLuggageDecision::Return(Job { luggage, .. }) => {
                 record!("leaves luggage {luggage} to others", luggage)
             }
-            EventLuggageDecision::GiveUp { job: Job { luggage, .. }, .. } => {
+            SafeLuggageDecision::GiveUp { job: Job { luggage, .. }, .. } => {
                 record!("gives luggage {luggage} up", luggage)
             }
         }

@@ -1,8 +1,8 @@
-//! A component that counts, and says on a topic of its own how far it is.
+//! A component that counts, and publishes its count on a topic of its own.
 
 use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
 
-/// How far somebody has counted.
+/// The count of a component.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 pub struct Count {
     /// The number.
@@ -12,10 +12,10 @@ pub struct Count {
 /// The newest number.
 pub const COUNT: Topic<Count> = Topic::state("COUNT");
 
-/// What a composite can set.
+/// Properties of the component.
 #[derive(Debug, Properties)]
 pub struct MyPluginProperties {
-    /// By how much it counts on in each period.
+    /// Number that is added in each period.
     #[property(default = 1, range = 1..=100)]
     step: u32,
 }

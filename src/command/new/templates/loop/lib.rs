@@ -1,18 +1,18 @@
-//! A loop of the plugin: lets a robot go under charge early.
+//! A loop that makes a robot charge early.
 
 use saoms_api::{
     Context, Effector, Entry, Failure, Knowledge, Loop, LoopClass, Properties, Record, record,
 };
 
-/// What a composite can set.
+/// Properties of the loop.
 #[derive(Debug, Properties)]
 pub struct MyPluginProperties {
-    /// The robot goes under charge when so much is left.
+    /// Battery level at which the robot charges.
     #[property(default = 60.0, range = 0.0..=100.0, unit = "%")]
     threshold: f64,
 }
 
-/// Lets a robot go under charge earlier than it would.
+/// Makes a robot charge earlier than it would.
 #[derive(Debug, LoopClass)]
 #[looping(name = "my_plugin.MyPlugin", senses("battery"), effects("chargeAt"))]
 pub struct MyPlugin {

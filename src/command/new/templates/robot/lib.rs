@@ -1,16 +1,16 @@
-//! The hardware of a robot: its wheels and its arm. A robot of the fleet calls it through its reference `world`.
+//! The hardware of a robot: its wheels and its gripper. A robot of the fleet calls it through its reference `world`.
 //!
-//! The calls must not wait: `begin` starts an action, and `poll` asks in each period of the robot how it goes. Here the hardware is
-//! simulated, by counting; put the calls of your motors in its place.
+//! The calls must not wait: `begin` starts an action, and `poll` returns its progress in each period of the robot. Here
+//! the hardware is simulated, by counting; replace that by the calls of your motors.
 
 use saoms_api::{Class, Component, Context, Failure, Properties};
 use saoms_components::grid::{Block, Map};
 use saoms_components::hardware::{Action, ActionKind, Area, Hardware, Progress};
 
-/// What a composite can set.
+/// Properties of the hardware.
 #[derive(Debug, Properties)]
 pub struct MyPluginProperties {
-    /// How many periods a move from one block to the next takes.
+    /// Number of periods that a move from one block to the next takes.
     #[property(default = 3, range = 1..=1000)]
     move_periods: u32,
 }
@@ -21,7 +21,7 @@ pub struct MyPluginProperties {
 pub struct MyPlugin {
     properties: MyPluginProperties,
     block: Block,
-    /// What it does, and how many periods that still takes.
+    /// The running action, and the number of periods that are left.
     running: Option<(Action, u32)>,
 }
 
@@ -54,7 +54,7 @@ impl Hardware for MyPlugin {
             Some((action, periods)) if *periods <= 1 => {
                 match action.kind {
                     ActionKind::Move => self.block = action.block,
-                    // The summary of a run counts what whoever knows the truth counts: here, the hardware.
+                    // Deliveries are counted by the component that can confirm them: here, the hardware.
                     ActionKind::Deposit => context.count("luggage.delivered", 1),
                     ActionKind::Collect => {}
                 }

@@ -4,23 +4,23 @@ use saoms_api::Chance;
 
 use crate::grid::{Block, Map};
 
-/// What is drawn by chance, each with the same probability: from the least to the greatest, both included.
+/// A range from which a value is drawn with equal probability, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Drawn<T> {
-    /// The least.
+pub struct RandomRange<T> {
+    /// Lower end.
     pub least: T,
-    /// The greatest.
+    /// Upper end.
     pub most: T,
 }
 
-impl<T: Copy> Drawn<T> {
-    /// Always this one.
-    pub const fn fixed(value: T) -> Drawn<T> {
-        Drawn { least: value, most: value }
+impl<T: Copy> RandomRange<T> {
+    /// A range with only this value.
+    pub const fn fixed(value: T) -> RandomRange<T> {
+        RandomRange { least: value, most: value }
     }
 }
 
-impl Drawn<Duration> {
+impl RandomRange<Duration> {
     pub(crate) fn draw(&self, chance: &mut Chance) -> Duration {
         let nanos = |duration: Duration| u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
         match self.least == self.most {
@@ -30,26 +30,26 @@ impl Drawn<Duration> {
     }
 }
 
-impl Drawn<u32> {
+impl RandomRange<u32> {
     pub(crate) fn draw(&self, chance: &mut Chance) -> u32 {
         if self.least == self.most { self.least } else { chance.range(self.least..=self.most) }
     }
 }
 
-/// Where luggage is, or has to go.
+/// Block, or range of blocks, where luggage is or has to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spot {
-    /// On a free block between two corners.
+    /// A free block of the rectangle between two corners.
     Between(Block, Block),
-    /// On any free block of the area.
+    /// Any free block of the area.
     Anywhere,
 }
 
-/// How many blocks are drawn before the free ones are counted.
+/// Number of random attempts before the free blocks are listed.
 const ATTEMPTS: u32 = 32;
 
 impl Spot {
-    /// Between any two opposite corners.
+    /// The rectangle between any two opposite corners.
     pub(crate) fn between(one: Block, other: Block) -> Spot {
         Spot::Between(
             Block::new(one.x.min(other.x), one.y.min(other.y)),
@@ -57,7 +57,7 @@ impl Spot {
         )
     }
 
-    /// The one block that it is, where it is one.
+    /// The block, if the spot is a single block.
     pub(crate) fn block(self) -> Option<Block> {
         match self {
             Spot::Between(one, other) if one == other => Some(one),
@@ -65,7 +65,7 @@ impl Spot {
         }
     }
 
-    /// The corners; `None` where they are those of an area that is not known.
+    /// The corners of the spot; `None` if they are those of an unknown area.
     pub(crate) fn corners(self, area: Option<&Map>) -> Option<(Block, Block)> {
         match (self, area) {
             (Spot::Between(first, last), _) => Some((first, last)),
@@ -74,10 +74,10 @@ impl Spot {
         }
     }
 
-    /// A block of the spot other than `not`, free as far as the area is known; `None` when there is none.
+    /// A block of the spot other than `not`, free if the area is known; `None` if there is none.
     pub(crate) fn draw(self, chance: &mut Chance, area: Option<&Map>, not: Option<Block>) -> Option<Block> {
         if let Some(block) = self.block() {
-            // What is written is meant, also where it is impossible: whoever hears of it says so.
+            // A single block is taken as written, even if it is impossible: the receiver reports it.
             return Some(block);
         }
         let (first, last) = self.corners(area)?;
@@ -88,13 +88,13 @@ impl Spot {
                 return Some(block);
             }
         }
-        // Few are free, or none.
+        // Few blocks are free, or none.
         let free: Vec<Block> = blocks(first, last, area).filter(fits).collect();
         chance.pick(&free).copied()
     }
 }
 
-/// The blocks between two corners, those outside the area left out.
+/// The blocks between two corners, without those outside the area.
 fn blocks(first: Block, last: Block, area: Option<&Map>) -> impl Iterator<Item = Block> {
     let cut = |end: i32, side: fn(&Map) -> u32| {
         area.map_or(end, |area| end.min(i32::try_from(side(area)).unwrap_or(i32::MAX).saturating_sub(1)))

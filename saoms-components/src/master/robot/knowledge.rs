@@ -5,48 +5,48 @@ use saoms_api::{Cause, Extras, Knowledge};
 
 use crate::messages::RobotList;
 
-/// What the master of the robots knows: who there is, and for how long more of them are needed.
+/// Knowledge of the master of the robots: the active robots, and the shifts for which more of them are needed.
 #[derive(Debug, Knowledge)]
 #[knowledge(name = "saoms.MasterRobot")]
 pub struct MasterRobotKnowledge {
-    /// For how many expected pieces of luggage one robot is awaked.
+    /// Number of expected pieces of luggage for which one robot is woken.
     #[entry]
     pub pieces_per_robot: u32,
-    /// After how many periods as many robots are sent under charge again.
+    /// Number of periods after which the robots of a shift are sent to charge again.
     #[entry]
     pub counter: u32,
-    /// How many robots there are.
+    /// Number of robots.
     #[entry]
     pub robots: u32,
-    /// How many of them are asleep.
+    /// Number of sleeping robots.
     #[entry]
     pub asleep: u32,
-    /// How many it awaked for luggage that is still expected.
+    /// Number of robots that were woken for luggage that is still expected.
     #[entry]
     pub on_shift: u32,
-    /// Those that are active, by number.
-    crew: BTreeMap<u32, RobotList>,
-    /// Who was awaked (`true`) or sent under charge and has not done so yet.
+    /// The active robots, by number.
+    active: BTreeMap<u32, RobotList>,
+    /// Robots that were woken (`true`) or sent to charge and have not reacted yet.
     called: BTreeMap<u32, bool>,
-    /// What was awaked together, in the order of awaking.
+    /// The shifts, in the order in which they were woken.
     pub shifts: Vec<Shift>,
     #[extras]
     extras: Extras,
 }
 
-/// Robots that were awaked for the same luggage: the manual's `MRcounter`.
+/// Robots that were woken for the same luggage: the manual's `MRcounter`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shift {
-    /// How many.
+    /// Number of robots.
     pub robots: u32,
-    /// For how many periods of the master they are still needed.
+    /// Number of the master's periods for which they are still needed.
     pub left: u32,
-    /// Why it was started.
+    /// Cause of the shift.
     pub cause: Cause,
 }
 
 impl MasterRobotKnowledge {
-    /// What a master knows that has heard of nobody.
+    /// Initial knowledge, without any robot.
     pub fn new(pieces_per_robot: u32, counter: u32) -> MasterRobotKnowledge {
         MasterRobotKnowledge {
             pieces_per_robot,
@@ -54,55 +54,55 @@ impl MasterRobotKnowledge {
             robots: 0,
             asleep: 0,
             on_shift: 0,
-            crew: BTreeMap::new(),
+            active: BTreeMap::new(),
             called: BTreeMap::new(),
             shifts: Vec::new(),
             extras: Extras::default(),
         }
     }
 
-    /// Takes in what a robot says about itself.
+    /// Handles a report of a robot about itself.
     pub fn hear(&mut self, robot: &RobotList) {
         let number = robot.robot;
         if robot.active {
-            self.crew.insert(number, robot.clone());
+            self.active.insert(number, robot.clone());
         } else {
-            self.crew.remove(&number);
+            self.active.remove(&number);
         }
         let done = |awake: &bool| !robot.active || *awake != robot.asleep;
         if self.called.get(&number).is_some_and(done) {
             self.called.remove(&number);
         }
-        self.robots = count(self.crew.len());
-        self.asleep = count(self.crew.values().filter(|robot| robot.asleep).count());
+        self.robots = count(self.active.len());
+        self.asleep = count(self.active.values().filter(|robot| robot.asleep).count());
     }
 
-    /// Those that are active, by number.
-    pub fn crew(&self) -> impl Iterator<Item = &RobotList> + Clone {
-        self.crew.values()
+    /// The active robots, by number.
+    pub fn active(&self) -> impl Iterator<Item = &RobotList> + Clone {
+        self.active.values()
     }
 
-    /// The robot to awake next: the one with the most charge, then the one with the lowest number.
+    /// The robot to wake next: the one with the highest battery level, then the one with the lowest number.
     pub fn next_to_awake(&self) -> Option<u32> {
         self.callable(RobotList::can_be_awaked).max_by(|one, other| by_right(one, other)).map(|one| one.robot)
     }
 
-    /// The robot to send under charge next: the one with the least charge, then the one with the highest number.
+    /// The robot to send to charge next: the one with the lowest battery level, then the one with the highest number.
     pub fn next_to_charge(&self) -> Option<u32> {
         let works = |robot: &RobotList| !robot.asleep && !robot.in_charge && !robot.is_out_of_battery();
         self.callable(works).min_by(|one, other| by_right(one, other)).map(|one| one.robot)
     }
 
     fn callable(&self, which: fn(&RobotList) -> bool) -> impl Iterator<Item = &RobotList> {
-        self.crew().filter(move |robot| which(robot) && !self.called.contains_key(&robot.robot))
+        self.active().filter(move |robot| which(robot) && !self.called.contains_key(&robot.robot))
     }
 
-    /// Notes that a robot is called to be awake, or to go under charge.
+    /// Records that a robot was called to wake or to charge.
     pub fn note_call(&mut self, robot: u32, awake: bool) {
         self.called.insert(robot, awake);
     }
 
-    /// Counts a period down, and ends the shifts that are over; how many robots those had, and why they were there.
+    /// Counts a period down and ends the shifts that are over; returns their number of robots and their cause.
     pub fn end_shifts(&mut self) -> (u32, Cause) {
         let (mut ended, mut why) = (0, Cause::default());
         self.shifts.retain_mut(|shift| {
@@ -117,7 +117,7 @@ impl MasterRobotKnowledge {
         (ended, why)
     }
 
-    /// Starts a shift of so many robots.
+    /// Starts a shift.
     pub fn start_shift(&mut self, robots: u32, cause: Cause) {
         if robots > 0 {
             self.shifts.push(Shift { robots, left: self.counter, cause });
@@ -130,7 +130,7 @@ impl MasterRobotKnowledge {
     }
 }
 
-/// Who is awaked first: by battery, then the lower number.
+/// Order in which robots are woken: highest battery level first, then lowest number.
 fn by_right(one: &RobotList, other: &RobotList) -> Ordering {
     one.battery.total_cmp(&other.battery).then(other.robot.cmp(&one.robot))
 }

@@ -8,7 +8,7 @@ use crate::grid::Block;
 use super::RobotKnowledge;
 
 impl RobotKnowledge {
-    /// Shows what the robot heard, as the console of the manual's figures does.
+    /// Prints the robot's lists, in the format of the console in the manual's figures.
     pub(super) fn show_lists(&self, context: &mut Context<'_>) {
         let RobotKnowledge { name, lists, .. } = self;
         context.console(format_args!("{name} updated active robot list: {}", JavaList(lists.active.iter())));
@@ -22,7 +22,7 @@ impl RobotKnowledge {
         context.console(format_args!("{name} luggage request list: {open}"));
     }
 
-    /// Shows the battery, as the console of the manual's figures does.
+    /// Prints the battery, in the format of the console in the manual's figures.
     pub(super) fn show_battery(&self, context: &mut Context<'_>) {
         let RobotKnowledge { name, battery, .. } = self;
         if battery.is_at_most(10) && !self.is_at_charger() {
@@ -32,7 +32,7 @@ impl RobotKnowledge {
         }
     }
 
-    /// Shows where the robot goes, as the console of the manual's figures does.
+    /// Prints the robot's next block, in the format of the console in the manual's figures.
     pub(super) fn show_move(&self, context: &mut Context<'_>, next: Block) {
         let RobotKnowledge { name, block, .. } = self;
         context.console(format_args!(

@@ -1,9 +1,9 @@
-//! What components let in from their topics, where anybody may publish.
+//! Validation of messages from topics, on which any component may publish.
 //!
-//! A message that cannot be, or that is said in another robot's name, is judged where it comes in. It is not taken in, counted, and logged with its
-//! sender: once for each sender and kind of mistake, so that nobody floods the log.
+//! A message that is impossible, or sent in another robot's name, is rejected where it arrives. It is counted, and
+//! logged with its sender once for each sender and kind of mistake, so that nobody floods the log.
 
-mod judge;
+mod checks;
 mod problem;
 #[cfg(test)]
 mod tests;
@@ -14,41 +14,41 @@ use saoms_api::{Context, Header, Level};
 
 use crate::grid::Map;
 
-pub(crate) use judge::Judged;
+pub(crate) use checks::Validate;
 pub(crate) use problem::Problem;
 
-/// What one component knows about those that talk to it.
+/// Validator of the messages that one component receives.
 ///
-/// Of several components that say something as one robot, the first speaks for it.
+/// If several components send messages as the same robot, the first of them speaks for it.
 #[derive(Debug, Default)]
-pub(crate) struct Intake {
-    /// Which component speaks for which robot, by robot.
+pub(crate) struct MessageValidator {
+    /// The component that speaks for each robot, as pairs of robot and component, sorted by robot.
     speakers: Vec<(u32, u32)>,
-    /// Whether robots say that they are there, so that one that does not is none.
+    /// True if robots announce themselves, so that a message about any other robot is rejected.
     introduced: bool,
-    /// Who was told what is wrong.
+    /// Mistakes that were logged.
     told: Vec<(u32, &'static str, Discriminant<Problem>)>,
 }
 
-impl Intake {
-    /// Whether to take a message in; the area as far as it is known.
+impl MessageValidator {
+    /// True if the message is accepted. The area is checked if it is known.
     #[inline]
-    pub(crate) fn lets_in<M: Judged>(
+    pub(crate) fn accepts<M: Validate>(
         &mut self,
         message: &M,
         header: Header,
         area: Option<&Map>,
         context: &mut Context<'_>,
     ) -> bool {
-        let Err(problem) = message.judge(header.sender, self, area) else { return true };
+        let Err(problem) = message.validate(header.sender, self, area) else { return true };
         context.count("messages.ignored", 1);
-        self.tell(context, header, message, problem);
+        self.log_rejection(context, header, message, problem);
         false
     }
 
-    /// Logs what is not taken in, with its sender.
+    /// Logs and counts a rejected message with its sender.
     #[cold]
-    pub(crate) fn tell<M: Judged>(
+    pub(crate) fn log_rejection<M: Validate>(
         &mut self,
         context: &mut Context<'_>,
         header: Header,
@@ -79,20 +79,20 @@ impl Intake {
         );
     }
 
-    /// Notes for which robot a component speaks.
+    /// Records that a component speaks for a robot.
     pub(crate) fn note_speaker(&mut self, robot: u32, sender: u32) {
         if let Err(place) = self.speakers.binary_search_by_key(&robot, |(known, _)| *known) {
             self.speakers.insert(place, (robot, sender));
         }
     }
 
-    /// Who speaks for a robot.
+    /// The component that speaks for a robot.
     fn speaker(&self, robot: u32) -> Option<u32> {
         let place = self.speakers.binary_search_by_key(&robot, |(known, _)| *known).ok()?;
         self.speakers.get(place).map(|(_, sender)| *sender)
     }
 
-    /// Whether a component may say for the first time that a robot is there.
+    /// Checks that a component may announce a robot.
     fn check_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
         match self.speaker(robot) {
             _ if robot == 0 => Err(Problem::NoRobot),
@@ -105,7 +105,7 @@ impl Intake {
         }
     }
 
-    /// Whether a component may speak for a robot that has to be there already.
+    /// Checks that a component may speak for a robot that was announced before.
     fn check_known_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
         self.check_known(robot)?;
         self.check_speaker(robot, sender)

@@ -3,41 +3,42 @@ use saoms_api::{CallError, Context, Failure};
 use crate::grid::{Block, Map};
 use crate::hardware::{Action, ActionKind, HardwareReference, Progress};
 
-/// A robot's way to its hardware: what its reference `world` leads to. Where it leads nowhere, every action succeeds at once.
+/// Client of a robot's hardware, called through its reference `world`. If that is not wired, every action succeeds at
+/// once.
 #[derive(Debug, Default)]
-pub(crate) struct Hooks {
+pub(crate) struct HardwareClient {
     hardware: HardwareReference,
     wired: bool,
     entered: bool,
     running: Option<Action>,
 }
 
-/// What became of a call to the hardware.
+/// Result of a call to the hardware.
 pub(crate) enum Reply<T> {
-    /// It answered.
+    /// The hardware answered.
     Answer(T),
-    /// It could not be reached now; a later call may.
+    /// The hardware could not be reached now; a later call may succeed.
     Later,
 }
 
-impl Hooks {
-    pub(crate) fn new(context: &mut Context<'_>) -> Result<Hooks, Failure> {
+impl HardwareClient {
+    pub(crate) fn new(context: &mut Context<'_>) -> Result<HardwareClient, Failure> {
         let hardware: HardwareReference = context.reference("world")?;
         let wired = context.is_wired(&hardware);
-        Ok(Hooks { hardware, wired, entered: !wired, running: None })
+        Ok(HardwareClient { hardware, wired, entered: !wired, running: None })
     }
 
-    /// Whether there is hardware.
+    /// True if there is hardware.
     pub(crate) fn is_wired(&self) -> bool {
         self.wired
     }
 
-    /// Whether the hardware knows that the robot is there.
+    /// True if the robot is registered with the hardware.
     pub(crate) fn has_entered(&self) -> bool {
         self.entered
     }
 
-    /// Says that the robot is there; the answer is where it really is, and the area.
+    /// Registers the robot; the answer is its real position, and the area.
     pub(crate) fn enter(
         &mut self,
         context: &mut Context<'_>,
@@ -64,17 +65,17 @@ impl Hooks {
         Ok(Reply::Answer((block, map)))
     }
 
-    /// The action that takes its time.
+    /// The running action.
     pub(crate) fn running(&self) -> Option<Action> {
         self.running
     }
 
-    /// Whether the gripper is at work.
+    /// True if the gripper is working.
     pub(crate) fn is_handling(&self) -> bool {
         self.running.is_some_and(|action| action.kind != ActionKind::Move)
     }
 
-    /// Whether the wheels are at work.
+    /// True if the robot is moving.
     pub(crate) fn is_moving(&self) -> bool {
         self.running.is_some_and(|action| action.kind == ActionKind::Move)
     }
@@ -96,7 +97,7 @@ impl Hooks {
         Ok(progress)
     }
 
-    /// How the running action goes; done when none is running.
+    /// Progress of the running action; done if none is running.
     pub(crate) fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Reply<Progress>, Failure> {
         if self.running.is_none() {
             return Ok(Reply::Answer(Progress::Done));
@@ -108,7 +109,7 @@ impl Hooks {
         Ok(progress)
     }
 
-    /// Ends the work of the hardware for good; the answer is where the robot is. `None` without hardware.
+    /// Takes the hardware out of service; the answer is the robot's position. `None` without hardware.
     pub(crate) fn retire(
         &mut self,
         context: &mut Context<'_>,
@@ -128,7 +129,7 @@ impl Hooks {
     }
 }
 
-/// Hardware that is busy, or not started yet, is asked again in the next period.
+/// Hardware that is busy, or not started yet, is called again in the next period.
 fn reply<T>(answer: Result<T, CallError>) -> Result<Reply<T>, Failure> {
     match answer {
         Ok(value) => Ok(Reply::Answer(value)),

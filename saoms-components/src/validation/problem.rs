@@ -3,46 +3,46 @@ use std::fmt;
 use crate::grid::{Block, Map};
 use crate::messages::{EventLuggage, LuggageStage};
 
-/// Why a message cannot be.
+/// Reason for rejecting a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Problem {
-    /// Robot 0.
+    /// Robot number 0.
     NoRobot,
-    /// A robot that nobody heard of.
+    /// A robot that was never announced.
     Unknown { robot: u32 },
-    /// Another component speaks for the robot.
+    /// A robot for which another component speaks.
     Foreign { robot: u32, speaker: u32 },
-    /// A block outside the area, which has this width and height as far as they are known.
+    /// A block outside the area; the area is its width and height, if they are known.
     Outside { block: Block, area: Option<(u32, u32)> },
-    /// A block where no robot can be.
+    /// A blocked block.
     Blocked { block: Block },
-    /// Luggage that is already where it has to go.
+    /// Luggage that is already at its destination.
     There { block: Block },
-    /// More than one block at once.
+    /// A move over more than one block.
     Jump { from: Block, to: Block },
-    /// A battery that is no percentage.
+    /// A battery level that is no percentage.
     Battery { percent: f64 },
-    /// A time from one execution to the next that no component has.
+    /// A period that no component has.
     Period { micros: u64 },
-    /// A response, or a request that a robot makes.
+    /// A response in place of a request, or a request in a robot's name.
     Response { robot: u32 },
-    /// Luggage that nobody asked for.
+    /// Luggage that nobody requested.
     UnknownLuggage,
     /// The number of other luggage.
     KnownLuggage,
-    /// A map that is not as large as it says.
+    /// A map whose data does not fit its size.
     Area { width: u32, height: u32 },
 }
 
 impl Problem {
-    /// What is wrong with a block where somebody is, or goes.
+    /// Checks a block where a robot is, or moves to.
     pub(super) fn of_block(block: Block, area: Option<&Map>) -> Result<(), Problem> {
         let inside = area.map_or(block.x >= 0 && block.y >= 0, |area| area.contains(block));
         let size = || area.map(|area| (area.width(), area.height()));
         if inside { Ok(()) } else { Err(Problem::Outside { block, area: size() }) }
     }
 
-    /// What is wrong with a request to bring luggage.
+    /// Checks a request to bring luggage.
     pub(crate) fn of_request(request: &EventLuggage, area: Option<&Map>) -> Result<(), Problem> {
         let EventLuggage { robot, from, to, .. } = *request;
         if robot != 0 || request.stage != LuggageStage::Request {

@@ -4,20 +4,20 @@ use saoms_api::rule::nearest;
 
 use crate::text::{TextFault, bytes};
 
-/// A line of a scenario, word by word.
-pub(super) struct Words<'a> {
+/// Tokenizer of a scenario line.
+pub(super) struct Tokenizer<'a> {
     text: &'a str,
     line: &'a str,
     words: Vec<&'a str>,
     at: usize,
 }
 
-/// Between the two ends of what is drawn by chance.
+/// Separator of the two ends of a range.
 pub(super) const DOTS: &str = "..";
 
-impl<'a> Words<'a> {
-    /// The words of a line of the text: blocks such as `(3, 1)` are one, and so is `..`.
-    pub(super) fn of(text: &'a str, line: &'a str) -> Words<'a> {
+impl<'a> Tokenizer<'a> {
+    /// The words of a line of the text. A block such as `(3, 1)` is one word, and so is `..`.
+    pub(super) fn of(text: &'a str, line: &'a str) -> Tokenizer<'a> {
         let (mut words, mut rest) = (Vec::new(), line.trim_start());
         while !rest.is_empty() {
             let length = if rest.starts_with(DOTS) {
@@ -31,33 +31,33 @@ impl<'a> Words<'a> {
             words.push(rest[..length].trim_end());
             rest = rest[length..].trim_start();
         }
-        Words { text, line, words, at: 0 }
+        Tokenizer { text, line, words, at: 0 }
     }
 
     pub(super) fn peek(&self) -> Option<&'a str> {
         self.words.get(self.at).copied()
     }
 
-    /// The word behind the next one.
+    /// The word after the next one.
     pub(super) fn peek_second(&self) -> Option<&'a str> {
         self.words.get(self.at + 1).copied()
     }
 
-    /// Takes the next word if it is this one.
+    /// Takes the next word if it equals `word`.
     pub(super) fn take(&mut self, word: &str) -> bool {
         let is_next = self.peek() == Some(word);
         self.at += usize::from(is_next);
         is_next
     }
 
-    /// Takes the next word, or says what was expected there.
+    /// Takes the next word, or reports what was expected there.
     pub(super) fn next(&mut self, expected: &str) -> Result<&'a str, TextFault> {
         let word = self.peek().ok_or_else(|| self.missing(expected))?;
         self.at += 1;
         Ok(word)
     }
 
-    /// Takes one of these words.
+    /// Takes the next word if it is one of these.
     pub(super) fn one_of(
         &mut self,
         known: &[&'static str],
@@ -71,17 +71,17 @@ impl<'a> Words<'a> {
             .ok_or_else(|| self.wrong(word, expected).instead(nearest(word, known.iter().copied())))
     }
 
-    /// Where a word is in the text.
+    /// Byte range of a word in the text.
     pub(super) fn bytes(&self, word: &str) -> Range<usize> {
         bytes(self.text, word)
     }
 
-    /// What is written there.
+    /// The text of a byte range.
     pub(super) fn text(&self, bytes: &Range<usize>) -> &'a str {
         &self.text[bytes.clone()]
     }
 
-    /// From one word to behind another.
+    /// The text from the start of one word to the end of another.
     pub(super) fn span(&self, first: &str, last: &str) -> &'a str {
         &self.text[self.bytes(first).start..self.bytes(last).end]
     }
@@ -91,17 +91,17 @@ impl<'a> Words<'a> {
         self.at.checked_sub(1).and_then(|last| self.words.get(last).copied()).unwrap_or(self.line)
     }
 
-    /// That another word stands there than was expected.
+    /// A fault: another word was expected.
     pub(super) fn wrong(&self, word: &str, expected: &str) -> TextFault {
         self.fault(word, format!("found `{word}`, expected {expected}"))
     }
 
-    /// That something is wrong with a word.
+    /// A fault in a word.
     pub(super) fn fault(&self, word: &str, message: impl Into<String>) -> TextFault {
         TextFault::new(self.bytes(word), message)
     }
 
-    /// That the line ends where something was expected.
+    /// A fault: the line ends where something was expected.
     pub(super) fn missing(&self, expected: &str) -> TextFault {
         let end = self.bytes(self.line.trim_end()).end;
         TextFault::new(end..end, format!("found the end of the line, expected {expected}"))

@@ -3,7 +3,7 @@
 use saoms_api::{Context, Failure};
 
 use super::World;
-use super::luggage::Luggage;
+use super::luggage::HandlingOutcome;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Area, Hardware, Progress};
 use crate::messages::Collision;
@@ -27,7 +27,7 @@ impl World {
 
     fn report(&self, context: &mut Context<'_>, collision: Collision) -> Result<(), Failure> {
         if collision.swap {
-            // It was counted as meeting in one block when the first of the two moved.
+            // It was counted as a meeting in one block when the first of the two robots moved.
             context.count("collisions.vertex", -1);
             context.count("collisions.swap", 1);
         } else {
@@ -37,10 +37,10 @@ impl World {
         context.send(&self.collisions, collision)
     }
 
-    /// The end of collecting or depositing.
+    /// Ends collecting or depositing.
     fn handle(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
         let here = self.referee.block(robot)?;
-        // Where a robot is out of order, those beside it reach its block.
+        // Robots next to a robot that is out of service reach its block.
         let in_reach = here.distance(action.block) == 1 && self.referee.is_retired_at(action.block);
         let block = if in_reach { action.block } else { here };
         let referee = &self.referee;
@@ -50,13 +50,13 @@ impl World {
             _ => self.stock.deposit(action.luggage, robot, block),
         };
         match result {
-            Ok(Luggage::Unknown) => return Ok(Progress::Running),
-            Ok(Luggage::Delivered) => {
+            Ok(HandlingOutcome::Unknown) => return Ok(Progress::Running),
+            Ok(HandlingOutcome::Delivered) => {
                 context.count("luggage.delivered", 1);
                 context.count("luggage.open", -1);
                 self.vote(context);
             }
-            Ok(Luggage::Handled) => {}
+            Ok(HandlingOutcome::Handled) => {}
             Err(reason) => {
                 context.warn(format_args!("robot {robot} at {block}: {reason}"));
                 self.referee.end_handling(robot);
@@ -77,7 +77,7 @@ impl Hardware for World {
         block: Block,
     ) -> Result<Block, Failure> {
         let block = self.referee.enter(robot, name, block)?;
-        // One that starts again knows nothing of what it carried: that lies where others look for it.
+        // A robot that starts again has forgotten its luggage, which therefore lies where other robots look for it.
         self.stock.unload(robot, block);
         Ok(block)
     }

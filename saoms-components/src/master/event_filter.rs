@@ -1,28 +1,28 @@
 use std::collections::BTreeSet;
 
 use crate::grid::Map;
-use crate::intake::Problem;
 use crate::messages::EventLuggage;
+use crate::validation::Problem;
 
-/// What is let in from the environment, where anybody may publish.
+/// Filter for events from the environment's topic, on which any component may publish.
 #[derive(Debug, Default)]
-pub(super) struct Gate {
-    /// The area, once the world has said it.
+pub(super) struct EventFilter {
+    /// The area, once the world has published it.
     area: Option<Map>,
-    /// The numbers of all luggage so far.
+    /// Numbers of all luggage so far.
     known: BTreeSet<u32>,
 }
 
-/// Why luggage is not let in.
+/// Refusal of luggage with its reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Refusal {
     pub(super) problem: Problem,
-    /// Whether whoever waits for the luggage has to be told that it is never brought.
+    /// True if the component that waits for the luggage has to be told that it is never brought.
     pub(super) is_lost: bool,
 }
 
-impl Gate {
-    /// The area, as far as it is known.
+impl EventFilter {
+    /// The area, if it is known.
     pub(super) fn area(&self) -> Option<&Map> {
         self.area.as_ref()
     }
@@ -31,7 +31,7 @@ impl Gate {
         self.area = area;
     }
 
-    /// Lets luggage in, once.
+    /// Admits luggage, once.
     pub(super) fn luggage(&mut self, request: &EventLuggage) -> Result<(), Refusal> {
         if self.known.contains(&request.luggage) {
             return Err(Refusal { problem: Problem::KnownLuggage, is_lost: false });
@@ -42,12 +42,12 @@ impl Gate {
         Ok(())
     }
 
-    /// Takes in luggage for which somebody asked the robots themselves.
+    /// Records luggage that was requested from the robots directly.
     pub(super) fn note(&mut self, luggage: u32) {
         self.known.insert(luggage);
     }
 
-    /// Whether somebody asked for luggage of this number.
+    /// True if luggage with this number was requested.
     pub(super) fn knows(&self, luggage: u32) -> bool {
         self.known.contains(&luggage)
     }
@@ -58,17 +58,17 @@ mod tests {
     use super::*;
     use crate::grid::Block;
 
-    fn refused(gate: &mut Gate, luggage: u32, from: (i32, i32), to: (i32, i32)) -> Option<Problem> {
+    fn refused(filter: &mut EventFilter, luggage: u32, from: (i32, i32), to: (i32, i32)) -> Option<Problem> {
         let request = EventLuggage::request(luggage, Block::new(from.0, from.1), Block::new(to.0, to.1));
-        gate.luggage(&request).err().map(|refusal| refusal.problem)
+        filter.luggage(&request).err().map(|refusal| refusal.problem)
     }
 
     #[test]
     fn only_luggage_that_robots_can_reach_is_let_in_once() {
-        let mut gate = Gate::default();
-        assert_eq!(refused(&mut gate, 1, (0, 0), (50, 50)), None, "nobody said yet how large the area is");
-        gate.learn(Map::read("...\n..@").ok());
-        assert_eq!(refused(&mut gate, 2, (0, 0), (1, 1)), None);
+        let mut filter = EventFilter::default();
+        assert_eq!(refused(&mut filter, 1, (0, 0), (50, 50)), None, "nobody said yet how large the area is");
+        filter.learn(Map::read("...\n..@").ok());
+        assert_eq!(refused(&mut filter, 2, (0, 0), (1, 1)), None);
         let beyond = Problem::Outside { block: Block::new(3, 0), area: Some((3, 2)) };
         for (luggage, from, to, problem) in [
             (2, (0, 0), (1, 0), Problem::KnownLuggage),
@@ -76,16 +76,18 @@ mod tests {
             (3, (0, 0), (2, 1), Problem::Blocked { block: Block::new(2, 1) }),
             (3, (1, 0), (1, 0), Problem::There { block: Block::new(1, 0) }),
         ] {
-            assert_eq!(refused(&mut gate, luggage, from, to), Some(problem));
+            assert_eq!(refused(&mut filter, luggage, from, to), Some(problem));
         }
-        assert_eq!(refused(&mut gate, 3, (0, 0), (1, 1)), None, "a refused number is free");
+        assert_eq!(refused(&mut filter, 3, (0, 0), (1, 1)), None, "a refused number is free");
     }
 
     #[test]
     fn a_response_is_no_request() {
         let response =
             EventLuggage { robot: 3, ..EventLuggage::request(1, Block::new(0, 0), Block::new(1, 0)) };
-        assert!(Gate::default().luggage(&response).unwrap_err().is_lost);
-        assert!(Gate::default().luggage(&EventLuggage::given_up(1, response.from, response.to)).is_err());
+        assert!(EventFilter::default().luggage(&response).unwrap_err().is_lost);
+        assert!(
+            EventFilter::default().luggage(&EventLuggage::given_up(1, response.from, response.to)).is_err()
+        );
     }
 }

@@ -3,17 +3,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage, RobotList};
 
-/// The luggage that is to be brought, and the robots that could.
+/// Open luggage, and the robots that could bring it.
 #[derive(Debug, Default)]
-pub(super) struct Open {
+pub(super) struct OpenLuggage {
     pieces: BTreeMap<u32, Piece>,
-    /// The robots that say they are active.
+    /// Robots that report that they are active.
     active: BTreeSet<u32>,
-    /// Those of them that are broken down.
+    /// Active robots that are broken.
     broken: BTreeSet<u32>,
-    /// Whether there ever was a robot.
+    /// True once there was a robot.
     seen: bool,
-    /// Whether something changed since the last look.
+    /// True if something changed since the last check.
     changed: bool,
 }
 
@@ -21,11 +21,11 @@ pub(super) struct Open {
 struct Piece {
     from: Block,
     to: Block,
-    /// The robots that can never bring it.
+    /// Robots that can never bring it.
     refused: BTreeSet<u32>,
 }
 
-impl Open {
+impl OpenLuggage {
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
         self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new() });
         self.changed = true;
@@ -40,7 +40,7 @@ impl Open {
         self.changed |= if robot.active {
             self.active.insert(robot.robot)
         } else {
-            // If it ever comes back, it was repaired.
+            // A robot that reports itself again was repaired.
             self.broken.remove(&robot.robot);
             self.active.remove(&robot.robot)
         };
@@ -58,12 +58,13 @@ impl Open {
         }
     }
 
-    /// Takes out what nobody can bring: every robot refused it, or none is left. Number, origin and destination of each.
+    /// Removes luggage that no robot can bring: every robot refused it, or no robot is left. Returns number, origin and
+    /// destination of each piece.
     pub(super) fn take_hopeless(&mut self) -> Vec<(u32, Block, Block)> {
         if !std::mem::take(&mut self.changed) || !self.seen {
             return Vec::new();
         }
-        let Open { pieces, active, broken, .. } = self;
+        let OpenLuggage { pieces, active, broken, .. } = self;
         let can = |piece: &Piece| active.difference(broken).any(|robot| !piece.refused.contains(robot));
         let hopeless = pieces.extract_if(.., |_, piece| !can(piece));
         hopeless.map(|(luggage, piece)| (luggage, piece.from, piece.to)).collect()
@@ -82,13 +83,13 @@ mod tests {
         EventLuggage { luggage, robot, stage: LuggageStage::Refused, ..EventLuggage::default() }
     }
 
-    fn hopeless(open: &mut Open) -> Vec<u32> {
+    fn hopeless(open: &mut OpenLuggage) -> Vec<u32> {
         open.take_hopeless().into_iter().map(|(luggage, ..)| luggage).collect()
     }
 
     #[test]
     fn luggage_is_given_up_once_every_robot_refused_it() {
-        let mut open = Open::default();
+        let mut open = OpenLuggage::default();
         for luggage in 1..=3 {
             open.add(luggage, Block::new(0, 0), Block::new(1, 0));
         }
@@ -107,7 +108,7 @@ mod tests {
 
     #[test]
     fn luggage_is_given_up_once_no_robot_is_left() {
-        let mut open = Open::default();
+        let mut open = OpenLuggage::default();
         open.hear_robot(&robot(1, true));
         open.add(1, Block::new(0, 0), Block::new(1, 0));
         assert_eq!(hopeless(&mut open), [0; 0]);

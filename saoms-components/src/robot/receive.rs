@@ -1,32 +1,32 @@
-//! What robots hear from others, as far as they let it in.
+//! Messages that robots receive from other robots, after validation.
 
 use saoms_api::{Context, Header, Subscription};
 
 use super::RobotKnowledge;
-use crate::intake::Judged;
 use crate::messages::{EventLuggage, Position, RobotList};
+use crate::validation::Validate;
 
 impl RobotKnowledge {
-    /// Whether a message can be, and is of who it says. What is not let in is told.
-    pub(super) fn lets_in<M: Judged>(
+    /// True if the message is possible and sent by the robot that it names. Rejected messages are logged.
+    pub(super) fn accepts<M: Validate>(
         &mut self,
         message: &M,
         header: Header,
         context: &mut Context<'_>,
     ) -> bool {
-        self.intake.lets_in(message, header, self.routes.map(), context)
+        self.validator.accepts(message, header, self.routes.map(), context)
     }
 
-    /// Takes in where the others are.
+    /// Handles the positions of other robots.
     pub(super) fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
-        let RobotKnowledge { intake, lists, routes, .. } = self;
+        let RobotKnowledge { validator, lists, routes, .. } = self;
         let heard = context.receive(&positions).with_headers();
         let sound =
-            heard.filter(|(header, position)| intake.lets_in(*position, *header, routes.map(), context));
+            heard.filter(|(header, position)| validator.accepts(*position, *header, routes.map(), context));
         lists.peers.hear(sound.map(|(_, position)| position));
     }
 
-    /// Takes in who is there, and gives it on to who has more to learn from it.
+    /// Handles the states of other robots, and passes each to `learn`.
     pub(super) fn hear_robots<'a>(
         &mut self,
         robots: Subscription<RobotList>,
@@ -34,7 +34,7 @@ impl RobotKnowledge {
         mut learn: impl FnMut(&mut RobotKnowledge, &'a RobotList),
     ) {
         for (header, robot) in context.receive(&robots).with_headers() {
-            if self.lets_in(robot, header, context) {
+            if self.accepts(robot, header, context) {
                 self.lists.hear_robot(robot);
                 self.routes.learn_charger(robot.charger);
                 learn(self, robot);
@@ -42,10 +42,10 @@ impl RobotKnowledge {
         }
     }
 
-    /// Takes in what was said about luggage.
+    /// Handles messages about luggage.
     pub(super) fn hear_luggage(&mut self, luggage: Subscription<EventLuggage>, context: &mut Context<'_>) {
         for (header, event) in context.receive(&luggage).with_headers() {
-            if self.lets_in(event, header, context) {
+            if self.accepts(event, header, context) {
                 self.lists.requests.hear(event, header);
             }
         }
