@@ -178,6 +178,9 @@ fn a_misspelt_root_is_read_on() {
     "#]]
     .assert_eq(&faults_of(&[&text.replace("<composite", "<compsite").replace(end, "</compsite>")], &[]));
     expect![[r#"
+        3:18-19 error S2002: there are two components `G`
+          2:18-19 the first
+          fix: remove the second: both are the same, word for word [3:1-75 ""]
         4:1-12 error S0102: `</compsite>` found where `</composite>` is expected
           1:2-11 `composite` is open
           fix: replace it with `</composite>` [4:1-12 "</composite>"]
