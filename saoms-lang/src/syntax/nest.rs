@@ -181,7 +181,7 @@ impl<'l, 'a> Nest<'l, 'a> {
     /// an end tag, so that there is no such element.
     fn makes_room(&mut self, at: u32, named: Named<'a>, is_bare: bool) -> bool {
         let Some(holders) = holders(local(named.name)) else { return false };
-        let is_holder = |one: &&u32| holders.contains(&local(self.name(self.node(**one))));
+        let is_holder = |one: &&u32| tags::is_one_of(local(self.name(self.node(**one))), holders);
         let Some(above) = self.open.iter().rev().take(DEEPEST).position(|one| is_holder(&one)) else {
             return false;
         };

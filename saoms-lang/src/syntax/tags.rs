@@ -1,7 +1,7 @@
 //! Faults of start and end tags that do not fit.
 
 use super::fault::Input;
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::source::{Location, Span};
 
 /// An element, for a message.
@@ -32,6 +32,14 @@ const HOLDERS: &[(&str, &[&str])] = &[
 pub(super) fn holders(name: &str) -> Option<&'static [&'static str]> {
     let is_meant = |known: &str| name == known || (known.ends_with('.') && name.starts_with(known));
     HOLDERS.iter().find(|(known, _)| is_meant(known)).map(|(_, holders)| *holders)
+}
+
+/// True if a name, without its prefix, is one of these or a misspelling of one.
+pub(super) fn is_one_of(name: &str, holders: &[&str]) -> bool {
+    holders.contains(&name)
+        || self::holders(name).is_none()
+            && !is_holder(name)
+            && nearest(name, holders.iter().copied()).is_some()
 }
 
 /// True if others stand in an element of this name, without its prefix.
@@ -67,12 +75,17 @@ pub(super) fn closed_first(
     is_bare: bool,
 ) -> Diagnostic {
     let name = quoted(open.name);
-    if is_bare {
+    if is_bare && !ends_with_slash(input, open) {
         let slash = Span::empty(open.start_tag.end - 1).in_file(input.file);
         return one.suggest(format!("end {name} with `/>`"), slash, "/");
     }
     let place = Span::empty(end).in_file(input.file);
     one.suggest(format!("close {name} first"), place, format!("</{}>", open.name))
+}
+
+/// True if a start tag ends with a `/` that is part of a fault in it.
+fn ends_with_slash(input: Input<'_>, open: Named<'_>) -> bool {
+    input.slice(open.start_tag.start, open.start_tag.end).ends_with("/>")
 }
 
 /// The fault of `outer`, which is not closed before `inner`.
@@ -84,7 +97,7 @@ pub(super) fn not_closed(input: Input<'_>, outer: Named<'_>, inner: Named<'_>) -
     let one = one.label(inner.at.in_file(file), "this stands beside it, and not in it");
     let text = input.text;
     let inside = input.slice(outer.start_tag.end, inner.start_tag.start);
-    if inside.trim().is_empty() {
+    if inside.trim().is_empty() && !ends_with_slash(input, outer) {
         let slash = Span::empty(outer.start_tag.end - 1).in_file(file);
         return one.suggest(format!("end {name} with `/>`"), slash, "/");
     }

@@ -29,7 +29,7 @@ const WITH_TEXT: [&str; 3] = ["property", "value", "documentation"];
 /// attribute a line.
 ///
 /// ```
-/// use saoms_lang::{source::Sources, xml};
+/// use saoms_lang::{source::Sources, syntax};
 /// use saoms_tools::format::{format, WIDTH};
 ///
 /// let mut sources = Sources::new();

@@ -112,7 +112,7 @@ fn plugins_complete_and_explain_as_what_is_linked_in() {
     let (class, name) = (at(2, 35), at(5, 18));
     let hover = editor.ask("textDocument/hover", class);
     let said = hover["result"]["contents"]["value"].as_str().unwrap();
-    assert!(said.contains("Greets somebody") && said.contains("libhello.so"), "{said}");
+    assert!(said.contains("Logs a greeting") && said.contains("libhello.so"), "{said}");
     let proposed = editor.ask("textDocument/completion", name);
     let items = proposed["result"]["items"].as_array().unwrap();
     let own = items.iter().find(|item| item["label"] == "name").unwrap();

@@ -94,7 +94,10 @@ pub(crate) fn ends<'a>(
 }
 
 /// The fault of a step that is of no form that is understood here.
-pub(crate) fn no_step(at: Range<usize>) -> Fault {
+pub(crate) fn no_step(step: &str, at: Range<usize>) -> Fault {
+    if step.matches('[').count() > step.matches(']').count() {
+        return Fault::unknown(at, "a `]` is missing at the end of this step");
+    }
     Fault::unknown(at, NO_STEP)
 }
 
