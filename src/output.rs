@@ -10,7 +10,7 @@ pub(crate) fn print(shown: &(impl Display + ?Sized)) {
     let _ = try_print(shown);
 }
 
-/// [`print`] with the result of writing. A reader that went away (`saoms components | head`) is not an error.
+/// [`print()`] with the result of writing. A reader that went away (`saoms components | head`) is not an error.
 pub(crate) fn try_print(shown: &(impl Display + ?Sized)) -> io::Result<()> {
     let mut output = BufWriter::new(io::stdout().lock());
     unless_closed(write!(output, "{shown}").and_then(|()| output.flush()))

@@ -117,7 +117,7 @@ fn plugins_complete_and_explain_as_what_is_linked_in() {
     let items = proposed["result"]["items"].as_array().unwrap();
     let own = items.iter().find(|item| item["label"] == "name").unwrap();
     assert_eq!(own["detail"], "a text, default `world`");
-    assert!(own["documentation"]["value"].as_str().unwrap().contains("Whom to greet."));
+    assert!(own["documentation"]["value"].as_str().unwrap().contains("Name to greet."));
     assert_eq!(editor.end(), 0);
 }
 
