@@ -1,8 +1,8 @@
 //! From the model to an assembly: the faults that a fleet can have before anything runs.
 //!
-//! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but its arguments. A check is a sequence of phases; [`examine`] is
+//! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but its arguments. A check is a sequence of phases; `examine` is
 //! the one place where their order is written down. Each phase looks at everything, so that all faults come in one run, from cheap rules to expensive
-//! ones. What depends on a faulty part is not looked at: one mistake gives one diagnostic. [`component::State`] says of a component that it is faulty.
+//! ones. What depends on a faulty part is not looked at: one mistake gives one diagnostic. `component::State` says of a component that it is faulty.
 
 mod assemble;
 mod component;
