@@ -214,10 +214,19 @@ fn declarations_are_json() {
 
 #[test]
 fn linked_classes_register_themselves() {
+    let mut linked: Vec<_> = Registration::linked().map(Registration::declaration).collect();
+    linked.sort_unstable();
     for class in [Passive::DECLARATION, Robot::DECLARATION] {
-        let linked = Registration::linked().filter(|registration| registration.declaration() == class);
-        assert_eq!(linked.count(), 1, "{class}");
+        assert_eq!(linked.iter().filter(|one| **one == class).count(), 1, "{class}");
     }
+    // The classes of all modules of this program: no other one registers itself.
+    let name = |declaration: &str| declaration.split('"').nth(5).unwrap_or_default().to_owned();
+    let names: Vec<String> = linked.into_iter().map(name).collect();
+    let own = ["example.Passive", "example.Robot"];
+    let others = ["example.Car", "extends.Car", "extends.LoudCar", "test.Busy", "test.Echo", "test.Receiver"];
+    let mut expected = [&own[..], &others[..]].concat();
+    expected.sort_unstable();
+    assert_eq!(names, expected);
 }
 
 fn text(name: &str, value: &str) -> (SmolStr, PropertyValue) {
